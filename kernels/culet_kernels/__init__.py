@@ -1,0 +1,1 @@
+"""OpenCL C by physical stage, and a loader."""

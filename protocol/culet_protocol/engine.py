@@ -1,0 +1,127 @@
+"""What gateway (DEALER) and engine (ROUTER) say to each other.
+
+A message has two or three parts: an 8-byte request number (little-endian, 0 for what nobody asked for), JSON, and bytes
+where a request or reply carries some (an uploaded mesh, an encoded picture). Every request gets exactly one `Reply`.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, TypeAdapter
+
+from culet_protocol.messages import Message, SessionEvent
+
+REQUEST_NUMBER = struct.Struct("<Q")
+Format = Literal["tga", "png", "jpeg", "exr"]
+SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
+
+
+class OpenSession(Message):
+    """Make a session, or, with `snapshot`, the one that an engine before this had."""
+
+    type: Literal["open_session"] = "open_session"
+    session: SessionId
+    scene: dict[str, Any]
+    snapshot: dict[str, Any] | None = None
+
+
+class CloseSession(Message):
+    """Forget a session."""
+
+    type: Literal["close_session"] = "close_session"
+    session: SessionId
+
+
+class GetSession(Message):
+    """Ask for a session's scene, pose and simulation snapshot."""
+
+    type: Literal["get_session"] = "get_session"
+    session: SessionId
+
+
+class Control(Message):
+    """Apply an event to a session."""
+
+    type: Literal["control"] = "control"
+    session: SessionId
+    event: Annotated[SessionEvent, Field(discriminator="type")]
+
+
+class Demand(Message):
+    """What the session's viewers can take: frames per second (0: none), and the size in pixels."""
+
+    type: Literal["demand"] = "demand"
+    session: SessionId
+    frames_per_second: Annotated[float, Field(ge=0, le=240)]
+    width: Annotated[int, Field(ge=16, le=8192)]
+    height: Annotated[int, Field(ge=16, le=8192)]
+
+
+class Render(Message):
+    """A still: of a scene, or of what a session showed at `step` (the latest if None)."""
+
+    type: Literal["render"] = "render"
+    scene: dict[str, Any] | None = None
+    session: SessionId | None = None
+    step: int | None = None
+    width: int | None = None
+    height: int | None = None
+    format: Format = "tga"
+
+
+class PutMesh(Message):
+    """Parse the mesh in the bytes and keep it under an id; the reply describes it."""
+
+    type: Literal["put_mesh"] = "put_mesh"
+    file_type: Literal["obj", "off", "stl", "ply", "glb"]
+    mesh: str
+
+
+class Status(Message):
+    """Ask for the engine's counters and device."""
+
+    type: Literal["status"] = "status"
+
+
+EngineRequest = Annotated[
+    OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | Status, Field(discriminator="type")
+]
+
+
+class Reply(Message):
+    """The answer to a request: `result`, or a problem with the HTTP status that suits it."""
+
+    type: Literal["reply"] = "reply"
+    status: int = 200
+    result: dict[str, Any] = {}
+    title: str | None = None
+    detail: str | None = None
+    field: str | None = None
+
+
+class SessionState(Message):
+    """Told unasked: on every edit, and once a second while the stone moves; what a new engine needs to go on."""
+
+    type: Literal["session_state"] = "session_state"
+    session: SessionId
+    scene: dict[str, Any]
+    falling: bool
+    edited: bool
+    snapshot: dict[str, Any]
+
+
+class Heartbeat(Message):
+    """Told unasked, once a second: the engine lives. `instance` differs for every process."""
+
+    type: Literal["heartbeat"] = "heartbeat"
+    instance: str
+
+
+EngineMessage = Annotated[Reply | SessionState | Heartbeat, Field(discriminator="type")]
+
+engine_request: TypeAdapter[
+    OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | Status
+] = TypeAdapter(EngineRequest)
+engine_message: TypeAdapter[Reply | SessionState | Heartbeat] = TypeAdapter(EngineMessage)

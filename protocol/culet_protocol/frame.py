@@ -1,0 +1,125 @@
+"""A frame: a fixed header of little-endian fields, then the encoded picture, in one message.
+
+The same bytes travel over ZeroMQ and WebSocket. They begin with the session's 16 bytes, which is the ZeroMQ topic, since
+topics match by prefix; a single part lets a native viewer use SUB with CONFLATE, which keeps the latest frame only.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from enum import IntEnum, IntFlag
+from typing import NamedTuple
+
+MAGIC = b"CULT"
+HEADER_VERSION = 1
+
+
+class Codec(IntEnum):
+    """How the payload is encoded."""
+
+    JPEG = 1
+    PNG = 2
+
+
+class Flags(IntFlag):
+    """What is special about a frame."""
+
+    NONE = 0
+    MOVING = 1
+    """The stone is falling."""
+    FINAL = 2
+    """The picture has all its samples: nothing better will come until something changes."""
+
+
+class FrameError(ValueError):
+    """Bytes that are not a frame; says what was expected and what came."""
+
+
+class HeaderField(NamedTuple):
+    """One field of the header; the generator reads this table for the other languages."""
+
+    name: str
+    format: str
+    meaning: str
+
+
+FIELDS = (
+    HeaderField("session", "16s", "id of the session: 16 bytes, hexadecimal in URLs"),
+    HeaderField("magic", "4s", "CULT"),
+    HeaderField("version", "B", "version of this header"),
+    HeaderField("codec", "B", "1 JPEG, 2 PNG"),
+    HeaderField("flags", "H", "bit 0 moving, bit 1 final"),
+    HeaderField("sequence", "I", "number of the frame in its session, from 1"),
+    HeaderField("width", "H", "pixels"),
+    HeaderField("height", "H", "pixels"),
+    HeaderField("samples", "I", "samples per pixel in this picture"),
+    HeaderField("step", "Q", "number of the state shown; names the frame for frame.tga?step="),
+    HeaderField("simulation_time", "d", "s since the stone was put at its start"),
+    HeaderField("timestamp", "d", "s since the Unix epoch, engine's clock, when encoded"),
+    HeaderField("simulate_ms", "f", "milliseconds spent on the simulation for this frame"),
+    HeaderField("render_ms", "f", "milliseconds spent on rendering"),
+    HeaderField("encode_ms", "f", "milliseconds spent on tone mapping and encoding"),
+    HeaderField("cut", "f", "mean weight of what the cut-off dropped, 0 to 1"),
+    HeaderField("length", "I", "bytes of payload that follow"),
+)
+
+LAYOUT = struct.Struct("<" + "".join(field.format for field in FIELDS))
+HEADER_SIZE = LAYOUT.size
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture of one session; see FIELDS for units."""
+
+    session: bytes
+    codec: Codec
+    flags: Flags
+    sequence: int
+    width: int
+    height: int
+    samples: int
+    step: int
+    simulation_time: float
+    timestamp: float
+    simulate_ms: float
+    render_ms: float
+    encode_ms: float
+    cut: float
+    payload: bytes
+
+    def pack(self) -> bytes:
+        """The message: header, then payload."""
+        if len(self.session) != 16:
+            raise FrameError(f"a session id has 16 bytes, got {len(self.session)}")
+        header = LAYOUT.pack(
+            self.session, MAGIC, HEADER_VERSION, self.codec, self.flags, self.sequence & 0xFFFFFFFF, self.width,
+            self.height, self.samples, self.step, self.simulation_time, self.timestamp, self.simulate_ms,
+            self.render_ms, self.encode_ms, self.cut, len(self.payload),
+        )  # fmt: skip
+        return header + self.payload
+
+    @classmethod
+    def unpack(cls, message: bytes | memoryview) -> Frame:
+        """The frame in a message, or FrameError."""
+        if len(message) < HEADER_SIZE:
+            raise FrameError(f"a frame has at least {HEADER_SIZE} bytes, got {len(message)}")
+        (
+            session, magic, version, codec, flags, sequence, width, height, samples, step, simulation_time, timestamp,
+            simulate_ms, render_ms, encode_ms, cut, length,
+        ) = LAYOUT.unpack_from(message)  # fmt: skip
+        if magic != MAGIC:
+            raise FrameError(f"a frame is marked {MAGIC!r}, got {magic!r}")
+        if version != HEADER_VERSION:
+            raise FrameError(f"expected header version {HEADER_VERSION}, got {version}")
+        payload = bytes(message[HEADER_SIZE:])
+        if len(payload) != length:
+            raise FrameError(f"expected {length} bytes of payload, got {len(payload)}")
+        try:
+            codec = Codec(codec)
+        except ValueError:
+            raise FrameError(f"expected codec {', '.join(f'{c} ({c.name})' for c in Codec)}, got {codec}") from None
+        return cls(
+            session, codec, Flags(flags), sequence, width, height, samples, step, simulation_time, timestamp,
+            simulate_ms, render_ms, encode_ms, cut, payload,
+        )  # fmt: skip

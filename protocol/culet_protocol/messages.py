@@ -1,0 +1,193 @@
+"""What a viewer and the gateway say to each other on the WebSocket, as JSON text.
+
+Two unions, told apart by `type`: `ControlEvent` from the viewer, `Notice` to it. Clients send meaning, never keys.
+Lengths are in R (the stone's circumradius), angles in radians, times in milliseconds of the sender's clock.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+Distance = Annotated[float, Field(ge=-1e6, le=1e6)]
+Angle = Annotated[float, Field(ge=-1e3, le=1e3)]
+Target = Literal["camera", "light_1", "light_2"]
+Pixels = Annotated[int, Field(ge=16, le=8192)]
+
+
+class Message(BaseModel):
+    """Immutable; unknown keys, NaN and infinity are errors."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Orbit(Message):
+    """Turn the target about what the camera looks at: yaw about the vertical, pitch towards it."""
+
+    type: Literal["orbit"] = "orbit"
+    target: Target = "camera"
+    yaw: Angle
+    pitch: Angle
+
+
+class Translate(Message):
+    """Move the target along the camera's right and up."""
+
+    type: Literal["translate"] = "translate"
+    target: Target = "camera"
+    right: Distance
+    up: Distance
+
+
+class Dolly(Message):
+    """Move the target along the camera's line of sight, away from the viewer if positive."""
+
+    type: Literal["dolly"] = "dolly"
+    target: Target = "camera"
+    forward: Distance
+
+
+class ResetCamera(Message):
+    """Put the camera back to where the scene has it."""
+
+    type: Literal["reset_camera"] = "reset_camera"
+
+
+class ToggleFall(Message):
+    """Start or pause free fall."""
+
+    type: Literal["toggle_fall"] = "toggle_fall"
+
+
+class ResetStone(Message):
+    """Put the stone back to where the scene has it, and stop it."""
+
+    type: Literal["reset_stone"] = "reset_stone"
+
+
+class ToggleMirror(Message):
+    """Switch floor and walls between matte and mirror."""
+
+    type: Literal["toggle_mirror"] = "toggle_mirror"
+
+
+class ToggleEnvironment(Message):
+    """Switch the sky between dark and light."""
+
+    type: Literal["toggle_environment"] = "toggle_environment"
+
+
+class ToggleWalls(Message):
+    """Show or hide the walls, of the floor's kind."""
+
+    type: Literal["toggle_walls"] = "toggle_walls"
+
+
+class PatchScene(Message):
+    """Change parts of the scene: a JSON merge patch (RFC 7396)."""
+
+    type: Literal["patch_scene"] = "patch_scene"
+    patch: dict[str, Any]
+
+
+class SetScene(Message):
+    """Replace the whole scene; camera and stone go to where it has them."""
+
+    type: Literal["set_scene"] = "set_scene"
+    scene: dict[str, Any]
+
+
+class Resize(Message):
+    """The size that this viewer would like, in device pixels."""
+
+    type: Literal["resize"] = "resize"
+    width: Pixels
+    height: Pixels
+
+
+class Visibility(Message):
+    """Whether this viewer can be seen; a hidden one gets no frames."""
+
+    type: Literal["visibility"] = "visibility"
+    visible: bool
+
+
+class Ack(Message):
+    """The frame was shown: room for another."""
+
+    type: Literal["ack"] = "ack"
+    sequence: Annotated[int, Field(ge=0, le=0xFFFFFFFF)]
+
+
+class Ping(Message):
+    """Asks for a Pong with the same time, to measure the way there and back."""
+
+    type: Literal["ping"] = "ping"
+    time: float
+
+
+SessionEvent = (
+    Orbit | Translate | Dolly | ResetCamera | ToggleFall | ResetStone | ToggleMirror | ToggleEnvironment | ToggleWalls
+    | PatchScene | SetScene
+)  # fmt: skip
+"""What changes a session, and so travels on to the engine."""
+
+ViewerEvent = Resize | Visibility | Ack | Ping
+"""What concerns one viewer only, and ends at the gateway."""
+
+ControlEvent = Annotated[SessionEvent | ViewerEvent, Field(discriminator="type")]
+
+
+class Hello(Message):
+    """The first notice on a stream."""
+
+    type: Literal["hello"] = "hello"
+    protocol: int
+    session: str
+    viewer: int
+
+
+class State(Message):
+    """The session's scene as it is now (with the live camera), and whether the stone moves; sent on every edit."""
+
+    type: Literal["state"] = "state"
+    scene: dict[str, Any]
+    falling: bool
+
+
+class Viewers(Message):
+    """How many watch this session."""
+
+    type: Literal["viewers"] = "viewers"
+    count: int
+
+
+class Problem(Message):
+    """Something was refused or went wrong; the session lives on."""
+
+    type: Literal["problem"] = "problem"
+    code: str
+    message: str
+    field: str | None = None
+
+
+class Engine(Message):
+    """The render process is gone (`down`), or is back with the same scene (`up`)."""
+
+    type: Literal["engine"] = "engine"
+    status: Literal["down", "up"]
+
+
+class Pong(Message):
+    """The answer to a Ping."""
+
+    type: Literal["pong"] = "pong"
+    time: float
+
+
+Notice = Annotated[Hello | State | Viewers | Problem | Engine | Pong, Field(discriminator="type")]
+
+control_event: TypeAdapter[SessionEvent | ViewerEvent] = TypeAdapter(ControlEvent)
+session_event: TypeAdapter[SessionEvent] = TypeAdapter(Annotated[SessionEvent, Field(discriminator="type")])
+notice: TypeAdapter[Hello | State | Viewers | Problem | Engine | Pong] = TypeAdapter(Notice)

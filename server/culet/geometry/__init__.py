@@ -1,0 +1,1 @@
+"""Cuts and meshes, made into stones."""

@@ -1,0 +1,38 @@
+"""A stone: facets as half-spaces, surface as triangles, and what the simulation needs to know of its mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class MassProperties:
+    """Of a body of uniform density, about its centre of mass, in units of its circumradius R."""
+
+    volume: float
+    """R^3."""
+    inertia: NDArray[np.float64]
+    """(3, 3) tensor per unit of mass, R^2, in the stone's own axes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stone:
+    """A closed polyhedron, its centre at the origin and its farthest vertex at distance 1; y is up (table upward)."""
+
+    name: str
+    vertices: NDArray[np.float64]
+    """(V, 3), all distinct."""
+    triangles: NDArray[np.int32]
+    """(T, 3) indices of vertices, counter-clockwise seen from outside."""
+    facet_of_triangle: NDArray[np.int32]
+    """(T,) index of the facet that the triangle belongs to; coplanar neighbours share one."""
+    planes: NDArray[np.float64]
+    """(F, 4) outward unit normal n and offset d of each facet: the inside is n.x <= d. If `convex`, the stone is their
+    intersection."""
+    convex: bool
+    mass: MassProperties
+    findings: tuple[str, ...] = ()
+    """What was found in the source and what was done about it, a sentence each."""

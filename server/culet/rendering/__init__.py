@@ -1,0 +1,1 @@
+"""From scene to features, to a program, to an image."""

@@ -1,0 +1,271 @@
+"""The scene: JSON in, JSON out, every field with a default, so that `{}` is the default scene.
+
+y is up. The unit of length is the stone's circumradius R, the unit of time the second; colours and radiance are linear.
+The floor is the plane y = -1. Anything unknown, out of range, infinite or not a number is refused with the field's name.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, field_validator, model_validator
+
+from culet.errors import SceneError
+
+SCHEMA_VERSION = 1
+
+Coordinate = Annotated[float, Field(ge=-1e9, le=1e9)]
+Component = Annotated[float, Field(ge=0, le=1e6)]
+Vector = tuple[Coordinate, Coordinate, Coordinate]
+Colour = tuple[Component, Component, Component]
+Index = Annotated[float, Field(ge=1, le=10)]
+
+
+class Model(BaseModel):
+    """Immutable; unknown keys, NaN and infinity are errors."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class BrilliantCut(Model):
+    """A round brilliant by its proportions, in the trade's own measures.
+
+    Percentages: the table of the girdle's diameter (corner to corner), star and lower half of the way that they could
+    reach, the girdle's thickness (at the mains) of the diameter. Which combinations exist is the cut's own affair.
+    """
+
+    name: Literal["brilliant"] = "brilliant"
+    table_percent: Annotated[float, Field(gt=0, lt=100)] = 53
+    crown_degrees: Annotated[float, Field(gt=0, lt=90)] = 34.5
+    pavilion_degrees: Annotated[float, Field(gt=0, lt=90)] = 40.75
+    star_percent: Annotated[float, Field(gt=0, lt=100)] = 55
+    lower_half_percent: Annotated[float, Field(gt=0, lt=100)] = 80
+    girdle_percent: Annotated[float, Field(gt=0, le=50)] = 3
+
+
+class IndexMaterial(Model):
+    """Three indices of refraction, for the red, green and blue channel."""
+
+    ior: tuple[Index, Index, Index]
+
+
+class SellmeierMaterial(Model):
+    """n^2 = 1 + sum B l^2 / (l^2 - C^2), wavelength l and C in micrometres (Sellmeier 1871)."""
+
+    sellmeier: Annotated[tuple[tuple[float, float], ...], Field(min_length=1, max_length=8)]
+
+
+class StoneSettings(Model):
+    """One stone: its shape, what it is made of, and where it is when nothing has moved yet."""
+
+    cut: Literal["brilliant"] | BrilliantCut = "brilliant"
+    mesh: Annotated[str, Field(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] | None = Field(
+        None, description="Id of an uploaded mesh; takes the place of the cut."
+    )
+    material: Literal["diamond", "classic"] | IndexMaterial | SellmeierMaterial = "diamond"
+    absorption: tuple[
+        Annotated[float, Field(ge=0, le=1e9)],
+        Annotated[float, Field(ge=0, le=1e9)],
+        Annotated[float, Field(ge=0, le=1e9)],
+    ] = Field((0, 0, 0), description="Absorption coefficient of each channel, per R (Beer-Lambert).")
+    size_mm: Annotated[float, Field(gt=0, le=1e9)] | None = Field(
+        None, description="Girdle radius R in millimetres; then `absorption` is per millimetre."
+    )
+    position: Vector = (0, 0.9, 0)
+    orientation: tuple[Coordinate, Coordinate, Coordinate, Coordinate] = Field(
+        (1, 0, 0, 0), description="Unit quaternion w, x, y, z; normalised when read."
+    )
+
+    @field_validator("orientation")
+    @classmethod
+    def _normalise(cls, q: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+        length = math.sqrt(sum(c * c for c in q))
+        if not 1e-6 < length:
+            raise ValueError("a quaternion of length 0 is no orientation")
+        if abs(length - 1) < 1e-12:  # normalising again would change the last bit, and the scene with it
+            return q
+        w, x, y, z = (c / length for c in q)
+        return w, x, y, z
+
+
+class Plane(Model):
+    """The floor, or the three walls at distance 8: absent, matte (checkered, lit, shadowed) or a mirror."""
+
+    kind: Literal["none", "matte", "mirror"] = "none"
+
+
+class Light(Model):
+    """A point light without falloff; it lights the floor and the walls, and the stone shades it."""
+
+    position: Vector
+    colour: Colour
+
+
+class DarkEnvironment(Model):
+    """A vertical blend of two dark blues."""
+
+    kind: Literal["dark"] = "dark"
+
+
+class LightEnvironment(Model):
+    """A uniform pale blue."""
+
+    kind: Literal["light"]
+
+
+class ConstantEnvironment(Model):
+    """The same radiance from everywhere: the white furnace of the tests."""
+
+    kind: Literal["constant"]
+    radiance: Colour = (1, 1, 1)
+
+
+class HalfEnvironment(Model):
+    """Radiance from above the horizon, nothing from below."""
+
+    kind: Literal["half"]
+    radiance: Colour = (1, 1, 1)
+
+
+class GradientEnvironment(Model):
+    """A vertical blend, linear in the direction's y, from `bottom` to `top`."""
+
+    kind: Literal["gradient"]
+    bottom: Colour = (0, 0, 0)
+    top: Colour = (1, 1, 1)
+
+
+Environment = Annotated[
+    DarkEnvironment | LightEnvironment | ConstantEnvironment | HalfEnvironment | GradientEnvironment,
+    Field(discriminator="kind"),
+]
+
+
+class Camera(Model):
+    """A pinhole."""
+
+    position: Vector = (0, 2.6, 4.6)
+    target: Vector = (0, 0.45, 0)
+    up: Vector = (0, 1, 0)
+    fov_degrees: Annotated[float, Field(ge=1e-3, le=170)] = Field(45, description="Vertical field of view.")
+
+    @model_validator(mode="after")
+    def _looks_somewhere(self) -> Self:
+        forward = [t - p for t, p in zip(self.target, self.position, strict=True)]
+        length, up = math.hypot(*forward), math.hypot(*self.up)
+        if length == 0:
+            raise ValueError("position and target are the same point: the camera looks nowhere")
+        if up == 0:
+            raise ValueError("up has length 0")
+        f, u = [c / length for c in forward], [c / up for c in self.up]
+        sine = math.hypot(f[1] * u[2] - f[2] * u[1], f[2] * u[0] - f[0] * u[2], f[0] * u[1] - f[1] * u[0])
+        if sine < 1e-6:
+            raise ValueError("up is parallel to the line of sight")
+        return self
+
+
+class Optics(Model):
+    """How light is followed."""
+
+    fresnel: Literal["exact", "schlick"] = "exact"
+    bands: Literal[3] = Field(3, description="Wavelength bands: 3 is one index for each channel.")
+    cutoff: Annotated[float, Field(ge=1e-9, lt=1)] = Field(
+        0.01, description="A chain whose weight falls below this ends; what it carried is counted as cut."
+    )
+    max_bounces: Annotated[int, Field(ge=1, le=65536)] = Field(
+        256, description="Interior segments of a chain, at most."
+    )
+    estimator: Literal["chain", "classic"] = "chain"
+
+
+class Sampling(Model):
+    """How often each pixel is sampled; the first sample is the pixel's centre."""
+
+    samples_per_pixel: Annotated[int, Field(ge=1, le=65536)] = 1
+
+
+class Film(Model):
+    """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
+
+    exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
+    tone_map: Literal["srgb", "classic", "none"] = Field(
+        "srgb", description="srgb: IEC 61966-2-1, clipped; classic: (1.2 L)^1.2 as in the report; none: linear, clipped."
+    )
+
+
+class Simulation(Model):
+    """How the stone moves."""
+
+    model: Literal["classic"] = Field("classic", description="classic: the report's sphere against the floor.")
+    inertia: Literal["polyhedron", "cone", "cone_apex"] = Field(
+        "polyhedron",
+        description="polyhedron: integral over the mesh; cone: R=1, h=2 about its centre of mass; "
+        "cone_apex: the same about its apex, as the report's formula (1).",
+    )
+    gravity: Annotated[float, Field(ge=0, le=1e6)] = Field(9.81, description="Downward, R/s^2.")
+    mass: Annotated[float, Field(ge=1e-9, le=1e9)] = 2
+    spin: Vector = Field((0.5, 3, 0), description="Initial angular velocity, rad/s.")
+    velocity: Vector = Field((0, 0, 0), description="Initial velocity, R/s.")
+    restitution: Annotated[float, Field(ge=0, le=1)] = 0.6
+    velocity_threshold: Annotated[float, Field(ge=0, le=1e6)] = Field(
+        0.1, description="A slower impact stops, R/s (classic)."
+    )
+    tangential_damping: Annotated[float, Field(ge=0, le=1)] = Field(
+        0.9, description="Factor on the horizontal velocity at a contact (classic)."
+    )
+    angular_damping: Annotated[float, Field(ge=0, le=1)] = Field(
+        0.75, description="Factor on the angular momentum at a soft contact (classic)."
+    )
+    random_torque: Annotated[float, Field(ge=0, le=1e6)] = Field(
+        5, description="Largest random change of angular momentum about x and z at a hard impact (classic)."
+    )
+    random_torque_speed: Annotated[float, Field(ge=0, le=1e6)] = Field(
+        2, description="An impact is hard above this rebound speed, R/s (classic)."
+    )
+    time_step: Annotated[float, Field(ge=1e-4, le=0.25)] = Field(1 / 30, description="Seconds.")
+    seed: Annotated[int, Field(ge=0, le=2**53 - 1)] = 0
+
+
+class Scene(Model):
+    """Everything that a picture depends on. `Scene()` is the default scene."""
+
+    version: Literal[1] = 1
+    stones: Annotated[tuple[StoneSettings, ...], Field(max_length=1)] = (StoneSettings(),)
+    floor: Plane = Plane(kind="mirror")
+    walls: Plane = Plane(kind="none")
+    lights: Annotated[tuple[Light, ...], Field(max_length=8)] = (
+        Light(position=(-4, 6, 4), colour=(1, 0.2, 0.2)),
+        Light(position=(4, 6, 4), colour=(0.2, 0.5, 1)),
+    )
+    environment: Environment = DarkEnvironment()
+    camera: Camera = Camera()
+    optics: Optics = Optics()
+    sampling: Sampling = Sampling()
+    film: Film = Film()
+    simulation: Simulation = Simulation()
+
+    @classmethod
+    def read(cls, data: Any) -> Scene:  # noqa: ANN401 - whatever JSON held
+        """Validate parsed JSON; raise SceneError naming the first field that cannot be used."""
+        try:
+            return cls.model_validate(data)
+        except ValidationError as error:
+            raise scene_error(error) from error
+
+    def moved(self, position: Vector, orientation: tuple[float, float, float, float]) -> Scene:
+        """The same scene with its stone elsewhere."""
+        if not self.stones:
+            return self
+        stone = self.stones[0].model_copy(update={"position": position, "orientation": orientation})
+        return self.model_copy(update={"stones": (stone,)})
+
+
+def scene_error(error: ValidationError) -> SceneError:
+    """The first finding of pydantic as one line: the field, what was expected, what came."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    field = ".".join(str(part) for part in first["loc"])
+    came = repr(first["input"])
+    shown = came if len(came) <= 80 else came[:77] + "..."
+    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+    return SceneError(f"{field or 'scene'}: {first['msg']}; got {shown}{more}", field or None)

@@ -1,0 +1,1 @@
+"""Rigid bodies: state, integrators, contact."""
