@@ -2,6 +2,8 @@
 
 A message has two or three parts: an 8-byte request number (little-endian, 0 for what nobody asked for), JSON, and bytes
 where a request or reply carries some (an uploaded mesh, an encoded picture). Every request gets exactly one `Reply`.
+An empty message, such as ZMQ_PROBE_ROUTER sends at every (re)connection, only makes the peer known: it gets what is told
+unasked from then on, a Heartbeat first.
 """
 
 from __future__ import annotations
@@ -95,7 +97,7 @@ class Reply(Message):
 
     type: Literal["reply"] = "reply"
     status: int = 200
-    result: dict[str, Any] = {}
+    result: dict[str, Any] = Field(default_factory=dict)
     title: str | None = None
     detail: str | None = None
     field: str | None = None
@@ -112,6 +114,15 @@ class SessionState(Message):
     snapshot: dict[str, Any]
 
 
+class SessionProblem(Message):
+    """Told unasked: what this session shows could not be rendered; it is tried again after the next edit."""
+
+    type: Literal["session_problem"] = "session_problem"
+    session: SessionId
+    title: str
+    detail: str
+
+
 class Heartbeat(Message):
     """Told unasked, once a second: the engine lives. `instance` differs for every process."""
 
@@ -119,9 +130,9 @@ class Heartbeat(Message):
     instance: str
 
 
-EngineMessage = Annotated[Reply | SessionState | Heartbeat, Field(discriminator="type")]
+EngineMessage = Annotated[Reply | SessionState | SessionProblem | Heartbeat, Field(discriminator="type")]
 
-engine_request: TypeAdapter[
-    OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | Status
-] = TypeAdapter(EngineRequest)
-engine_message: TypeAdapter[Reply | SessionState | Heartbeat] = TypeAdapter(EngineMessage)
+engine_request: TypeAdapter[OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | Status] = (
+    TypeAdapter(EngineRequest)
+)
+engine_message: TypeAdapter[Reply | SessionState | SessionProblem | Heartbeat] = TypeAdapter(EngineMessage)
