@@ -1,0 +1,88 @@
+"""The gateway's web server: a listening socket, and uvicorn on it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import signal
+import socket
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Self
+
+import uvicorn
+
+from culet.errors import InputError
+from culet.gateway.app import create_app
+from culet.gateway.settings import MEBIBYTE, GatewaySettings
+
+GRACEFUL_SHUTDOWN_SECONDS = 3
+"""For answers under way at SIGTERM; containers are killed after 10 s."""
+MAX_WEBSOCKET_MESSAGE = MEBIBYTE
+"""uvicorn closes the socket above this; below it, and above the control limit, the viewer gets a notice."""
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Listener:
+    """Holds the address from its creation on, so that a taken port is known before anything is started."""
+
+    def __init__(self, settings: GatewaySettings, host: str, port: int) -> None:
+        self.settings = settings
+        family = socket.AF_INET6 if ":" in host else socket.AF_INET
+        self._socket = socket.socket(family, socket.SOCK_STREAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            self._socket.bind((host, port))
+        except (OSError, OverflowError) as error:
+            self._socket.close()
+            raise InputError(f"cannot listen on {host} port {port}: {error}", "port") from error
+        shown = f"[{host}]" if family == socket.AF_INET6 else host
+        self.url = f"http://{shown}:{self._socket.getsockname()[1]}/"
+        self._server = _Server(
+            uvicorn.Config(
+                create_app(settings),
+                lifespan="on",
+                log_level="warning",
+                ws="websockets-sansio",
+                ws_max_size=MAX_WEBSOCKET_MESSAGE,
+                ws_per_message_deflate=False,  # frames are compressed already
+                timeout_graceful_shutdown=GRACEFUL_SHUTDOWN_SECONDS,
+            )
+        )
+
+    async def run(self) -> None:
+        """Serve until a stop signal or `stop`; print the URL once the engine answers too."""
+        loop = asyncio.get_running_loop()
+        for number in STOP_SIGNALS:
+            loop.add_signal_handler(number, self.stop)
+        announcement = asyncio.create_task(self._announce())
+        try:
+            await self._server.serve(sockets=[self._socket])
+        finally:
+            announcement.cancel()
+            for number in STOP_SIGNALS:
+                loop.remove_signal_handler(number)
+
+    def stop(self) -> None:
+        """Close streams, finish answers, leave `run`."""
+        self._server.should_exit = True
+
+    async def _announce(self) -> None:
+        await self._server.config.app.state.gateway.link.ready.wait()  # type: ignore[union-attr]
+        print(f"culet is ready: {self.url}", flush=True)  # noqa: T201 - the one line that the user waits for
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._socket.close()
+
+
+class _Server(uvicorn.Server):
+    """uvicorn raises a caught signal again when it has stopped, which would end the process before its engine."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
