@@ -1,7 +1,7 @@
 """A frame: a fixed header of little-endian fields, then the encoded picture, in one message.
 
-The same bytes travel over ZeroMQ and WebSocket. They begin with the session's 16 bytes, which is the ZeroMQ topic, since
-topics match by prefix; a single part lets a native viewer use SUB with CONFLATE, which keeps the latest frame only.
+The same bytes travel over ZeroMQ and WebSocket. They begin with the session's 16 bytes, which is the ZeroMQ topic,
+since topics match by prefix; a single part lets a native viewer use SUB with CONFLATE, which keeps only the latest.
 """
 
 from __future__ import annotations

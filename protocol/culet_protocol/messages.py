@@ -23,7 +23,10 @@ class Message(BaseModel):
 
 
 class Orbit(Message):
-    """Turn the target about what the camera looks at: yaw about the vertical, pitch towards it."""
+    """Turn the target about what the camera looks at: yaw about the vertical, pitch towards it.
+
+    A positive yaw is counter-clockwise seen from above, a positive pitch goes up.
+    """
 
     type: Literal["orbit"] = "orbit"
     target: Target = "camera"
