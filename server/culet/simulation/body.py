@@ -1,0 +1,102 @@
+"""A rigid body: mass and inertia, and what follows from them for a state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.errors import InputError
+from culet.geometry.stone import Stone
+from culet.scene.model import Simulation as SimulationSettings
+from culet.simulation.floor import sphere_gap
+from culet.simulation.inertia import inertia_tensor
+from culet.simulation.rotation import rotate, rotate_back
+from culet.simulation.state import Quaternion, RigidState, Triple
+
+Rows = tuple[Triple, Triple, Triple]
+
+
+@dataclass(frozen=True, eq=False)
+class RigidBody:
+    """What a motion model needs to know of the stone besides its state."""
+
+    stone: Stone
+    mass: float
+    inertia: Rows
+    """About the centre of mass in the stone's axes, mass R^2."""
+    inverse_inertia: Rows
+    """1 / (mass R^2)."""
+
+    @classmethod
+    def of(cls, settings: SimulationSettings, stone: Stone) -> Self:
+        """The body of that stone; InputError if its inertia tensor is none."""
+        per_mass = _rows(inertia_tensor(settings.inertia, stone))
+        inverse = _inverse(per_mass)
+        mass = settings.mass
+        return cls(stone, mass, _scaled(per_mass, mass), _scaled(inverse, 1 / mass))
+
+    def velocity(self, state: RigidState) -> Triple:
+        """Of the centre of mass, R/s."""
+        x, y, z = state.momentum
+        return (x / self.mass, y / self.mass, z / self.mass)
+
+    def angular_velocity(self, state: RigidState) -> Triple:
+        """In world axes, rad/s: turned into the stone's axes, through its inverse tensor, and back."""
+        q = state.orientation
+        return rotate(q, _apply(self.inverse_inertia, rotate_back(q, state.angular_momentum)))
+
+    def angular_momentum(self, orientation: Quaternion, omega: Triple) -> Triple:
+        """Of that angular velocity (world axes, rad/s), in world axes, mass R^2/s."""
+        return rotate(orientation, _apply(self.inertia, rotate_back(orientation, omega)))
+
+    def energy(self, state: RigidState, gravity: float) -> float:
+        """Kinetic and potential, mass R^2/s^2; the latter is 0 where the bounding sphere touches the floor."""
+        p, angular, omega = state.momentum, state.angular_momentum, self.angular_velocity(state)
+        linear = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) / (2 * self.mass)
+        rotational = 0.5 * (angular[0] * omega[0] + angular[1] * omega[1] + angular[2] * omega[2])
+        return linear + rotational + self.mass * gravity * sphere_gap(state.position)
+
+
+def _apply(rows: Rows, v: Triple) -> Triple:
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    x, y, z = v
+    return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
+
+
+def _scaled(rows: Rows, factor: float) -> Rows:
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    return (
+        (a * factor, b * factor, c * factor),
+        (d * factor, e * factor, f * factor),
+        (g * factor, h * factor, i * factor),
+    )
+
+
+def _rows(tensor: NDArray[np.float64]) -> Rows:
+    if tensor.shape != (3, 3):
+        raise InputError(f"an inertia tensor is 3 by 3; got shape {tensor.shape}")
+    # trimesh's tensor is symmetric only to rounding; an inverse that is not would create angular momentum
+    (a, b, c), (_, e, f), (_, _, i) = ((tensor + tensor.T) / 2).tolist()
+    if float(np.abs(tensor - tensor.T).max(initial=0)) > 1e-9 * max(a, e, i):
+        raise InputError(f"an inertia tensor is symmetric; got {tensor.tolist()}")
+    return ((a, b, c), (b, e, f), (c, f, i))
+
+
+def _inverse(rows: Rows) -> Rows:
+    """Of a symmetric positive definite tensor, by cofactors in plain floats: the same bits on every processor.
+
+    Moments of inertia obey I1 + I2 >= I3, so at most one of them is small and the determinant keeps its digits as well
+    as an elimination would: its relative error is the condition number's, not that number's square.
+    """
+    (a, b, c), (_, e, f), (_, _, i) = rows
+    minor = a * e - b * b
+    xx, xy, xz = e * i - f * f, c * f - b * i, b * f - c * e
+    determinant = a * xx + b * xy + c * xz
+    if not (a > 0 and minor > 0 and 0 < determinant < math.inf):  # Sylvester's criterion; NaN fails it as well
+        raise InputError(f"an inertia tensor is positive definite and finite; got {rows}")
+    yy, yz = a * i - c * c, b * c - a * f
+    return _scaled(((xx, xy, xz), (xy, yy, yz), (xz, yz, minor)), 1 / determinant)

@@ -1,0 +1,51 @@
+"""Real time, cut into fixed steps: how often a picture is drawn has no influence on how the stone moves.
+
+After Fiedler, "Fix Your Timestep!" (2004): time that has passed is put by, taken out in whole steps, and what is left
+over says how far between the last two states the picture is.
+"""
+
+from __future__ import annotations
+
+import math
+
+from culet.errors import InputError
+
+MAX_CATCH_UP = 0.25
+"""s. Time beyond this in one call is dropped: after a stall the stone goes on where it was, rather than a long run of
+steps stalling the next frame as well (the "spiral of death"). Larger: jumps after a stall; smaller than a slow frame:
+slow motion."""
+
+
+class FixedStepClock:
+    """Counts steps due. `dropped` is the time, in seconds, that was given up so far."""
+
+    def __init__(self, time_step: float) -> None:
+        """A clock for steps of `time_step` seconds, with no time put by."""
+        if not 0 < time_step < math.inf:
+            raise InputError(f"a time step is a positive number of seconds; got {time_step}", "time_step")
+        self.time_step = time_step
+        self.dropped = 0.0
+        self._put_by = 0.0
+
+    @property
+    def fraction(self) -> float:
+        """Where the present is between the previous state (0) and the current one (1)."""
+        return min(self._put_by / self.time_step, 1.0)
+
+    def advance(self, elapsed: float) -> int:
+        """Let `elapsed` seconds of real time pass; the number of steps to take now.
+
+        At most MAX_CATCH_UP and what was put by before, so never more than MAX_CATCH_UP / time_step + 1 steps.
+        """
+        if not 0 <= elapsed < math.inf:
+            raise InputError(f"time passes forward by a finite number of seconds; got {elapsed}", "elapsed")
+        taken = min(elapsed, MAX_CATCH_UP)
+        self.dropped += elapsed - taken
+        self._put_by += taken
+        steps = int(self._put_by / self.time_step)
+        self._put_by = max(self._put_by - steps * self.time_step, 0.0)
+        return steps
+
+    def restart(self) -> None:
+        """Forget the time put by, as after a pause."""
+        self._put_by = 0.0

@@ -1,0 +1,201 @@
+"""The way that a stone takes, recorded step by step and written to a file."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+import pathlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.errors import InputError, SceneError, TooLargeError
+from culet.geometry.stone import Stone
+from culet.scene.model import Scene
+from culet.simulation.floor import FLOOR, sphere_gap
+from culet.simulation.rotation import rotate_back
+from culet.simulation.simulation import Simulation
+
+MAX_STEPS = 500_000
+"""Four hours at 30 steps a second. Each recorded step takes about 1 kB while it is turned into text."""
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None]
+"""Called now and then with the part done, 0 to 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """N states, the start first; the arrays' first axis is the step."""
+
+    settings: dict[str, Any]
+    """The scene's `simulation`, as JSON."""
+    step: NDArray[np.int64]
+    """(N,)"""
+    time: Floats
+    """(N,), s"""
+    position: Floats
+    """(N, 3), R"""
+    orientation: Floats
+    """(N, 4), unit quaternion w, x, y, z"""
+    velocity: Floats
+    """(N, 3), R/s"""
+    angular_velocity: Floats
+    """(N, 3), world axes, rad/s"""
+    energy: Floats
+    """(N,), mass R^2/s^2; 0 at rest on the floor"""
+    asleep: NDArray[np.bool_]
+    """(N,)"""
+    impacts: NDArray[np.int64]
+    """(N,), hard impacts so far"""
+    contacts: NDArray[np.int64]
+    """(N,), points that touch the floor: of the bounding sphere, at most 1"""
+    penetration: Floats
+    """(N,), how far the bounding sphere reaches below the floor, R"""
+    clearance: Floats
+    """(N,), height of the stone's lowest vertex above the floor, R; negative: it is inside the floor"""
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """One-dimensional arrays by name, with the axis after an underscore: what a table of the path holds."""
+        table: dict[str, NDArray[Any]] = {"step": self.step, "time": self.time}
+        for name, axes in (
+            ("position", "xyz"),
+            ("orientation", "wxyz"),
+            ("velocity", "xyz"),
+            ("angular_velocity", "xyz"),
+        ):
+            table |= {f"{name}_{axis}": getattr(self, name)[:, index] for index, axis in enumerate(axes)}
+        for name in ("energy", "asleep", "impacts", "contacts", "penetration", "clearance"):
+            table[name] = getattr(self, name)
+        return table
+
+
+def record(scene: Scene, stone: Stone, seconds: float, progress: Progress | None = None) -> Path:
+    """Let the scene's stone move for `seconds`, in whole steps.
+
+    SceneError if the scene has no stone, InputError for a time that is none, TooLargeError beyond MAX_STEPS.
+    """
+    if not scene.stones:
+        raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
+    count = _whole_steps(seconds, scene.simulation.time_step)
+    placed = scene.stones[0]
+    simulation = Simulation(scene.simulation, stone, placed.position, placed.orientation)
+    path = _empty_path(scene.simulation.model_dump(mode="json"), count + 1)
+    for index in range(count + 1):
+        if index:
+            simulation.step()
+        _record_state(path, index, simulation)
+        if progress is not None and (index % 1000 == 0 or index == count):
+            progress((index + 1) / (count + 1))
+    return path
+
+
+def _whole_steps(seconds: float, time_step: float) -> int:
+    if not 0 <= seconds < math.inf:
+        raise InputError(f"seconds: expected a finite number, 0 or more; got {seconds}", "seconds")
+    steps = seconds / time_step
+    if steps > MAX_STEPS:
+        raise TooLargeError(f"seconds: {seconds} s are {steps:.3g} steps; at most {MAX_STEPS} are recorded", "seconds")
+    return math.floor(steps * (1 + 1e-12))  # 0.3 / 0.1 is just below 3
+
+
+def _empty_path(settings: dict[str, Any], length: int) -> Path:
+    def floats(*width: int) -> Floats:
+        return np.empty((length, *width))
+
+    def counts() -> NDArray[np.int64]:
+        return np.empty(length, np.int64)
+
+    return Path(
+        settings=settings,
+        step=counts(),
+        time=floats(),
+        position=floats(3),
+        orientation=floats(4),
+        velocity=floats(3),
+        angular_velocity=floats(3),
+        energy=floats(),
+        asleep=np.empty(length, np.bool_),
+        impacts=counts(),
+        contacts=counts(),
+        penetration=floats(),
+        clearance=floats(),
+    )
+
+
+def _record_state(path: Path, index: int, simulation: Simulation) -> None:
+    state, body = simulation.state, simulation.body
+    gap = sphere_gap(state.position)
+    # the world's y of a vertex v is (R v).y = v.(R^T e_y): one turned axis instead of all vertices turned
+    up = rotate_back(state.orientation, (0.0, 1.0, 0.0))
+    path.step[index] = state.step
+    path.time[index] = state.time
+    path.position[index] = state.position
+    path.orientation[index] = state.orientation
+    path.velocity[index] = body.velocity(state)
+    path.angular_velocity[index] = body.angular_velocity(state)
+    path.energy[index] = simulation.energy()
+    path.asleep[index] = state.asleep
+    path.impacts[index] = state.impacts
+    path.contacts[index] = gap <= 0
+    path.penetration[index] = max(-gap, 0.0)
+    path.clearance[index] = state.position[1] + float((body.stone.vertices @ np.array(up)).min()) - FLOOR
+
+
+def write(path: Path, file: pathlib.Path) -> None:
+    """Write a path as its file's ending says, .csv, .json or .npz: all of it or nothing.
+
+    Numbers in text read back as the same doubles. InputError for another ending, or a place that cannot be written to.
+    """
+    encode = _ENCODERS.get(file.suffix.lower())
+    if encode is None:
+        raise InputError(f"output: a path is written as {', '.join(_ENCODERS)}; got {file.name!r}", "output")
+    try:
+        _replace(file, encode(path))
+    except OSError as error:
+        raise InputError(f"output: {file} cannot be written: {error.strerror}", "output") from error
+
+
+def _replace(file: pathlib.Path, content: bytes) -> None:
+    part = file.with_name(f".{file.name}.{os.getpid()}.part")  # the same folder: renaming is atomic in one file system
+    stream = part.open("xb")
+    try:
+        with stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _csv(path: Path) -> bytes:
+    columns = path.columns()
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    lists = [(column.astype(np.int64) if column.dtype == bool else column).tolist() for column in columns.values()]
+    writer.writerows(zip(*lists, strict=True))
+    return text.getvalue().encode()
+
+
+def _json(path: Path) -> bytes:
+    columns = {name: column.tolist() for name, column in path.columns().items()}
+    document = {"version": 1, "simulation": path.settings, "columns": columns}
+    return json.dumps(document, allow_nan=False).encode()
+
+
+def _npz(path: Path) -> bytes:
+    arrays = {name: value for name, value in vars(path).items() if name != "settings"}
+    packed = io.BytesIO()
+    np.savez_compressed(packed, allow_pickle=False, simulation=np.array(json.dumps(path.settings)), **arrays)
+    return packed.getvalue()
+
+
+_ENCODERS: dict[str, Callable[[Path], bytes]] = {".csv": _csv, ".json": _json, ".npz": _npz}
