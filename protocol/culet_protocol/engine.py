@@ -17,6 +17,7 @@ from culet_protocol.messages import Message, SessionEvent
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "exr"]
+MeshType = Literal["obj", "off", "stl", "ply", "glb"]
 SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 
 
@@ -77,7 +78,7 @@ class PutMesh(Message):
     """Parse the mesh in the bytes and keep it under an id; the reply describes it."""
 
     type: Literal["put_mesh"] = "put_mesh"
-    file_type: Literal["obj", "off", "stl", "ply", "glb"]
+    file_type: MeshType
     mesh: str
 
 
