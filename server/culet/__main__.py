@@ -1,0 +1,5 @@
+"""`python -m culet` is `culet`."""
+
+from culet.cli import app
+
+app()

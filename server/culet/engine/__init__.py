@@ -1,0 +1,1 @@
+"""The render process: sessions, their simulation and frames; control over ZeroMQ ROUTER, frames over XPUB."""

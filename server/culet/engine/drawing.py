@@ -1,0 +1,62 @@
+"""What the engine needs of a renderer; `culet.rendering.renderer.Renderer` is one.
+
+Everything here is called from one thread only, the render thread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.stone import Stone
+from culet.scene import Scene
+
+BAND_SAMPLES = 2**18
+"""Pixels times samples rendered before other work gets its turn: some 20 ms on two cores."""
+BAND_ROWS = 16
+"""Rows of the thinnest band: a thinner one leaves lanes of the packets empty."""
+
+
+class Picture(Protocol):
+    """An image that gets better with every sample."""
+
+    @property
+    def samples(self) -> int:
+        """Samples per pixel so far."""
+
+    @property
+    def seconds(self) -> float:
+        """Render seconds of the last refinement."""
+
+    def refine(self, samples: int = 1) -> None:
+        """Add samples to every pixel."""
+
+    def refine_in_bands(self, samples: int, rows: int) -> Iterator[Any]:
+        """Add samples to every pixel, some rows at a time, yielding between them."""
+
+    def rgb(self) -> NDArray[np.uint8]:
+        """(height, width, 3), tone-mapped."""
+
+    def linear(self) -> NDArray[np.float32]:
+        """(height, width, 3), mean radiance."""
+
+    def cut(self) -> float:
+        """Mean weight of what the cut-off dropped."""
+
+
+class Renderer(Protocol):
+    """A device that draws scenes."""
+
+    def picture(self, scene: Scene, stone: Stone | None, width: int, height: int) -> Picture:
+        """An empty picture of the scene, its stone where the scene has it."""
+
+    def describe(self) -> Mapping[str, Any]:
+        """Device, driver and lanes."""
+
+
+def band_rows(width: int, height: int, samples: int) -> int:
+    """Rows of a band of BAND_SAMPLES."""
+    return min(height, max(BAND_ROWS, BAND_SAMPLES // (width * samples)))

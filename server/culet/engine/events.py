@@ -1,0 +1,139 @@
+"""What each event does to a session. An event that cannot be applied raises InputError and changes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+from pydantic import ValidationError
+
+from culet.engine import viewpoint
+from culet.engine.merge_patch import merge_patch
+from culet.engine.session import Session
+from culet.errors import InputError
+from culet.geometry.stone import Stone
+from culet.scene import Camera, Environment, Light, Plane, Scene, StoneSettings
+from culet.scene.model import DarkEnvironment, LightEnvironment
+from culet_protocol import messages
+from culet_protocol.messages import SessionEvent, Target
+
+StoneMaker = Callable[[StoneSettings], Stone]
+
+
+def apply(session: Session, event: SessionEvent, make_stone: StoneMaker) -> None:
+    """Apply an event; `make_stone` is called (it may take a while) only if the stone's shape changes."""
+    match event:
+        case messages.Orbit() | messages.Translate() | messages.Dolly():
+            _move(session, event)
+        case messages.ResetCamera():
+            session.change(session.scene.model_copy(update={"camera": session.home}))
+        case messages.ToggleFall():
+            session.set_falling(not session.falling)
+        case messages.ResetStone():
+            session.reset_stone()
+        case messages.ToggleMirror():
+            session.change(_with_mirror_toggled(session.scene))
+        case messages.ToggleEnvironment():
+            session.change(_with_environment_toggled(session.scene))
+        case messages.ToggleWalls():
+            session.change(_with_walls_toggled(session.scene))
+        case messages.PatchScene():
+            _patch(session, event.patch, make_stone)
+        case messages.SetScene():
+            scene = Scene.read(event.scene)
+            session.replace_stone(scene, stone_for(scene, session, make_stone), home=scene.camera)
+
+
+def stone_for(scene: Scene, session: Session | None, make_stone: StoneMaker) -> Stone | None:
+    """The shape of a scene's stone: the session's, if that is the same shape."""
+    if not scene.stones:
+        return None
+    if session is not None and session.stone is not None and _shape(scene) == _shape(session.scene):
+        return session.stone
+    return make_stone(scene.stones[0])
+
+
+def _move(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> None:
+    try:
+        if event.target == "camera":
+            session.change(session.scene.model_copy(update={"camera": _moved_camera(session.scene.camera, event)}))
+        else:
+            session.change(_with_light_moved(session.scene, event, event.target))
+    except ValidationError as error:
+        raise InputError(
+            f"{event.type} would move the {event.target} out of the world: {error.errors()[0]['msg']}"
+        ) from error
+
+
+def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:
+    match event:
+        case messages.Orbit():
+            return viewpoint.orbit(camera, event.yaw, event.pitch)
+        case messages.Translate():
+            return viewpoint.translate(camera, event.right, event.up)
+        case messages.Dolly():
+            return viewpoint.dolly(camera, event.forward)
+
+
+def _with_light_moved(
+    scene: Scene, event: messages.Orbit | messages.Translate | messages.Dolly, target: Target
+) -> Scene:
+    number = {"light_1": 0, "light_2": 1}[target]
+    if number >= len(scene.lights):
+        raise InputError(f"target: the scene has {len(scene.lights)} lights, no {target}", "target")
+    light = scene.lights[number]
+    match event:
+        case messages.Orbit():
+            position = viewpoint.orbit_light(light.position, event.yaw, event.pitch)
+        case messages.Translate():
+            position = viewpoint.shift_light(light.position, scene.camera, event.right, event.up, 0)
+        case messages.Dolly():
+            position = viewpoint.shift_light(light.position, scene.camera, 0, 0, event.forward)
+    lights = list(scene.lights)
+    lights[number] = Light(position=position, colour=light.colour)
+    return scene.model_copy(update={"lights": tuple(lights)})
+
+
+def _with_mirror_toggled(scene: Scene) -> Scene:
+    kind: Literal["matte", "mirror"] = "matte" if scene.floor.kind == "mirror" else "mirror"
+    walls = scene.walls if scene.walls.kind == "none" else Plane(kind=kind)
+    return scene.model_copy(update={"floor": Plane(kind=kind), "walls": walls})
+
+
+def _with_environment_toggled(scene: Scene) -> Scene:
+    dark = scene.environment.kind == "dark"
+    environment: Environment = LightEnvironment(kind="light") if dark else DarkEnvironment()
+    return scene.model_copy(update={"environment": environment})
+
+
+def _with_walls_toggled(scene: Scene) -> Scene:
+    if scene.walls.kind != "none":
+        walls = Plane(kind="none")
+    else:
+        walls = Plane(kind="matte" if scene.floor.kind == "none" else scene.floor.kind)
+    return scene.model_copy(update={"walls": walls})
+
+
+def _patch(session: Session, patch: dict[str, Any], make_stone: StoneMaker) -> None:
+    """Apply a merge patch to the scene as it is now, and to the camera that a reset goes back to."""
+    before = session.scene
+    document = before.model_dump(mode="json")
+    after = Scene.read(merge_patch(document, patch))
+    home = session.home
+    if "camera" in patch:
+        at_home = document | {"camera": home.model_dump(mode="json")}
+        home = Scene.read(merge_patch(at_home, patch)).camera
+    if _start(after) == _start(before):
+        session.change(after, home=home)
+    else:
+        session.replace_stone(after, stone_for(after, session, make_stone), home=home)
+
+
+def _shape(scene: Scene) -> object:
+    """What the stone's shape depends on."""
+    return [(stone.cut, stone.mesh) for stone in scene.stones]
+
+
+def _start(scene: Scene) -> object:
+    """What the motion depends on: a patch of anything else leaves the stone where it is."""
+    return _shape(scene), [(stone.position, stone.orientation) for stone in scene.stones], scene.simulation

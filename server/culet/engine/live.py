@@ -1,0 +1,95 @@
+"""The live picture of one session: who wants it, how good it is, and when its next frame is due."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from culet.engine.drawing import Picture
+from culet.engine.session import Session, Shown
+
+NATIVE_RATE = 30.0
+"""Frames per second for viewers that only subscribe, and cannot say what they take."""
+NATIVE_SIZE = (960, 540)
+"""Pixels, likewise."""
+
+REST_SAMPLES = 16
+"""Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
+
+REPEAT_SECONDS = 1.0
+"""A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
+
+
+@dataclass(eq=False)
+class LivePicture:
+    """Mutable; belongs to the painter."""
+
+    session: Session
+    subscribed: bool = False
+    """Somebody subscribed to the session's frames by its 16 bytes."""
+    rate: float | None = None
+    """Frames per second that the gateway asks for; None before it has said anything."""
+    size: tuple[int, int] = NATIVE_SIZE
+    picture: Picture | None = None
+    painted: Shown | None = None
+    """What the picture shows."""
+    painted_size: tuple[int, int] = (0, 0)
+    refinement: Iterator[Any] | None = None
+    """More samples on their way, a band at a time."""
+    refused: Shown | None = None
+    """What could not be rendered; not tried again until something else is to be shown."""
+    message: bytes | None = None
+    """The frame sent last."""
+    final: bool = False
+    """That frame has all its samples."""
+    sent_at: float = 0.0
+    """s, steady clock."""
+    begun_at: float = -1e9
+    """s, steady clock: when the last frame was begun."""
+    served_at: float = -1e9
+    """s, steady clock: when a refinement last got its turn."""
+    publishing: asyncio.Task[None] | None = None
+    simulate_seconds: float = field(default=0.0)
+
+    @property
+    def watched(self) -> bool:
+        """Whether frames have a taker."""
+        return self.subscribed or bool(self.rate)
+
+    @property
+    def frames_per_second(self) -> float:
+        """The rate wanted; a native viewer takes what the gateway's viewers take, if there are any."""
+        return self.rate or NATIVE_RATE
+
+    @property
+    def current(self) -> bool:
+        """Whether the frame sent last still is what is shown."""
+        return self.message is not None and self.painted is self.session.shown and self.painted_size == self.size
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the frame sent last is right until somebody changes something."""
+        return self.current and not self.session.moving
+
+    def due_at(self) -> float | None:
+        """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
+        if not self.watched or self.refused is self.session.shown:
+            return None
+        if self.at_rest and (self.final or self.picture is not None):
+            return None
+        return self.begun_at + 1 / self.frames_per_second
+
+    def wants_refinement(self) -> bool:
+        """Whether more samples would improve what is seen."""
+        return self.watched and self.at_rest and not self.final and self.picture is not None
+
+    def abandon(self) -> None:
+        """Nobody watches: free the picture's memory, keep the message."""
+        self.picture = None
+        self.refinement = None
+
+    def repeat_at(self) -> float | None:
+        """When the frame sent last is to be sent again."""
+        return self.sent_at + REPEAT_SECONDS if self.watched and self.at_rest else None

@@ -1,0 +1,227 @@
+"""What the engine answers to each request of the gateway."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from culet.engine import events
+from culet.engine.limits import Limits, check_still_size, live_size
+from culet.engine.live import LivePicture
+from culet.engine.meshes import MeshStore
+from culet.engine.painter import Painter
+from culet.engine.session import Session
+from culet.engine.snapshot import Snapshot
+from culet.engine.still import SESSION_STILL_SAMPLES, Still, StillQueue
+from culet.errors import BusyError, InputError, NotFoundError
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.scene import Scene, StoneSettings
+from culet_protocol import engine as protocol
+
+STILL_SIZE = (640, 360)
+"""Pixels of a still that names no size."""
+
+SUBSCRIPTIONS = 4096
+"""Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
+
+Answer = tuple[dict[str, Any], bytes | None]
+
+
+class Requests:
+    """The engine's sessions, and the meaning of every request."""
+
+    def __init__(
+        self,
+        painter: Painter,
+        stills: StillQueue,
+        limits: Limits,
+        device: dict[str, Any],
+        *,
+        tell: Callable[[protocol.SessionState], None],
+    ) -> None:
+        self.instance = os.urandom(8).hex()
+        """Differs for every process."""
+        self._painter = painter
+        self._stills = stills
+        self._limits = limits
+        self._device = device
+        self._tell = tell
+        self._meshes = MeshStore(limits)
+        self._touched: dict[str, float] = {}
+        self._subscriptions: set[bytes] = set()
+        self._started = time.monotonic()
+
+    async def answer(self, request: Any, data: bytes | None) -> Answer:  # noqa: ANN401 - the union of all requests
+        """Do what is asked; CuletError if it cannot be done."""
+        match request:
+            case protocol.OpenSession():
+                return await self._open(request), None
+            case protocol.CloseSession():
+                return self._close(request.session), None
+            case protocol.GetSession():
+                return described(self._live(request.session)), None
+            case protocol.Control():
+                return await self._control(request), None
+            case protocol.Demand():
+                return self._demand(request), None
+            case protocol.Render():
+                return await self._render(request)
+            case protocol.PutMesh():
+                if data is None:
+                    raise InputError("expected the mesh's bytes as the third part of the message, got none")
+                return await self._meshes.put(request.mesh, request.file_type, data), None
+            case _:
+                return self.status(), None
+
+    def watch(self, key: bytes, subscribed: bool) -> None:
+        """Somebody began or ceased to receive the frames of the session with these 16 bytes."""
+        if subscribed and len(self._subscriptions) < SUBSCRIPTIONS:  # maybe before the session is opened
+            self._subscriptions.add(key)
+        elif not subscribed:
+            self._subscriptions.discard(key)
+        live = self._painter.pictures.get(key.hex())
+        if live is None:
+            return
+        live.subscribed = subscribed
+        self._touched[live.session.name] = time.monotonic()
+        if subscribed:
+            self._painter.show_again(live)
+
+    def report_motion(self) -> None:
+        """Tell the state of every session whose stone moves for somebody."""
+        for live in self._painter.pictures.values():
+            if live.watched and live.session.moving and not live.session.lock.locked():
+                self._tell(live.session.report(edited=False))
+
+    def status(self) -> dict[str, Any]:
+        """Counters and device."""
+        pictures = self._painter.pictures.values()
+        return {
+            "instance": self.instance,
+            "uptime_seconds": time.monotonic() - self._started,
+            "sessions": len(pictures),
+            "sessions_watched": sum(live.watched for live in pictures),
+            "sessions_moving": sum(live.session.moving for live in pictures),
+            "stills_waiting": len(self._stills),
+            "meshes": len(self._meshes),
+            **vars(self._painter.counters),
+            "device": self._device,
+        }
+
+    async def _open(self, request: protocol.OpenSession) -> dict[str, Any]:
+        pictures = self._painter.pictures
+        if request.session in pictures:  # asked again by a gateway that heard nothing for a while
+            return described(self._live(request.session))
+        scene = Scene.read(request.scene)
+        snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
+        self._make_room()
+        stone = await asyncio.to_thread(events.stone_for, scene, None, self._make_stone)
+        if request.session in pictures:  # opened twice at once
+            return described(self._live(request.session))
+        self._make_room()
+        history = self._limits.shown_states
+        if snapshot is None:
+            session = Session(request.session, scene, stone, history=history)
+        else:
+            session = Session.restored(request.session, scene, stone, snapshot, history=history)
+        pictures[request.session] = LivePicture(session, subscribed=session.key in self._subscriptions)
+        self._painter.wake()
+        return described(self._live(request.session))
+
+    def _make_room(self) -> None:
+        pictures, now = self._painter.pictures, time.monotonic()
+        if len(pictures) < self._limits.sessions:
+            return
+        idle = [name for name, live in pictures.items() if not live.watched]
+        oldest = min(idle, key=lambda name: self._touched[name], default=None)
+        if oldest is None or now - self._touched[oldest] < self._limits.idle_seconds:
+            raise BusyError(f"there are {self._limits.sessions} sessions already; close one, or try again later")
+        self._close(oldest)
+
+    def _close(self, session: str) -> dict[str, Any]:
+        self._live(session)
+        del self._painter.pictures[session]
+        del self._touched[session]
+        self._painter.wake()
+        return {}
+
+    async def _control(self, request: protocol.Control) -> dict[str, Any]:
+        live = self._live(request.session)
+        session = live.session
+        async with session.lock:
+            apply = partial(events.apply, session, request.event, self._make_stone)
+            if request.event.type in ("patch_scene", "set_scene"):  # may make a stone: frames go on meanwhile
+                await asyncio.to_thread(apply)
+            else:
+                apply()
+            self._tell(session.report(edited=True))
+        self._painter.wake()
+        return {"step": session.shown.step, "falling": session.falling}
+
+    def _demand(self, request: protocol.Demand) -> dict[str, Any]:
+        live = self._live(request.session)
+        was_watched = live.watched
+        live.rate = request.frames_per_second
+        live.size = live_size(request.width, request.height, self._limits)
+        if live.watched and not was_watched:
+            self._painter.show_again(live)
+        self._painter.wake()
+        return {"width": live.size[0], "height": live.size[1]}
+
+    async def _render(self, request: protocol.Render) -> Answer:
+        if (request.scene is None) == (request.session is None):
+            raise InputError("expected either a scene or a session to render, got both or neither", "scene")
+        scene, stone, default_size, step = await self._subject(request)
+        width = default_size[0] if request.width is None else request.width
+        height = default_size[1] if request.height is None else request.height
+        check_still_size(width, height, self._limits)
+        samples = scene.sampling.samples_per_pixel
+        if request.session is not None:
+            samples = max(samples, SESSION_STILL_SAMPLES)
+        still = Still(scene, stone, width, height, samples, request.format)
+        self._stills.put(still)
+        self._painter.wake()
+        data = await still.done
+        return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
+
+    async def _subject(self, request: protocol.Render) -> tuple[Scene, Stone | None, tuple[int, int], int | None]:
+        if request.session is None:
+            scene = Scene.read(request.scene)
+            return scene, await asyncio.to_thread(events.stone_for, scene, None, self._make_stone), STILL_SIZE, None
+        live = self._live(request.session)
+        async with live.session.lock:
+            shown = live.session.recall(request.step)
+        return shown.scene, shown.stone, live.size, shown.step
+
+    def _live(self, session: str) -> LivePicture:
+        try:
+            live = self._painter.pictures[session]
+        except KeyError:
+            raise NotFoundError(f"no session {session}") from None
+        self._touched[session] = time.monotonic()
+        return live
+
+    def _make_stone(self, settings: StoneSettings) -> Stone:
+        return stone_of(settings, self._meshes)
+
+
+def described(live: LivePicture) -> dict[str, Any]:
+    """A session as the gateway is told of it."""
+    session = live.session
+    return {
+        "session": session.name,
+        "scene": session.scene.model_dump(mode="json"),
+        "falling": session.falling,
+        "step": session.shown.step,
+        "simulation_time": session.shown.simulation_time,
+        "pose": session.pose(),
+        "snapshot": session.snapshot().model_dump(mode="json"),
+        "width": live.size[0],
+        "height": live.size[1],
+        "findings": list(session.stone.findings) if session.stone else [],
+    }

@@ -1,0 +1,191 @@
+"""The engine's process: `culet engine` calls `run`, which returns at SIGTERM or SIGINT."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import signal
+from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
+
+import zmq
+import zmq.asyncio
+from pydantic import BaseModel, ValidationError
+
+from culet.engine.drawing import Picture, Renderer
+from culet.engine.limits import Limits
+from culet.engine.painter import Painter
+from culet.engine.requests import Requests
+from culet.engine.sockets import Peers, bind_control, bind_frames
+from culet.engine.still import StillQueue
+from culet.errors import CuletError, InputError
+from culet.scene.model import scene_error
+from culet_protocol import engine as protocol
+
+log = logging.getLogger(__name__)
+
+HEARTBEAT_SECONDS = 1.0
+
+
+def run(control: str, frames: str, limits: Limits | None = None) -> None:
+    """Serve until SIGTERM or SIGINT. DeviceError without a working device, InputError for a bad endpoint."""
+    asyncio.run(serve(control, frames, limits or Limits(), open_renderer, encode_still))
+
+
+def open_renderer() -> Renderer:
+    """The OpenCL renderer, imported here so that whatever only speaks to an engine never loads it."""
+    from culet.rendering.renderer import Renderer as OpenClRenderer
+
+    return OpenClRenderer()
+
+
+def encode_still(picture: Picture, file_format: str) -> bytes:
+    """A still in its file format."""
+    from culet.rendering.files import encode
+
+    return encode(picture, file_format)
+
+
+async def serve(
+    control: str,
+    frames: str,
+    limits: Limits,
+    renderer_of: Callable[[], Renderer],
+    encode: Callable[[Picture, str], bytes],
+) -> None:
+    """Serve with a renderer that is made and used on the render thread."""
+    loop = asyncio.get_running_loop()
+    stopping = asyncio.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.add_signal_handler(number, stopping.set)
+    render_thread = ThreadPoolExecutor(1, "render")
+    context = zmq.asyncio.Context()
+    try:
+        renderer = await loop.run_in_executor(render_thread, renderer_of)
+        engine = Engine(context, control, frames, limits, renderer, render_thread, encode)
+        await engine.run_until(stopping)
+    finally:
+        render_thread.shutdown(wait=False, cancel_futures=True)
+        context.destroy(linger=0)
+
+
+class Engine:
+    """Sockets, and the tasks that serve them."""
+
+    def __init__(
+        self,
+        context: zmq.asyncio.Context,
+        control: str,
+        frames: str,
+        limits: Limits,
+        renderer: Renderer,
+        render_thread: ThreadPoolExecutor,
+        encode: Callable[[Picture, str], bytes],
+    ) -> None:
+        self._control = bind_control(context, control, limits.mesh_bytes)
+        self._frames = bind_frames(context, frames)
+        self._peers = Peers(self._control)
+        self._tasks: set[asyncio.Task[None]] = set()
+        stills = StillQueue(limits.stills)
+        self._painter = Painter(
+            renderer, render_thread, stills, send=self._send_frame, report=self._report_problem, encode_still=encode
+        )
+        self._requests = Requests(self._painter, stills, limits, dict(renderer.describe()), tell=self._tell)
+
+    async def run_until(self, stopping: asyncio.Event) -> None:
+        """Serve until told to stop; an error of the engine itself ends it, so that it is started anew."""
+        services = [
+            asyncio.create_task(service)
+            for service in (self._take_requests(), self._take_subscriptions(), self._beat(), self._painter.run())
+        ]
+        stop = asyncio.create_task(stopping.wait())
+        try:
+            done, _ = await asyncio.wait([*services, stop], return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        finally:
+            for task in [*services, stop, *self._tasks]:
+                task.cancel()
+            await asyncio.gather(*services, stop, *self._tasks, return_exceptions=True)
+
+    async def _take_requests(self) -> None:
+        while True:
+            peer, *parts = await self._control.recv_multipart()
+            self._peers.heard_from(peer)
+            if parts in ([], [b""]):  # ZMQ_PROBE_ROUTER: somebody connected
+                await self._peers.send(peer, [protocol.REQUEST_NUMBER.pack(0), self._heartbeat()])
+                continue
+            self._spawn(self._reply(peer, parts))
+
+    async def _reply(self, peer: bytes, parts: list[bytes]) -> None:
+        number, data = protocol.REQUEST_NUMBER.pack(0), None
+        try:
+            if len(parts) not in (2, 3) or len(parts[0]) != protocol.REQUEST_NUMBER.size:
+                raise InputError(
+                    f"expected a request number of 8 bytes, JSON, and bytes or nothing; got parts of "
+                    f"{', '.join(str(len(part)) for part in parts)} bytes"
+                )
+            number = parts[0]
+            request = read_request(parts[1])
+            result, data = await self._requests.answer(request, parts[2] if len(parts) == 3 else None)
+            reply = protocol.Reply(result=result)
+        except CuletError as error:
+            reply = refusal(error)
+        except Exception as error:
+            log.exception("a request failed")
+            reply = refusal(CuletError(f"{type(error).__name__}: {error}"))
+        await self._peers.send(peer, [number, encoded(reply), *([] if data is None else [data])])
+
+    async def _take_subscriptions(self) -> None:
+        while True:
+            message = await self._frames.recv()
+            if len(message) == 17 and message[0] in (0, 1):
+                self._requests.watch(message[1:], subscribed=message[0] == 1)
+
+    async def _beat(self) -> None:
+        while True:
+            await self._peers.tell(self._heartbeat())
+            self._requests.report_motion()
+            await asyncio.sleep(HEARTBEAT_SECONDS)
+
+    def _heartbeat(self) -> bytes:
+        return encoded(protocol.Heartbeat(instance=self._requests.instance))
+
+    def _tell(self, state: protocol.SessionState) -> None:
+        self._spawn(self._peers.tell(encoded(state)))
+
+    def _report_problem(self, session: str, error: CuletError) -> None:
+        problem = protocol.SessionProblem(session=session, title=error.title, detail=str(error))
+        self._spawn(self._peers.tell(encoded(problem)))
+
+    def _send_frame(self, message: bytes) -> None:
+        self._spawn(self._send(message))
+
+    async def _send(self, message: bytes) -> None:
+        await self._frames.send(message)  # XPUB drops what a full subscriber cannot take, and never waits
+
+    def _spawn(self, work: Coroutine[None, None, None]) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+
+def read_request(text: bytes) -> BaseModel:
+    """The request, or InputError that names the first field that cannot be used."""
+    try:
+        return protocol.engine_request.validate_json(text)
+    except ValidationError as error:
+        found = scene_error(error)
+        raise InputError(f"request: {found}", found.field) from error
+
+
+def refusal(error: CuletError) -> protocol.Reply:
+    """The reply that says why not."""
+    return protocol.Reply(
+        status=error.status, title=error.title, detail=str(error), field=getattr(error, "field", None)
+    )
+
+
+def encoded(message: BaseModel) -> bytes:
+    """JSON."""
+    return message.model_dump_json().encode()

@@ -1,0 +1,198 @@
+"""One session: a scene as its viewers have edited it, the stone in motion, and what was shown lately.
+
+A session does not render and does not know who watches. Every change goes through `change`, `advance` or `set_falling`,
+which give what is shown a new step number whenever it differs from before.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any
+
+from culet.engine.snapshot import LARGEST_FRACTION, Snapshot
+from culet.errors import InputError, NotFoundError
+from culet.geometry.stone import Stone
+from culet.scene import Camera, Scene
+from culet.simulation import FixedStepClock, Simulation
+from culet_protocol.engine import SessionState
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Everything that one picture depends on."""
+
+    step: int
+    scene: Scene
+    """With the live camera and the stone's pose."""
+    stone: Stone | None
+    simulation_time: float
+    """s."""
+    moving: bool
+
+
+class Session:
+    """Mutable; changed under `lock` only, since a change may wait for a thread that makes a stone."""
+
+    def __init__(self, name: str, scene: Scene, stone: Stone | None, *, history: int = 600) -> None:
+        self.name = name
+        """32 hexadecimal digits."""
+        self.key = bytes.fromhex(name)
+        """The 16 bytes that its frames begin with."""
+        self.lock = asyncio.Lock()
+        self.falling = False
+        self.sequence = 0
+        """Of the frame sent last."""
+        self._history_length = history
+        self._history: OrderedDict[int, Shown] = OrderedDict()
+        self._advanced_at: float | None = None
+        self._authored = scene
+        self._camera = scene.camera
+        self._place(scene, stone)
+        self.shown = self._look(step=1)
+
+    @classmethod
+    def restored(
+        cls, name: str, scene: Scene, stone: Stone | None, snapshot: Snapshot, *, history: int = 600
+    ) -> Session:
+        """The session that another engine had; its step and frame numbers go on where none was used."""
+        session = cls(name, scene, stone, history=history)
+        session._authored = scene.model_copy(update={"camera": snapshot.home})
+        session._clock.advance(snapshot.fraction * scene.simulation.time_step)
+        session.falling = snapshot.falling and session._simulation is not None
+        session.sequence = snapshot.next_sequence
+        if session._simulation is not None and snapshot.simulation is not None:
+            session._simulation.restore(snapshot.simulation)
+        session.shown = session._look(step=snapshot.next_step)
+        return session
+
+    @property
+    def scene(self) -> Scene:
+        """As it is now: with the live camera, and the stone where it starts."""
+        return self._authored.model_copy(update={"camera": self._camera})
+
+    @property
+    def home(self) -> Camera:
+        """The camera as the scene has it."""
+        return self._authored.camera
+
+    @property
+    def stone(self) -> Stone | None:
+        """The shape of the scene's stone."""
+        return self._stone
+
+    @property
+    def moving(self) -> bool:
+        """Whether time would change what is shown."""
+        return self.falling and self._simulation is not None and not self._simulation.settled
+
+    def change(self, scene: Scene, *, home: Camera | None = None) -> None:
+        """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was."""
+        self._authored = scene.model_copy(update={"camera": home or self.home})
+        self._camera = scene.camera
+        self._show()
+
+    def replace_stone(self, scene: Scene, stone: Stone | None, *, home: Camera | None = None) -> None:
+        """As `change`, with a stone that is new, or starts anew: at rest where the scene has it."""
+        self._place(scene, stone)
+        self._stop()
+        self.change(scene, home=home)
+
+    def set_falling(self, falling: bool) -> None:
+        """Start or pause free fall; InputError if there is nothing to fall."""
+        if self._simulation is None:
+            raise InputError("expected a scene with a stone, got none: nothing can fall")
+        self.falling = falling
+        self._advanced_at = None
+        self._show()
+
+    def reset_stone(self) -> None:
+        """Put the stone back to where the scene has it, and stop it."""
+        if self._simulation is not None:
+            self._simulation.reset()
+        self._stop()
+        self._show()
+
+    def advance(self, now: float) -> None:
+        """Simulate up to `now`, in seconds of a steady clock, in fixed steps; show the pose between the last two."""
+        if self._simulation is None or not self.falling:
+            return
+        elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
+        self._advanced_at = now
+        for _ in range(self._clock.advance(elapsed)):
+            self._simulation.step()
+        self._show()
+
+    def remember(self, shown: Shown) -> None:
+        """Keep what a frame was made of, so that it can be rendered again."""
+        self._history[shown.step] = shown
+        while len(self._history) > self._history_length:
+            self._history.popitem(last=False)
+
+    def recall(self, step: int | None) -> Shown:
+        """What was shown at a step (None: now), or NotFoundError."""
+        if step is None or step == self.shown.step:
+            return self.shown
+        try:
+            return self._history[step]
+        except KeyError:
+            raise NotFoundError(
+                f"step {step} was never shown or is forgotten; the session is at step {self.shown.step} "
+                f"and keeps the last {self._history_length} that it showed"
+            ) from None
+
+    def report(self, *, edited: bool) -> SessionState:
+        """What the gateway needs to know, and another engine needs to go on."""
+        return SessionState(
+            session=self.name,
+            scene=self.scene.model_dump(mode="json"),
+            falling=self.falling,
+            edited=edited,
+            snapshot=self.snapshot().model_dump(mode="json"),
+        )
+
+    def snapshot(self) -> Snapshot:
+        """What the scene does not say."""
+        return Snapshot(
+            simulation=None if self._simulation is None else self._simulation.snapshot(),
+            fraction=min(self._clock.fraction, LARGEST_FRACTION),
+            falling=self.falling,
+            home=self.home,
+            step=self.shown.step,
+            sequence=self.sequence,
+        )
+
+    def pose(self) -> dict[str, Any] | None:
+        """Position and orientation of the stone shown."""
+        if not self.shown.scene.stones:
+            return None
+        stone = self.shown.scene.stones[0]
+        return {"position": stone.position, "orientation": stone.orientation}
+
+    def _stop(self) -> None:
+        self.falling = False
+        self._advanced_at = None
+        self._clock.restart()
+
+    def _show(self) -> None:
+        look = self._look(step=self.shown.step)
+        if look != self.shown:
+            self.shown = self._look(step=self.shown.step + 1)
+
+    def _look(self, step: int) -> Shown:
+        scene, time = self.scene, 0.0
+        if self._simulation is not None:
+            fraction = self._clock.fraction
+            scene = scene.moved(*self._simulation.interpolated(fraction))
+            before, after = self._simulation.previous.time, self._simulation.state.time
+            time = before + (after - before) * fraction
+        return Shown(step, scene, self._stone, time, self.moving)
+
+    def _place(self, scene: Scene, stone: Stone | None) -> None:
+        self._stone = stone
+        self._clock = FixedStepClock(scene.simulation.time_step)
+        self._simulation: Simulation | None = None
+        if stone is not None and scene.stones:
+            start = scene.stones[0]
+            self._simulation = Simulation(scene.simulation, stone, start.position, start.orientation)

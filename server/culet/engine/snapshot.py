@@ -1,0 +1,52 @@
+"""What another engine needs, besides the scene, to go on with a session."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from culet.errors import InputError
+from culet.scene import Camera
+
+NUMBER_GAP = 1000
+"""Steps and frames that an engine may have shown after its last snapshot: one second's at the highest rate, 240, and
+then some. A restored session starts beyond, since a number names one picture for ever."""
+
+LARGEST_FRACTION = 1 - 2**-20
+"""Just short of the next step, so that putting the time by again never takes that step."""
+
+
+class Snapshot(BaseModel):
+    """Goes through JSON and back without loss."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    simulation: dict[str, Any] | None
+    """As `Simulation.snapshot` wrote it."""
+    fraction: Annotated[float, Field(ge=0, le=LARGEST_FRACTION)]
+    """How far between its last two states the simulation was shown."""
+    falling: bool
+    home: Camera
+    step: Annotated[int, Field(ge=1, lt=2**63)]
+    sequence: Annotated[int, Field(ge=0, lt=2**63)]
+
+    @classmethod
+    def read(cls, data: dict[str, Any]) -> Snapshot:
+        """Validate; InputError names the field."""
+        try:
+            return cls.model_validate(data)
+        except ValidationError as error:
+            first = error.errors(include_url=False, include_context=False)[0]
+            field = ".".join(("snapshot", *(str(part) for part in first["loc"])))
+            raise InputError(f"{field}: {first['msg']}", field) from error
+
+    @property
+    def next_step(self) -> int:
+        """A step number that was never used."""
+        return self.step + NUMBER_GAP
+
+    @property
+    def next_sequence(self) -> int:
+        """A frame number that was never used."""
+        return self.sequence + NUMBER_GAP

@@ -1,0 +1,93 @@
+"""Moving the camera and the lights: pure functions from where they are to where they go.
+
+Lengths are in R, angles in radians. y is up for lights, the camera's own `up` for the camera.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.scene import Camera, Vector
+
+STEEPEST = math.radians(89)
+"""Elevation at which an orbit stops: at the pole the camera's up would be parallel to its line of sight."""
+
+CLOSEST = 0.05
+"""R; a dolly stops this far before the point looked at, beyond which the camera would turn round."""
+
+Array = NDArray[np.float64]
+
+
+def orbit(camera: Camera, yaw: float, pitch: float) -> Camera:
+    """The camera turned about its target: `yaw` counter-clockwise seen from above, `pitch` towards the pole."""
+    position, target, up = (np.array(v, float) for v in (camera.position, camera.target, camera.up))
+    return _placed(camera, target + _turned(position - target, up / np.linalg.norm(up), yaw, pitch), target)
+
+
+def translate(camera: Camera, right: float, up: float) -> Camera:
+    """The camera and its target, moved in the plane of the picture."""
+    position, target = np.array(camera.position, float), np.array(camera.target, float)
+    right_axis, up_axis, _ = axes(camera)
+    shift = right * right_axis + up * up_axis
+    return _placed(camera, position + shift, target + shift)
+
+
+def dolly(camera: Camera, forward: float) -> Camera:
+    """The camera moved towards its target, never through it."""
+    position, target = np.array(camera.position, float), np.array(camera.target, float)
+    offset = position - target
+    distance = float(np.linalg.norm(offset))
+    wanted = max(distance - forward, min(distance, CLOSEST))
+    return _placed(camera, target + offset * (wanted / distance), target)
+
+
+def axes(camera: Camera) -> tuple[Array, Array, Array]:
+    """Right, up and forward of the picture: orthonormal, in world axes."""
+    forward = np.array(camera.target, float) - np.array(camera.position, float)
+    forward /= np.linalg.norm(forward)
+    up = np.array(camera.up, float)
+    right = np.cross(forward, up / np.linalg.norm(up))
+    right /= np.linalg.norm(right)
+    return right, np.cross(right, forward), forward
+
+
+def orbit_light(position: Vector, yaw: float, pitch: float) -> Vector:
+    """A light turned about the origin."""
+    return _vector(_turned(np.array(position, float), np.array((0.0, 1.0, 0.0)), yaw, pitch))
+
+
+def shift_light(position: Vector, camera: Camera, right: float, up: float, forward: float) -> Vector:
+    """A light moved along the camera's axes."""
+    along = axes(camera)
+    return _vector(np.array(position, float) + right * along[0] + up * along[1] + forward * along[2])
+
+
+def _turned(offset: Array, up: Array, yaw: float, pitch: float) -> Array:
+    """`offset` at the same distance, its azimuth about `up` and its elevation changed."""
+    distance = float(np.linalg.norm(offset))
+    if distance == 0:
+        return offset
+    height = float(offset @ up)
+    level = offset - height * up
+    elevation = math.atan2(height, float(np.linalg.norm(level)))
+    if np.linalg.norm(level) < 1e-9 * distance:  # at the pole every azimuth is as good: leave it in some direction
+        level = np.cross(up, (1.0, 0.0, 0.0) if abs(up[0]) < 0.9 else (0.0, 1.0, 0.0))
+    level /= np.linalg.norm(level)
+    # An authored view may be steeper than the limit: it may stay so, but not get steeper.
+    limit = max(STEEPEST, abs(elevation))
+    elevation = min(max(elevation + pitch, -limit), limit)
+    level = level * math.cos(yaw) + np.cross(up, level) * math.sin(yaw)
+    return distance * (math.cos(elevation) * level + math.sin(elevation) * up)
+
+
+def _placed(camera: Camera, position: Array, target: Array) -> Camera:
+    """The camera there; pydantic's ValidationError if that is beyond the range of coordinates."""
+    return Camera(position=_vector(position), target=_vector(target), up=camera.up, fov_degrees=camera.fov_degrees)
+
+
+def _vector(array: Array) -> Vector:
+    x, y, z = (float(c) for c in array)
+    return x, y, z
