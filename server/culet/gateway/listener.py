@@ -69,7 +69,7 @@ class Listener:
 
     async def _announce(self) -> None:
         await self._server.config.app.state.gateway.link.ready.wait()  # type: ignore[union-attr]
-        print(f"culet is ready: {self.url}", flush=True)  # noqa: T201 - the one line that the user waits for
+        print(f"culet is ready: {self.url}", flush=True)
 
     def __enter__(self) -> Self:
         return self

@@ -22,12 +22,12 @@ def serve(
 ) -> None:
     """Run engine and gateway until SIGINT or SIGTERM; print the URL once both are ready.
 
-    `port` 0 takes a free one. `frames`, such as `tcp://127.0.0.1:5556`, is where the engine publishes frames, for native
-    viewers; without it they stay on this machine. Raises InputError if the address cannot be listened on, and
+    `port` 0 takes a free one. `frames`, such as `tcp://127.0.0.1:5556`, is where the engine publishes frames, for
+    native viewers; without it they stay on this machine. Raises InputError if the address cannot be listened on, and
     EngineUnavailableError if the engine dies again and again before it was ever ready.
     """
     # A socket's path may have 107 bytes (sun_path), so the folder is not made under a long TMPDIR.
-    with tempfile.TemporaryDirectory(prefix="culet-", dir="/tmp") as folder:  # noqa: S108 - private: mode 0700
+    with tempfile.TemporaryDirectory(prefix="culet-", dir="/tmp") as folder:
         control = f"ipc://{folder}/control"
         frames = frames or f"ipc://{folder}/frames"
         settings = GatewaySettings(

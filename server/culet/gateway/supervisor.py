@@ -50,7 +50,7 @@ class Supervisor:
     async def run(self) -> None:
         """Start the engine, and again whenever it dies; raise EngineUnavailableError if it never gets going."""
         backoff, short_lives, was_steady = FIRST_BACKOFF_SECONDS, 0, False
-        while not self._stopping:
+        while True:
             began = time.monotonic()
             code = await self._live()
             if self._stopping:

@@ -1,0 +1,101 @@
+"""The web application."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+from fastapi import FastAPI
+from fastapi.responses import FileResponse, HTMLResponse
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from culet import __version__
+from culet.gateway import catalogue, health, problems, session_routes, stills
+from culet.gateway.admission import Admission
+from culet.gateway.link import EngineLink
+from culet.gateway.meshes import Meshes
+from culet.gateway.sessions import Sessions
+from culet.gateway.settings import GatewaySettings
+from culet.gateway.state import Counters, Gateway
+
+DOCS_PAGE = Path(__file__).with_name("docs.html")
+NOT_BUILT = """<!doctype html><meta charset="utf-8"><title>culet</title>
+<h1>culet runs, but its page is not built</h1>
+<p>Build the web client with <code>npm install &amp;&amp; npm run build</code> in <code>client/web</code>, then reload.
+Meanwhile there is a picture at <a href="/api/render.tga">/api/render.tga</a>, and the <a href="/docs">API</a>."""
+
+
+def create_app(settings: GatewaySettings) -> FastAPI:
+    """The application; it connects to the engine when it starts up. `app.state.gateway` holds its parts."""
+    app = FastAPI(
+        title="culet",
+        version=__version__,
+        summary="Dispersive gemstones, traced exactly and streamed to thin clients.",
+        docs_url=None,  # FastAPI's pages load their scripts from the network
+        redoc_url=None,
+        lifespan=_lifespan,
+    )
+    app.state.gateway = _gateway(settings)
+    problems.install(app)
+    for routes in (stills, session_routes, catalogue, health):
+        app.include_router(routes.router)
+
+    @app.get("/docs", include_in_schema=False)
+    async def docs() -> FileResponse:
+        return FileResponse(DOCS_PAGE, media_type="text/html")
+
+    if (settings.web / "index.html").is_file():
+        app.mount("/", StaticFiles(directory=settings.web, html=True))
+    else:
+
+        @app.get("/", include_in_schema=False)
+        async def not_built() -> HTMLResponse:
+            return HTMLResponse(NOT_BUILT, 503)
+
+    app.add_middleware(
+        Admission,
+        allowed_origins=settings.allowed_origins,
+        max_body_bytes=settings.max_body_bytes,
+        own_limit={catalogue.MESHES_PATH},
+    )
+    app.add_middleware(_CountAnswers, counters=app.state.gateway.counters)
+    return app
+
+
+@contextlib.asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    gateway: Gateway = app.state.gateway
+    tasks = [asyncio.create_task(gateway.link.run()), asyncio.create_task(gateway.sessions.run())]
+    try:
+        yield
+    finally:
+        for task in tasks:
+            task.cancel()
+        results = await asyncio.gather(*tasks, return_exceptions=True)
+        for result in results:
+            if isinstance(result, Exception):
+                raise result
+
+
+def _gateway(settings: GatewaySettings) -> Gateway:
+    link, meshes = EngineLink(settings), Meshes(settings.max_kept_mesh_bytes)
+    return Gateway(settings, link, meshes, Sessions(settings, link, meshes), Counters())
+
+
+class _CountAnswers:
+    """ASGI middleware that counts answers by status."""
+
+    def __init__(self, app: ASGIApp, counters: Counters) -> None:
+        self._app = app
+        self._counters = counters
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        async def counted(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                self._counters.answers[message["status"]] += 1
+            await send(message)
+
+        await self._app(scope, receive, counted if scope["type"] == "http" else send)

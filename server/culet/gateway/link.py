@@ -1,0 +1,220 @@
+"""The gateway's side of ZeroMQ: requests to the engine and their replies, what it tells unasked, and frames."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import zmq
+import zmq.asyncio
+from pydantic import ValidationError
+
+from culet.errors import BusyError, CuletError, EngineUnavailableError, InputError, NotFoundError, TooLargeError
+from culet.gateway.settings import GatewaySettings
+from culet_protocol.engine import (
+    REQUEST_NUMBER,
+    Heartbeat,
+    Reply,
+    SessionProblem,
+    SessionState,
+    engine_message,
+)
+from culet_protocol.frame import Frame, FrameError
+from culet_protocol.messages import Message
+
+log = logging.getLogger(__name__)
+
+FRAMES_WAITING = 16
+"""Frames of all sessions in the pipe from the engine. It is emptied at once, into one slot a session."""
+TCP_HEARTBEAT_MS = 1000
+"""Between machines a vanished peer is noticed after three of these."""
+
+_ERROR_OF_STATUS: dict[int, type[CuletError]] = {404: NotFoundError, 429: BusyError, 503: EngineUnavailableError}
+
+
+class EngineLink:
+    """Connects by itself, and again whenever an engine comes. States: down -> up (heartbeats come) -> down (silence).
+
+    `up` is told with the instance's name every time the engine answers again after silence, or is another process;
+    by then requests are possible. `down` is told on silence, or before `up` if the process changed without one.
+    """
+
+    def __init__(self, settings: GatewaySettings) -> None:
+        self.ready = asyncio.Event()
+        """Set while heartbeats come."""
+        self.instance: str | None = None
+        self.instances = 0
+        """Engine processes seen so far."""
+        self.frames_received = 0
+        self.on_frame: Callable[[Frame, bytes], None] = lambda _frame, _message: None
+        self.on_state: Callable[[SessionState], None] = lambda _state: None
+        self.on_problem: Callable[[SessionProblem], None] = lambda _problem: None
+        self.on_up: Callable[[bool], Awaitable[None]] | None = None
+        """Awaited in a task of its own; the argument says whether this is a new process, which knows nothing."""
+        self.on_down: Callable[[], None] = lambda: None
+        self._settings = settings
+        self._last_heard = 0.0
+        self._numbers = 0
+        self._pending: dict[int, asyncio.Future[tuple[Reply, bytes]]] = {}
+        self._greeting: asyncio.Task[None] | None = None
+        self._control: zmq.asyncio.Socket | None = None
+        self._frames: zmq.asyncio.Socket | None = None
+
+    async def run(self) -> None:
+        """Serve the sockets until cancelled."""
+        context = zmq.asyncio.Context()
+        control, frames = context.socket(zmq.DEALER), context.socket(zmq.SUB)
+        for socket in (control, frames):
+            socket.setsockopt(zmq.HEARTBEAT_IVL, TCP_HEARTBEAT_MS)
+            socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 3 * TCP_HEARTBEAT_MS)
+        control.setsockopt(zmq.PROBE_ROUTER, 1)  # makes this peer known at every reconnection
+        frames.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
+        control.connect(self._settings.control)
+        frames.connect(self._settings.frames)
+        self._control, self._frames = control, frames
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                tasks.create_task(self._read_control(control))
+                tasks.create_task(self._read_frames(frames))
+                tasks.create_task(self._watch())
+        finally:
+            self._control = self._frames = None
+            self.ready.clear()
+            self._fail_pending("the gateway is stopping")
+            if self._greeting:
+                self._greeting.cancel()
+            context.destroy(linger=0)
+
+    async def request(
+        self, message: Message, payload: bytes | None = None, *, patient: bool = False
+    ) -> tuple[dict[str, Any], bytes]:
+        """The engine's result and bytes for a request. `patient` ones may take as long as the engine lives.
+
+        Raises what the engine answered as the error of that status, and EngineUnavailableError if it does not answer.
+        """
+        if self._control is None or not self.ready.is_set():
+            raise EngineUnavailableError("the render process is not running; it should be back in a few seconds")
+        self._numbers += 1
+        number = self._numbers
+        parts = [REQUEST_NUMBER.pack(number), message.model_dump_json().encode()]
+        if payload is not None:
+            parts.append(payload)
+        answer: asyncio.Future[tuple[Reply, bytes]] = asyncio.get_running_loop().create_future()
+        self._pending[number] = answer
+        try:
+            await self._control.send_multipart(parts, flags=zmq.NOBLOCK)
+            async with asyncio.timeout(None if patient else self._settings.request_seconds):
+                reply, data = await answer
+        except zmq.Again:
+            raise EngineUnavailableError("the render process does not take requests at the moment") from None
+        except TimeoutError:
+            raise EngineUnavailableError(
+                f"the render process did not answer within {self._settings.request_seconds:g} s"
+            ) from None
+        finally:
+            self._pending.pop(number, None)
+        if reply.status >= 400:
+            raise error_of(reply)
+        return reply.result, data
+
+    def subscribe(self, session: bytes) -> None:
+        """Have the frames of a session sent; the engine sends its latest one at once."""
+        if self._frames:
+            self._frames.setsockopt(zmq.SUBSCRIBE, session)
+
+    def unsubscribe(self, session: bytes) -> None:
+        """Undo one `subscribe`."""
+        if self._frames:
+            self._frames.setsockopt(zmq.UNSUBSCRIBE, session)
+
+    async def _read_frames(self, socket: zmq.asyncio.Socket) -> None:
+        # A task of its own that is only ever cancelled at the end: a cancelled recv may lose the message.
+        while True:
+            message: bytes = await socket.recv()
+            try:
+                frame = Frame.unpack(message)
+            except FrameError as error:
+                log.warning("dropped what is not a frame: %s", error)
+                continue
+            self.frames_received += 1
+            self.on_frame(frame, message)
+
+    async def _read_control(self, socket: zmq.asyncio.Socket) -> None:
+        while True:
+            parts: list[bytes] = await socket.recv_multipart()
+            try:
+                (number,) = REQUEST_NUMBER.unpack(parts[0])
+                message = engine_message.validate_json(parts[1])
+            except (IndexError, ValueError, ValidationError) as error:
+                log.warning("dropped what is not an engine's message: %s", error)
+                continue
+            match message:
+                case Heartbeat():
+                    self._hear(message.instance)
+                case SessionState():
+                    self.on_state(message)
+                case SessionProblem():
+                    self.on_problem(message)
+                case Reply():
+                    answer = self._pending.get(number)
+                    if answer and not answer.done():
+                        answer.set_result((message, parts[2] if len(parts) > 2 else b""))
+
+    def _hear(self, instance: str) -> None:
+        self._last_heard = asyncio.get_running_loop().time()
+        new = instance != self.instance
+        if self.ready.is_set() and not new:
+            return
+        if self.ready.is_set():
+            self._lose("the render process was replaced")
+        if new:
+            self.instance = instance
+            self.instances += 1
+        self.ready.set()
+        if self.on_up:
+            if self._greeting:
+                self._greeting.cancel()
+            self._greeting = asyncio.create_task(self._greet(self.on_up, new))
+
+    async def _greet(self, on_up: Callable[[bool], Awaitable[None]], new: bool) -> None:
+        with contextlib.suppress(EngineUnavailableError):  # it went again: the next one is greeted anew
+            await on_up(new)
+
+    async def _watch(self) -> None:
+        silence = self._settings.engine_silence_seconds
+        loop = asyncio.get_running_loop()
+        while True:
+            await asyncio.sleep(silence / 8)
+            if self.ready.is_set() and loop.time() - self._last_heard > silence:
+                self._lose(f"the render process was silent for {silence:g} s")
+
+    def _lose(self, reason: str) -> None:
+        log.warning("%s", reason)
+        self.ready.clear()
+        self._fail_pending(reason)
+        self.on_down()
+
+    def _fail_pending(self, reason: str) -> None:
+        for answer in self._pending.values():
+            if not answer.done():
+                answer.set_exception(EngineUnavailableError(reason))
+        self._pending.clear()
+
+
+def error_of(reply: Reply) -> CuletError:
+    """The error that a reply with a status of 400 or more reports."""
+    detail = reply.detail or json.dumps(reply.result)
+    error: CuletError
+    if reply.status == 413:
+        error = TooLargeError(detail, reply.field)
+    elif reply.status in (400, 422):
+        error = InputError(detail, reply.field)
+    else:
+        error = _ERROR_OF_STATUS.get(reply.status, CuletError)(detail)
+    if reply.title:
+        error.title = reply.title
+    return error

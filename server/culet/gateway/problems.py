@@ -1,0 +1,112 @@
+"""Errors as problem documents: RFC 9457, `application/problem+json`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
+
+from culet.errors import CuletError, InputError
+
+MEDIA_TYPE = "application/problem+json"
+RETRY_AFTER_SECONDS = "2"
+"""For 429 and 503: a still takes about so long, and so does a restart of the engine."""
+
+PROBLEM_SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "required": ["type", "title", "status", "detail"],
+    "properties": {
+        "type": {"type": "string"},
+        "title": {"type": "string"},
+        "status": {"type": "integer"},
+        "detail": {"type": "string"},
+        "field": {"type": ["string", "null"], "description": "Where in the input, such as `scene.camera.fov_degrees`."},
+    },
+}
+
+
+def problem(
+    status: int, title: str, detail: str, field: str | None = None, headers: Mapping[str, str] | None = None
+) -> JSONResponse:
+    """The response; `type` is about:blank, as the status and title say all that there is to say about the kind."""
+    body = {"type": "about:blank", "title": title, "status": status, "detail": detail}
+    if field is not None:
+        body["field"] = field
+    return JSONResponse(body, status, headers, MEDIA_TYPE)
+
+
+def problem_of(error: CuletError) -> JSONResponse:
+    """The response for one of culet's own errors."""
+    field = error.field if isinstance(error, InputError) else None
+    headers = {"Retry-After": RETRY_AFTER_SECONDS} if error.status in (429, 503) else None
+    return problem(error.status, error.title, str(error), field, headers)
+
+
+def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """What OpenAPI should say about a route's errors."""
+    return {
+        status: {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": PROBLEM_SCHEMA}}}
+        for status in statuses
+    }
+
+
+def finite(value: object, field: str = "") -> None:
+    """Raise InputError naming the first number in parsed JSON that is NaN or infinite.
+
+    Python reads `NaN` and `1e999`, and pydantic lets them through where a field may hold any JSON; on the way to the
+    engine they would turn into null, which in a merge patch means: delete.
+    """
+    if isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"{field or 'body'}: expected a finite number, got {value}", field or None)
+    if isinstance(value, dict):
+        for key, item in value.items():
+            finite(item, f"{field}.{key}" if field else str(key))
+    if isinstance(value, list):
+        for index, item in enumerate(value):
+            finite(item, f"{field}.{index}" if field else str(index))
+
+
+def install(app: FastAPI) -> None:
+    """Make every error of the app a problem document."""
+    app.exception_handler(CuletError)(_of_culet)
+    app.exception_handler(RequestValidationError)(_of_validation)
+    app.exception_handler(HTTPException)(_of_http)
+    app.exception_handler(Exception)(_of_bug)
+
+
+async def _of_culet(_request: Request, error: CuletError) -> JSONResponse:
+    return problem_of(error)
+
+
+async def _of_validation(_request: Request, error: RequestValidationError) -> JSONResponse:
+    # FastAPI's own answer repeats the input, and fails with a 500 if NaN is in it.
+    findings = error.errors()
+    first = findings[0]
+    if first["type"] == "json_invalid":
+        detail = f"the body is not JSON: {first['ctx']['error']} at character {first['loc'][-1]}"
+        return problem(InputError.status, InputError.title, detail)
+    field = ".".join(str(part) for part in first["loc"][1:]) or None
+    came = "" if first["type"] == "missing" else f"; got {_short(first.get('input'))}"
+    more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
+    where = field or first["loc"][0]
+    return problem(InputError.status, InputError.title, f"{where}: {first['msg']}{came}{more}", field)
+
+
+async def _of_http(_request: Request, error: HTTPException) -> JSONResponse:
+    title = HTTPStatus(error.status_code).phrase.lower()
+    return problem(error.status_code, title, error.detail, None, error.headers)
+
+
+async def _of_bug(_request: Request, _error: Exception) -> JSONResponse:
+    return problem(500, CuletError.title, "something went wrong in the gateway; its log says what")
+
+
+def _short(value: object) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= 80 else shown[:77] + "..."

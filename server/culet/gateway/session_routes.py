@@ -1,0 +1,124 @@
+"""/api/sessions: make, ask, change and forget sessions, and the full-quality picture of what one shows."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from fastapi import APIRouter, Body, Query, Response, WebSocket
+from pydantic import Field, model_validator
+
+from culet.gateway import stream as streaming
+from culet.gateway.parts import ThisGateway
+from culet.gateway.problems import answers, finite
+from culet.gateway.sessions import Session
+from culet.gateway.stills import MEDIA_TYPES, Height, PictureResponse, Width
+from culet.scene import Scene, preset
+from culet.scene.model import Model
+from culet_protocol.engine import Render
+from culet_protocol.messages import PatchScene
+
+router = APIRouter(tags=["sessions"])
+
+
+class SessionRequest(Model):
+    """What the new session shows: a scene, or a preset by name; nothing is the default scene."""
+
+    scene: Scene | None = None
+    preset: Annotated[str, Field(description="A name from /api/presets.")] | None = None
+
+    model_config = Model.model_config | {"json_schema_extra": {"examples": [{"preset": "matte"}]}}
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> Self:
+        if self.scene is not None and self.preset is not None:
+            raise ValueError("expected a scene or a preset, got both")
+        return self
+
+
+class SessionAnswer(Model):
+    """A session as it is now."""
+
+    id: Annotated[str, Field(description="Whoever knows it may watch and change the session.")]
+    scene: Annotated[dict[str, Any], Field(description="With the camera and lights where they are now.")]
+    falling: bool
+    viewers: int
+    stream: Annotated[str, Field(description="Path of the WebSocket; see the protocol's specification.")]
+
+
+class FrameQuery(Model):
+    """Which state, and how large."""
+
+    step: Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")] | None = (
+        None
+    )
+    width: Width | None = None
+    height: Height | None = None
+
+
+@router.post("/api/sessions", status_code=201, responses=answers(404, 413, 422, 429, 503))
+async def create_session(
+    gateway: ThisGateway, response: Response, request: Annotated[SessionRequest | None, Body()] = None
+) -> SessionAnswer:
+    """Make a session."""
+    request = request or SessionRequest()
+    scene = request.scene or (preset(request.preset) if request.preset is not None else Scene())
+    session = await gateway.sessions.open(scene.model_dump(mode="json"))
+    response.headers["Location"] = f"/api/sessions/{session.id}"
+    return _answer(session)
+
+
+@router.get("/api/sessions/{session_id}", responses=answers(404, 503))
+async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
+    """A session as it is now."""
+    session = gateway.sessions.get(session_id)
+    await gateway.sessions.describe(session)
+    return _answer(session)
+
+
+@router.patch("/api/sessions/{session_id}", responses=answers(404, 413, 422, 503))
+async def patch_session(
+    session_id: str,
+    patch: Annotated[dict[str, Any], Body(examples=[{"floor": {"kind": "matte"}}])],
+    gateway: ThisGateway,
+) -> SessionAnswer:
+    """Change parts of a session's scene by a JSON merge patch (RFC 7396)."""
+    finite(patch)
+    session = gateway.sessions.get(session_id)
+    await gateway.sessions.apply(session, PatchScene(patch=patch))
+    await gateway.sessions.describe(session)
+    return _answer(session)
+
+
+@router.delete("/api/sessions/{session_id}", status_code=204, responses=answers(404, 503))
+async def delete_session(session_id: str, gateway: ThisGateway) -> None:
+    """Forget a session; its viewers are told."""
+    await gateway.sessions.close(gateway.sessions.get(session_id))
+
+
+@router.get(
+    "/api/sessions/{session_id}/frame.tga", response_class=PictureResponse, responses=answers(404, 422, 429, 503)
+)
+async def frame_tga(session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway) -> Response:
+    """What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a pixel."""
+    session = gateway.sessions.get(session_id)
+    message = Render(session=session.id, step=query.step, width=query.width, height=query.height, format="tga")
+    _, data = await gateway.link.request(message, patient=True)
+    file_format: Literal["tga"] = "tga"
+    disposition = f'attachment; filename="culet-{"latest" if query.step is None else query.step}.tga"'
+    return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
+
+
+@router.websocket("/api/sessions/{session_id}/stream")
+async def stream(websocket: WebSocket, session_id: str, gateway: ThisGateway) -> None:
+    """Frames to a viewer, its control events back."""
+    await streaming.stream(websocket, gateway, session_id)
+
+
+def _answer(session: Session) -> SessionAnswer:
+    return SessionAnswer(
+        id=session.id,
+        scene=session.scene,
+        falling=session.falling,
+        viewers=len(session.viewers),
+        stream=f"/api/sessions/{session.id}/stream",
+    )

@@ -1,0 +1,37 @@
+"""What one gateway process holds, and what it counts."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from culet.gateway.link import EngineLink
+from culet.gateway.meshes import Meshes
+from culet.gateway.sessions import Sessions
+from culet.gateway.settings import GatewaySettings
+
+
+@dataclass
+class Counters:
+    """Since the process began."""
+
+    frames_sent: int = 0
+    bytes_sent: int = 0
+    answers: Counter[int] = field(default_factory=Counter)
+    """HTTP answers by status."""
+
+    def frame_sent(self, size: int) -> None:
+        """A frame of that many bytes went to a viewer."""
+        self.frames_sent += 1
+        self.bytes_sent += size
+
+
+@dataclass(frozen=True)
+class Gateway:
+    """The parts of the gateway, for the routes."""
+
+    settings: GatewaySettings
+    link: EngineLink
+    meshes: Meshes
+    sessions: Sessions
+    counters: Counters

@@ -1,0 +1,90 @@
+"""GET /api/render.tga and POST /api/render: one picture for one answer."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Response
+from pydantic import Field
+
+from culet.gateway.parts import ThisGateway
+from culet.gateway.problems import answers
+from culet.scene import Scene, preset
+from culet.scene.model import Model
+from culet_protocol.engine import Format, Render
+
+router = APIRouter(tags=["pictures"])
+
+MEDIA_TYPES: dict[Format, str] = {"tga": "image/x-tga", "png": "image/png", "jpeg": "image/jpeg", "exr": "image/x-exr"}
+DEFAULT_WIDTH, DEFAULT_HEIGHT = 640, 360
+
+Width = Annotated[int, Field(ge=1, le=8192, description="Pixels; width x height is at most 33.5 million.")]
+Height = Annotated[int, Field(ge=1, le=8192, description="Pixels.")]
+Kind = Literal["none", "matte", "mirror"]
+
+
+class StillQuery(Model):
+    """A preset, and the few things of it that are often changed; for everything else there is POST /api/render."""
+
+    preset: Annotated[str, Field(description="A name from /api/presets.")] = "default"
+    width: Width = DEFAULT_WIDTH
+    height: Height = DEFAULT_HEIGHT
+    samples: Annotated[int, Field(ge=1, le=65536, description="Per pixel; the preset's if not given.")] | None = None
+    material: Literal["diamond", "classic"] | None = None
+    floor: Kind | None = None
+    walls: Kind | None = None
+    environment: Literal["dark", "light"] | None = None
+
+    def scene(self) -> Scene:
+        """The preset's scene with the changes."""
+        data: dict[str, Any] = preset(self.preset).model_dump(mode="json")
+        if self.samples is not None:
+            data["sampling"]["samples_per_pixel"] = self.samples
+        if self.material is not None:
+            for stone in data["stones"]:
+                stone["material"] = self.material
+        for name, kind in (("floor", self.floor), ("walls", self.walls), ("environment", self.environment)):
+            if kind is not None:
+                data[name] = {"kind": kind}
+        return Scene.read(data)
+
+
+class StillRequest(Model):
+    """A whole scene, rendered as it stands."""
+
+    scene: Scene = Scene()
+    width: Width = DEFAULT_WIDTH
+    height: Height = DEFAULT_HEIGHT
+    format: Annotated[Format, Field(description="EXR is linear radiance; the others are tone-mapped.")] = "tga"
+
+    model_config = Model.model_config | {
+        "json_schema_extra": {
+            "examples": [
+                {"scene": {"floor": {"kind": "matte"}}, "width": 320, "height": 180, "format": "png"},
+            ]
+        }
+    }
+
+
+class PictureResponse(Response):
+    """For OpenAPI: bytes of a picture."""
+
+    media_type = "image/x-tga"
+
+
+@router.get("/api/render.tga", response_class=PictureResponse, responses=answers(404, 422, 429, 503))
+async def render_tga(query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
+    """Render a preset as a 24-bit TGA."""
+    return await _picture(gateway, query.scene(), query.width, query.height, "tga")
+
+
+@router.post("/api/render", response_class=PictureResponse, responses=answers(413, 422, 429, 503))
+async def render(request: StillRequest, gateway: ThisGateway) -> Response:
+    """Render a scene in the format asked for."""
+    return await _picture(gateway, request.scene, request.width, request.height, request.format)
+
+
+async def _picture(gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format) -> Response:
+    message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format)
+    _, data = await gateway.link.request(message, patient=True)
+    return Response(data, media_type=MEDIA_TYPES[file_format])

@@ -1,0 +1,207 @@
+"""WS /api/sessions/{id}/stream: admission, then a task that reads and a task that sends.
+
+States: refused (accepted and closed with a code and a reason that a person can read, as a refusal before the handshake
+shows a browser nothing but 1006) | streaming -> closed by the viewer, by the end of the session, or for not reading.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import time
+from collections.abc import Coroutine
+
+from fastapi import WebSocket, WebSocketDisconnect
+from pydantic import ValidationError
+
+from culet.errors import BusyError, CuletError, InputError, NotFoundError
+from culet.gateway.admission import may_enter
+from culet.gateway.problems import finite
+from culet.gateway.sessions import Session
+from culet.gateway.state import Gateway
+from culet.gateway.viewer import Viewer
+from culet.scene.model import scene_error
+from culet_protocol import SUBPROTOCOL, VERSION
+from culet_protocol.messages import (
+    Ack,
+    Hello,
+    PatchScene,
+    Ping,
+    Pong,
+    Problem,
+    Resize,
+    SessionEvent,
+    SetScene,
+    Visibility,
+    control_event,
+)
+
+log = logging.getLogger(__name__)
+
+MAX_CONTROL_BYTES = 64 * 1024
+SEND_SECONDS = 5.0
+"""A viewer that lets nothing through for so long is gone. A send that was given up may leave half a frame: close."""
+EVENTS_UNDER_WAY = 32
+"""Events of one viewer that the engine has not answered; more wait in the socket."""
+
+PROTOCOL_ERROR = 1002
+FORBIDDEN, NOT_FOUND, TOO_SLOW, BUSY = 4403, 4404, 4408, 4429
+
+
+async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> None:
+    """Serve one viewer until it leaves."""
+    offered: list[str] = websocket.scope["subprotocols"]
+    await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in offered else None)
+    if not may_enter(websocket.headers, gateway.settings.allowed_origins):
+        await websocket.close(FORBIDDEN, f"pages of {websocket.headers['origin'][:60]} may not open streams here")
+        return
+    if offered and SUBPROTOCOL not in offered:
+        await websocket.close(PROTOCOL_ERROR, f"this server speaks {SUBPROTOCOL}; reload the page")
+        return
+    try:
+        session = gateway.sessions.get(session_id)
+        viewer = gateway.sessions.join(session)
+    except NotFoundError:
+        await websocket.close(NOT_FOUND, "no such session; it may have expired")
+        return
+    except BusyError as error:
+        await websocket.close(BUSY, str(error))
+        return
+    try:
+        hello = Hello(protocol=VERSION, session=session.id, viewer=viewer.number)
+        await websocket.send_text(hello.model_dump_json())
+        await _Stream(websocket, gateway, session, viewer).run()
+    except (WebSocketDisconnect, RuntimeError):  # starlette raises either for a send after the viewer left
+        pass
+    finally:
+        await gateway.sessions.leave(session, viewer)
+
+
+class _Stream:
+    """The two tasks of one viewer."""
+
+    def __init__(self, websocket: WebSocket, gateway: Gateway, session: Session, viewer: Viewer) -> None:
+        self._websocket = websocket
+        self._gateway = gateway
+        self._session = session
+        self._viewer = viewer
+        self._room = asyncio.Semaphore(EVENTS_UNDER_WAY)
+        self._under_way: set[asyncio.Task[None]] = set()
+
+    async def run(self) -> None:
+        """Until either task ends."""
+        # A reader always reads: that is how a viewer that leaves, and the server's shutdown, are noticed.
+        reader, sender = asyncio.create_task(self._read()), asyncio.create_task(self._send())
+        try:
+            done, _ = await asyncio.wait({reader, sender}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            tasks = [reader, sender, *self._under_way]
+            for task in tasks:
+                task.cancel()
+            results = await asyncio.gather(*tasks, return_exceptions=True)
+        if sender in done and reader not in done:
+            with contextlib.suppress(RuntimeError):
+                await self._websocket.close(*self._reason())
+        for result in results[:2]:
+            if isinstance(result, Exception):
+                raise result
+
+    def _reason(self) -> tuple[int, str]:
+        if self._viewer.dismissed:
+            return NOT_FOUND, "the session has ended"
+        return TOO_SLOW, "this viewer does not read what it is sent"
+
+    async def _send(self) -> None:
+        viewer = self._viewer
+        while not viewer.overrun:
+            viewer.wake.clear()
+            while (notice := viewer.next_notice()) is not None:
+                if not await self._in_time(notice.model_dump_json()):
+                    return
+            if viewer.dismissed:
+                return
+            frame = viewer.next_frame(time.monotonic())
+            if frame is not None:
+                if not await self._in_time(frame):
+                    return
+                self._gateway.counters.frame_sent(len(frame))
+                continue  # notices may have come, and another frame
+            until = viewer.sleep_until()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(None if until is None else max(0.0, until - time.monotonic())):
+                    await viewer.wake.wait()
+
+    async def _in_time(self, message: str | bytes) -> bool:
+        sending = (
+            self._websocket.send_text(message) if isinstance(message, str) else self._websocket.send_bytes(message)
+        )
+        try:
+            async with asyncio.timeout(SEND_SECONDS):
+                await sending
+        except TimeoutError:
+            log.info("viewer %d does not read; closing", self._viewer.number)
+            return False
+        return True
+
+    async def _read(self) -> None:
+        while True:
+            message = await self._websocket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
+            text: str | None = message.get("text")
+            if text is None:
+                self._refuse("binary_message", "control messages are JSON text; binary ones are for frames")
+                continue
+            size = len(text.encode())
+            if size > MAX_CONTROL_BYTES:
+                self._refuse(
+                    "too_large", f"expected a control message of at most {MAX_CONTROL_BYTES} bytes, got {size}"
+                )
+                continue
+            try:
+                event = control_event.validate_json(text)
+                if isinstance(event, PatchScene):
+                    finite(event.patch)
+                if isinstance(event, SetScene):
+                    finite(event.scene)
+            except ValidationError as error:
+                finding = scene_error(error)
+                self._refuse("malformed", str(finding), finding.field)
+                continue
+            except InputError as error:
+                self._refuse("unusable_input", str(error), error.field)
+                continue
+            match event:
+                case Ack(sequence=sequence):
+                    self._viewer.acknowledge(sequence, time.monotonic())
+                case Ping(time=sent):
+                    self._viewer.tell(Pong(time=sent))
+                case Resize(width=width, height=height):
+                    self._viewer.resize(width, height, time.monotonic())
+                    self._start(self._gateway.sessions.update_demand(self._session))
+                case Visibility(visible=visible):
+                    self._viewer.show(visible)
+                    self._start(self._gateway.sessions.update_demand(self._session))
+                case _:
+                    await self._room.acquire()
+                    self._start(self._apply(event))
+
+    def _start(self, work: Coroutine[None, None, None]) -> None:
+        # Not awaited by the reader: events travel in order on the engine's socket without waiting for each other.
+        task = asyncio.create_task(work)
+        self._under_way.add(task)
+        task.add_done_callback(self._under_way.discard)
+
+    async def _apply(self, event: SessionEvent) -> None:
+        try:
+            await self._gateway.sessions.apply(self._session, event)
+        except InputError as error:
+            self._refuse("unusable_input", str(error), error.field)
+        except CuletError as error:
+            self._refuse(error.title.replace(" ", "_"), str(error))
+        finally:
+            self._room.release()
+
+    def _refuse(self, code: str, message: str, field: str | None = None) -> None:
+        self._viewer.tell(Problem(code=code, message=message, field=field))
