@@ -77,6 +77,8 @@ class LivePicture:
         """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
         if not self.watched or self.refused is self.session.shown:
             return None
+        if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
+            return None
         if self.at_rest and (self.final or self.picture is not None):
             return None
         return self.begun_at + 1 / self.frames_per_second
@@ -92,4 +94,4 @@ class LivePicture:
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
-        return self.sent_at + REPEAT_SECONDS if self.watched and self.at_rest else None
+        return self.sent_at + REPEAT_SECONDS if self.watched and self.current else None

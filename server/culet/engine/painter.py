@@ -132,12 +132,11 @@ class Painter:
         size = live.size
         try:
             picture = await self._in_render_thread(self._first_sample, shown, size)
+            live.picture, live.painted, live.painted_size, live.final = picture, shown, size, REST_SAMPLES <= 1
+            self.counters.frames_rendered += 1
+            await self._publish(live, picture, shown)
         except Exception as error:  # one session's failure must not end the others'
             self._refuse(live, shown, error)
-            return
-        live.picture, live.painted, live.painted_size, live.final = picture, shown, size, REST_SAMPLES <= 1
-        self.counters.frames_rendered += 1
-        await self._publish(live, picture, shown)
 
     def _first_sample(self, shown: Shown, size: tuple[int, int]) -> Picture:
         picture = self._renderer.picture(shown.scene, shown.stone, *size)
@@ -155,18 +154,16 @@ class Painter:
             rows = band_rows(*live.painted_size, samples)
             live.refinement = iter(picture.refine_in_bands(samples, rows))
         try:
-            more = await self._in_render_thread(_proceed, live.refinement)
+            if await self._in_render_thread(_proceed, live.refinement):
+                return
+            live.refinement = None
+            self.counters.refinements += 1
+            live.final = picture.samples >= REST_SAMPLES
+            await self._publish(live, picture, shown)
+            if live.final:
+                live.picture = None
         except Exception as error:  # as above
             self._refuse(live, shown, error)
-            return
-        if more or live.picture is not picture:
-            return
-        live.refinement = None
-        self.counters.refinements += 1
-        live.final = picture.samples >= REST_SAMPLES
-        await self._publish(live, picture, shown)
-        if live.final:
-            live.picture = None
 
     async def _advance_still(self, still: Still) -> None:
         """One band of a still, or its end."""

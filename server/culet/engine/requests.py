@@ -153,14 +153,16 @@ class Requests:
     async def _control(self, request: protocol.Control) -> dict[str, Any]:
         live = self._live(request.session)
         session = live.session
-        async with session.lock:
-            apply = partial(events.apply, session, request.event, self._make_stone)
-            if request.event.type in ("patch_scene", "set_scene"):  # may make a stone: frames go on meanwhile
-                await asyncio.to_thread(apply)
-            else:
-                apply()
-            self._tell(session.report(edited=True))
-        self._painter.wake()
+        apply = partial(events.apply, session, request.event, self._make_stone)
+        try:
+            async with session.lock:
+                if request.event.type in ("patch_scene", "set_scene"):  # may make a stone: other sessions go on
+                    await asyncio.to_thread(apply)
+                else:
+                    apply()
+                self._tell(session.report(edited=True))
+        finally:
+            self._painter.wake()
         return {"step": session.shown.step, "falling": session.falling}
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
+import logging
 
 import zmq
 import zmq.asyncio
 
 from culet.errors import InputError
 from culet_protocol.engine import REQUEST_NUMBER
+
+log = logging.getLogger(__name__)
 
 FRAMES_HIGH_WATER = 2
 """Frames that wait for one subscriber; further ones are dropped until it takes some."""
@@ -70,9 +72,10 @@ class Peers:
             await self.send(peer, [REQUEST_NUMBER.pack(0), message])
 
     async def send(self, peer: bytes, parts: list[bytes]) -> None:
-        """Send to one; one that left, or takes nothing any more, is forgotten."""
+        """Send to one; one that left is forgotten, one that takes nothing any more (1000 messages wait) misses this."""
         try:
             await self._socket.send_multipart([peer, *parts], flags=zmq.NOBLOCK)
+        except zmq.Again:
+            log.warning("a peer takes no messages: dropped one of %d bytes", sum(map(len, parts)))
         except zmq.ZMQError:
-            with contextlib.suppress(KeyError):
-                del self._peers[peer]
+            self._peers.pop(peer, None)
