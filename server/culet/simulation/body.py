@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Self
 
@@ -79,9 +78,11 @@ def _scaled(rows: Rows, factor: float) -> Rows:
 def _rows(tensor: NDArray[np.float64]) -> Rows:
     if tensor.shape != (3, 3):
         raise InputError(f"an inertia tensor is 3 by 3; got shape {tensor.shape}")
+    if not np.isfinite(tensor).all():
+        raise InputError(f"an inertia tensor is finite; got {tensor.tolist()}")
     # trimesh's tensor is symmetric only to rounding; an inverse that is not would create angular momentum
     (a, b, c), (_, e, f), (_, _, i) = ((tensor + tensor.T) / 2).tolist()
-    if float(np.abs(tensor - tensor.T).max(initial=0)) > 1e-9 * max(a, e, i):
+    if float(np.abs(tensor - tensor.T).max()) > 1e-9 * max(a, e, i):
         raise InputError(f"an inertia tensor is symmetric; got {tensor.tolist()}")
     return ((a, b, c), (b, e, f), (c, f, i))
 
@@ -96,7 +97,7 @@ def _inverse(rows: Rows) -> Rows:
     minor = a * e - b * b
     xx, xy, xz = e * i - f * f, c * f - b * i, b * f - c * e
     determinant = a * xx + b * xy + c * xz
-    if not (a > 0 and minor > 0 and 0 < determinant < math.inf):  # Sylvester's criterion; NaN fails it as well
-        raise InputError(f"an inertia tensor is positive definite and finite; got {rows}")
+    if not (a > 0 and minor > 0 and determinant > 0):  # Sylvester's criterion
+        raise InputError(f"an inertia tensor is positive definite; got {rows}")
     yy, yz = a * i - c * c, b * c - a * f
     return _scaled(((xx, xy, xz), (xy, yy, yz), (xz, yz, minor)), 1 / determinant)
