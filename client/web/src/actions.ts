@@ -1,0 +1,65 @@
+/** Everything that a key or a button does: one catalogue for keyboard, panel and tests. */
+
+import type { SessionEvent, Target } from "./events";
+
+/** R a key press, as in the report. */
+export const STEP = 0.5;
+
+export type Effect =
+  | { kind: "select"; target: Target }
+  | { kind: "send"; event: (target: Target) => SessionEvent }
+  | { kind: "download" };
+
+export interface Action {
+  name: string;
+  label: string;
+  /** Letter or name printed on the key (`KeyboardEvent.key`, in lower case). */
+  key: string;
+  /** Where the key is on a QWERTY keyboard (`KeyboardEvent.code`). */
+  code: string;
+  /** Whether a key that is held down acts again. */
+  repeats: boolean;
+  effect: Effect;
+}
+
+function letter(name: string, key: string, label: string, effect: Effect, repeats = false): Action {
+  return { name, label, key: key.toLowerCase(), code: `Key${key}`, repeats, effect };
+}
+
+function move(name: string, code: string, label: string, event: (target: Target) => SessionEvent): Action {
+  return { name, label, key: code.toLowerCase(), code, repeats: true, effect: { kind: "send", event } };
+}
+
+function select(target: Target, key: string, code: string, label: string): Action {
+  return { name: target, label, key, code, repeats: false, effect: { kind: "select", target } };
+}
+
+function plain(name: string, key: string, label: string, type: Plain): Action {
+  return letter(name, key, label, { kind: "send", event: () => ({ type }) });
+}
+
+/** The events that say all by their type. */
+type Plain = "reset_camera" | "toggle_fall" | "reset_stone" | "toggle_mirror" | "toggle_environment" | "toggle_walls";
+
+function dolly(forward: number): Effect {
+  return { kind: "send", event: (target) => ({ type: "dolly", target, forward }) };
+}
+
+export const ACTIONS: readonly Action[] = [
+  select("camera", "c", "KeyC", "Move the camera"),
+  select("light_1", "1", "Digit1", "Move the red light"),
+  select("light_2", "2", "Digit2", "Move the blue light"),
+  move("left", "ArrowLeft", "Left", (target) => ({ type: "translate", target, right: -STEP, up: 0 })),
+  move("right", "ArrowRight", "Right", (target) => ({ type: "translate", target, right: STEP, up: 0 })),
+  move("up", "ArrowUp", "Up", (target) => ({ type: "translate", target, right: 0, up: STEP })),
+  move("down", "ArrowDown", "Down", (target) => ({ type: "translate", target, right: 0, up: -STEP })),
+  letter("in", "I", "In", dolly(STEP), true),
+  letter("out", "O", "Out", dolly(-STEP), true),
+  plain("reset_camera", "F", "Reset the camera", "reset_camera"),
+  plain("fall", "P", "Fall or pause", "toggle_fall"),
+  plain("reset_stone", "R", "Put the stone back", "reset_stone"),
+  plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
+  plain("sky", "L", "Dark or light sky", "toggle_environment"),
+  plain("walls", "W", "Walls", "toggle_walls"),
+  letter("download", "S", "Save the picture (.tga)", { kind: "download" }),
+];

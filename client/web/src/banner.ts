@@ -1,0 +1,68 @@
+/** One line over the picture while it is not live, and the card that stands in the way when there is nothing to show. */
+
+import { CloseCode } from "@culet/protocol/messages";
+import type { Connection } from "./stream";
+
+/** What to say about the connection, or null while all is well. */
+export function bannerText(connection: Connection, engine: "down" | "up"): string | null {
+  switch (connection.status) {
+    case "connecting":
+      return "Connecting\u2026";
+    case "waiting":
+      return `Connection lost. Trying again in ${Math.max(1, Math.round(connection.delay / 1000))} s\u2026`;
+    case "closed":
+      return "Not connected.";
+    case "open":
+      return engine === "down" ? "The render process stopped and is being restarted. The scene is kept." : null;
+  }
+}
+
+/** Why a stream is over for good, for the card. */
+export function obstacleText(code: number, reason: string): string {
+  switch (code) {
+    case CloseCode.UNKNOWN_SESSION:
+      return "There is no such session (any more). It may have been closed, or expired.";
+    case CloseCode.PROTOCOL_ERROR:
+      return "This page and the server speak different versions. Reload the page.";
+    case CloseCode.FORBIDDEN_ORIGIN:
+      return "The server does not let this page watch: it was served from another origin.";
+    default:
+      return reason ? `The stream ended: ${reason}` : `The stream ended (code ${code}).`;
+  }
+}
+
+export class Banner {
+  private readonly element: HTMLElement;
+
+  constructor(element: HTMLElement) {
+    this.element = element;
+  }
+
+  show(text: string | null): void {
+    this.element.hidden = text === null;
+    if (text !== null && this.element.textContent !== text) this.element.textContent = text;
+  }
+}
+
+export class Obstacle {
+  private readonly card: HTMLElement;
+  private readonly text: HTMLElement;
+  private readonly button: HTMLButtonElement;
+
+  constructor(card: HTMLElement, text: HTMLElement, button: HTMLButtonElement) {
+    this.card = card;
+    this.text = text;
+    this.button = button;
+  }
+
+  show(text: string, label: string, act: () => void): void {
+    this.text.textContent = text;
+    this.button.textContent = label;
+    this.button.onclick = () => {
+      this.card.hidden = true;
+      act();
+    };
+    this.card.hidden = false;
+    this.button.focus();
+  }
+}

@@ -1,0 +1,48 @@
+/** Files from and to the user. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+
+export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb";
+
+/** Save a blob under a name, as a click on a link would. */
+export function download(blob: Blob, name: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  // Not at once: some browsers read the address only after the click has been handled.
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+/** Let the user choose a file; calls back only if one was chosen. */
+export function chooseFile(accept: string, chosen: (file: File) => void): void {
+  const input = document.createElement("input");
+  input.type = "file";
+  input.accept = accept;
+  input.onchange = () => {
+    const file = input.files?.[0];
+    if (file) chosen(file);
+  };
+  input.click();
+}
+
+/** The scene in a file's text; throws Error with words for the user. Its fields are the server's to check. */
+export function parseScene(text: string, name: string): JsonObject {
+  let data: unknown;
+  try {
+    data = JSON.parse(text);
+  } catch (error) {
+    throw new Error(`${name} is not JSON: ${error instanceof Error ? error.message : error}`);
+  }
+  if (typeof data !== "object" || data === null || Array.isArray(data)) {
+    throw new Error(`${name}: expected a scene (a JSON object), got ${Array.isArray(data) ? "a list" : String(data)}`);
+  }
+  return data as JsonObject;
+}
+
+/** The merge patch that gives the scene's stone an uploaded mesh and leaves its material and place. */
+export function meshPatch(scene: JsonObject | null, mesh: string): JsonObject {
+  const stones = scene?.stones;
+  const stone: unknown = Array.isArray(stones) ? stones[0] : undefined;
+  return { stones: [{ ...(typeof stone === "object" ? stone : null), mesh }] };
+}

@@ -1,0 +1,69 @@
+/** Drag, pinch and wheel as motions of the target. */
+
+import { STEP } from "./actions";
+import type { Dolly, Orbit, Target } from "./events";
+
+/** What fingers did since the last look: css pixels dragged, and the ratio of a pinch. */
+export interface Motion {
+  dx: number;
+  dy: number;
+  /** Distance of two fingers now over before; 1: none. */
+  spread: number;
+}
+
+/** Follows one or two pointers; more are ignored. */
+export class Fingers {
+  private readonly at = new Map<number, { x: number; y: number }>();
+
+  down(id: number, x: number, y: number): void {
+    if (this.at.size < 2) this.at.set(id, { x, y });
+  }
+
+  up(id: number): void {
+    this.at.delete(id);
+  }
+
+  /** One finger drags, two pinch; null if the pointer is not followed. */
+  move(id: number, x: number, y: number): Motion | null {
+    const before = this.at.get(id);
+    if (!before) return null;
+    const spreadBefore = this.spread();
+    this.at.set(id, { x, y });
+    if (this.at.size === 1) return { dx: x - before.x, dy: y - before.y, spread: 1 };
+    const ratio = this.spread() / spreadBefore;
+    return { dx: 0, dy: 0, spread: Number.isFinite(ratio) && ratio > 0 ? ratio : 1 };
+  }
+
+  private spread(): number {
+    const [a, b] = [...this.at.values()];
+    return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 1;
+  }
+}
+
+/**
+ * A drag over the picture's shorter side (css pixels) is half a turn. The camera goes against the finger, so that the
+ * scene seems to be held; a light goes with it.
+ */
+export function orbitBy(dx: number, dy: number, side: number, target: Target): Orbit {
+  const radians = Math.PI / Math.max(side, 1);
+  const sign = target === "camera" ? -1 : 1;
+  return { type: "orbit", target, yaw: sign * dx * radians, pitch: -sign * dy * radians };
+}
+
+/** R for a doubling of the distance between two fingers. */
+const PINCH = 2;
+
+export function pinchBy(spread: number, target: Target): Dolly {
+  return { type: "dolly", target, forward: PINCH * Math.log2(spread) };
+}
+
+/** Css pixels in a notch of most wheels, and in the line and page of WheelEvent.deltaMode 1 and 2. */
+const NOTCH = 100;
+const UNIT = [1, 16, 800];
+/** R: the most that one wheel event moves, since some mice report bursts. */
+const WHEEL_LIMIT = 2;
+
+export function wheelBy(deltaY: number, deltaMode: number, target: Target): Dolly {
+  const forward = (-deltaY * (UNIT[deltaMode] ?? 1) * STEP) / NOTCH;
+  return { type: "dolly", target, forward: Math.max(-WHEEL_LIMIT, Math.min(WHEEL_LIMIT, forward)) };
+}

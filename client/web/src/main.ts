@@ -1,0 +1,197 @@
+/** The page: finds or makes a session, then connects keys, fingers, panel and picture to it. */
+
+import { CloseCode } from "@culet/protocol/messages";
+import type { Action } from "./actions";
+import { Banner, bannerText, Obstacle, obstacleText } from "./banner";
+import { chooseFile, download, MESH_TYPES, meshPatch, parseScene } from "./files";
+import { listenToKeys } from "./keys";
+import { element } from "./page";
+import { Panel } from "./panel";
+import { listenToPointers } from "./pointer-input";
+import { expose, header } from "./probe";
+import * as rest from "./rest";
+import { Screen } from "./screen";
+import { sessionAddress, streamUrl, wantedSession } from "./session-url";
+import { statusText } from "./status-text";
+import type { Connection } from "./stream";
+import { Toasts } from "./toasts";
+import { describeChange, INITIAL, type ViewState } from "./view-state";
+import { Viewer } from "./viewer";
+
+const canvas = element("picture", HTMLCanvasElement);
+const banner = new Banner(element("banner", HTMLElement));
+const obstacle = new Obstacle(
+  element("obstacle", HTMLElement),
+  element("obstacle-text", HTMLElement),
+  element("obstacle-button", HTMLButtonElement),
+);
+const toasts = new Toasts(element("toasts", HTMLElement));
+const announcement = element("announcement", HTMLElement);
+const statusLine = element("status", HTMLElement);
+const problems: string[] = [];
+let session: string | null = null;
+let viewer: Viewer | null = null;
+
+const screen = new Screen(canvas, (size) => viewer?.resize(size));
+const panel = new Panel(element("panel", HTMLElement), {
+  perform,
+  choosePreset: ({ scene }) => viewer?.send({ type: "set_scene", scene }),
+  saveScene: () => attempt(saveScene),
+  openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
+  openMesh: () => chooseFile(MESH_TYPES, (file) => attempt(() => openMesh(file))),
+  newSession: startAnew,
+});
+listenToKeys(window, perform);
+listenToPointers(
+  canvas,
+  () => viewer?.state.target ?? INITIAL.target,
+  (event) => viewer?.send(event),
+);
+
+function perform({ effect }: Action): void {
+  if (effect.kind === "download") attempt(savePicture);
+  else if (!viewer) problem("There is no session yet.");
+  else if (effect.kind === "select") viewer.select(effect.target);
+  else viewer.send(effect.event(viewer.state.target));
+}
+
+/** Run what may be refused, and tell the user why. */
+function attempt(work: () => Promise<void>): void {
+  work().catch((error: unknown) => problem(error instanceof Error ? error.message : String(error)));
+}
+
+function problem(text: string): void {
+  problems.push(text);
+  toasts.problem(text);
+}
+
+async function savePicture(): Promise<void> {
+  const frame = viewer?.lastFrame;
+  if (!session || !frame) throw new Error("There is no picture yet.");
+  const clear = toasts.note("Rendering the picture at full quality\u2026");
+  try {
+    download(await rest.targa(session, frame.step), `culet-${frame.step}.tga`);
+  } finally {
+    clear();
+  }
+}
+
+async function saveScene(): Promise<void> {
+  const scene = viewer?.state.scene;
+  if (!scene) throw new Error("There is no scene yet.");
+  download(new Blob([`${JSON.stringify(scene, null, 2)}\n`], { type: "application/json" }), "scene.json");
+}
+
+async function openScene(file: File): Promise<void> {
+  viewer?.send({ type: "set_scene", scene: parseScene(await file.text(), file.name) });
+}
+
+async function openMesh(file: File): Promise<void> {
+  const clear = toasts.note(`Reading ${file.name}\u2026`);
+  const mesh = await rest.uploadMesh(file).finally(clear);
+  const shape = mesh.convex ? "convex" : "not convex";
+  toasts.finding([`${mesh.name}: ${mesh.facets} facets, ${shape}.`, ...mesh.findings].join("\n"));
+  viewer?.send({ type: "patch_scene", patch: meshPatch(viewer.state.scene, mesh.id) });
+}
+
+function startAnew(): void {
+  location.assign("/");
+}
+
+function connectionChanged(connection: Connection): void {
+  banner.show(bannerText(connection, viewer?.state.engine ?? "up"));
+  if (connection.status === "closed")
+    obstacle.show(obstacleText(connection.code, connection.reason), "Start a new session", startAnew);
+  // A gateway that was restarted may not know the session any more, and a proxy may hide its close code.
+  if (connection.status === "waiting" && session) void leaveIfUnknown(session);
+}
+
+async function leaveIfUnknown(id: string): Promise<void> {
+  try {
+    await rest.findSession(id);
+  } catch (error) {
+    if (error instanceof rest.ProblemError && error.status === 404) {
+      viewer?.stream.close(CloseCode.UNKNOWN_SESSION, error.message);
+    }
+  }
+}
+
+function stateChanged(before: ViewState, after: ViewState): void {
+  panel.update(after);
+  const change = describeChange(before, after);
+  if (change) announcement.textContent = change;
+  if (viewer) banner.show(bannerText(viewer.stream.connection, after.engine));
+}
+
+function watch(id: string): void {
+  session = id;
+  history.replaceState(null, "", sessionAddress(id));
+  viewer = new Viewer(streamUrl(location, id), {
+    show: (picture) => screen.show(picture),
+    size: () => screen.size,
+    connection: connectionChanged,
+    state: stateChanged,
+    problem,
+  });
+  panel.update(viewer.state);
+  viewer.stream.open();
+}
+
+async function start(): Promise<void> {
+  const wanted = wantedSession(location.search);
+  if (wanted.kind === "invalid") {
+    return obstacle.show(`${wanted.id} is not the id of a session.`, "Start a new session", startAnew);
+  }
+  try {
+    if (wanted.kind === "session") await rest.findSession(wanted.id);
+    watch(wanted.kind === "session" ? wanted.id : await rest.createSession(wanted.preset));
+  } catch (error) {
+    const known = error instanceof rest.ProblemError ? error : new rest.ProblemError(0, String(error));
+    banner.show(null);
+    if (wanted.kind === "session" && known.status === 404) {
+      return obstacle.show(obstacleText(CloseCode.UNKNOWN_SESSION, ""), "Start a new session", startAnew);
+    }
+    obstacle.show(known.message, "Try again", () => attempt(start));
+  }
+}
+
+setInterval(() => {
+  const now = performance.now();
+  statusLine.textContent = statusText({
+    framesPerSecond: viewer?.rate.perSecond(now) ?? 0,
+    frame: viewer?.lastFrame ?? null,
+    roundTripMs: viewer?.stream.latency.milliseconds ?? null,
+    viewers: viewer?.state.viewers ?? 1,
+  });
+}, 500);
+
+expose({
+  get session() {
+    return session;
+  },
+  get lastFrame() {
+    return viewer?.lastFrame ? header(viewer.lastFrame) : null;
+  },
+  get framesShown() {
+    return viewer?.player.shown ?? 0;
+  },
+  get outOfOrder() {
+    return viewer?.player.outOfOrder ?? 0;
+  },
+  get state() {
+    return viewer?.state ?? INITIAL;
+  },
+  get target() {
+    return viewer?.state.target ?? INITIAL.target;
+  },
+  get connection() {
+    return viewer?.stream.connection.status ?? "connecting";
+  },
+  get roundTripMs() {
+    return viewer?.stream.latency.milliseconds ?? null;
+  },
+  problems,
+});
+banner.show("Connecting\u2026");
+attempt(async () => panel.addPresets(await rest.presets()));
+attempt(start);

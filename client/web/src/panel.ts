@@ -1,0 +1,125 @@
+/** The panel: every action with its key, the state, presets and files. */
+
+import { type Controller, GUI } from "lil-gui";
+// By its path, since the package does not export it: a style sheet of our own origin instead of one that a script writes.
+import "../node_modules/lil-gui/dist/lil-gui.css";
+import { ACTIONS, type Action } from "./actions";
+import type { Target } from "./events";
+import type { Preset } from "./rest";
+import { TARGET_NAMES, type ViewState } from "./view-state";
+
+export interface PanelActions {
+  perform: (action: Action) => void;
+  choosePreset: (preset: Preset) => void;
+  saveScene: () => void;
+  openScene: () => void;
+  openMesh: () => void;
+  newSession: () => void;
+}
+
+const KEY_NAMES: Record<string, string> = {
+  arrowleft: "\u2190",
+  arrowright: "\u2192",
+  arrowup: "\u2191",
+  arrowdown: "\u2193",
+};
+
+/** "Reset the camera  [F]" */
+export function labelWithKey(action: Pick<Action, "label" | "key">): string {
+  return `${action.label}  [${KEY_NAMES[action.key] ?? action.key.toUpperCase()}]`;
+}
+
+function actionNamed(name: string): Action {
+  const action = ACTIONS.find((candidate) => candidate.name === name);
+  if (!action) throw new Error(`expected one of ${ACTIONS.map((known) => known.name).join(", ")}, got ${name}`);
+  return action;
+}
+
+const MOVES = ["left", "right", "up", "down", "in", "out"];
+const SWITCHES = { falling: "fall", mirror: "mirror", light: "sky", walls: "walls" } as const;
+const SWITCH_LABELS = { falling: "Falling", mirror: "Mirror", light: "Light sky", walls: "Walls" } as const;
+const NARROW = 640;
+
+export class Panel {
+  private readonly gui: GUI;
+  private readonly files: GUI;
+  private readonly actions: PanelActions;
+  private readonly shown = { target: "camera" as Target, falling: false, mirror: false, light: false, walls: false };
+  private readonly displays: Controller[] = [];
+  private state: ViewState | null = null;
+
+  constructor(container: HTMLElement, actions: PanelActions) {
+    this.actions = actions;
+    this.gui = new GUI({ container, title: "culet", injectStyles: false, width: 250 });
+    this.addMoves();
+    this.addSwitches();
+    this.files = this.gui.addFolder("Pictures and scenes");
+    this.addButton(this.files, actionNamed("download"));
+    this.addCommand(this.files, "Save the scene (.json)", () => actions.saveScene());
+    this.addCommand(this.files, "Open a scene\u2026", () => actions.openScene());
+    this.addCommand(this.files, "Open a mesh\u2026", () => actions.openMesh());
+    this.addCommand(this.files, "New session", () => actions.newSession());
+    if (window.innerWidth < NARROW) this.gui.close();
+  }
+
+  update(state: ViewState): void {
+    this.state = state;
+    const { target, falling, mirror, light, walls } = state;
+    Object.assign(this.shown, { target, falling, mirror, light, walls });
+    for (const display of this.displays) display.updateDisplay();
+  }
+
+  addPresets(presets: Preset[]): void {
+    const choice = { preset: "" };
+    const options = Object.fromEntries([["choose\u2026", ""], ...presets.map(({ name }) => [name, name])]);
+    const controller = this.files.add(choice, "preset", options).name("Preset");
+    const list = controller.domElement.querySelector("select");
+    for (const [index, { summary }] of presets.entries()) list?.options[index + 1]?.setAttribute("title", summary);
+    controller.onChange((name: string) => {
+      const preset = presets.find((candidate) => candidate.name === name);
+      list?.blur(); // or the next key would choose another preset
+      if (preset) this.actions.choosePreset(preset);
+    });
+  }
+
+  private addMoves(): void {
+    const folder = this.gui.addFolder("Move");
+    const targets = Object.fromEntries(
+      (["camera", "light_1", "light_2"] as const).map((target) => {
+        return [labelWithKey({ ...actionNamed(target), label: TARGET_NAMES[target] }), target];
+      }),
+    );
+    const target = folder.add(this.shown, "target", targets).name("What");
+    target.onChange((name: Target) => {
+      target.domElement.querySelector("select")?.blur();
+      this.actions.perform(actionNamed(name));
+    });
+    this.displays.push(target);
+    const buttons = MOVES.map((name) => this.addButton(folder, actionNamed(name)));
+    for (const button of buttons) button.domElement.classList.add("half");
+    this.addButton(folder, actionNamed("reset_camera"));
+  }
+
+  private addSwitches(): void {
+    const folder = this.gui.addFolder("Stone and surroundings");
+    for (const name of ["falling", "mirror", "light", "walls"] as const) {
+      const action = actionNamed(SWITCHES[name]);
+      const label = labelWithKey({ label: SWITCH_LABELS[name], key: action.key });
+      const display = folder.add(this.shown, name).name(label);
+      display.onChange(() => {
+        if (this.state) this.update(this.state); // shows what is, until the server says that it changed
+        this.actions.perform(action);
+      });
+      this.displays.push(display);
+    }
+    this.addButton(folder, actionNamed("reset_stone"));
+  }
+
+  private addButton(folder: GUI, action: Action): Controller {
+    return this.addCommand(folder, labelWithKey(action), () => this.actions.perform(action));
+  }
+
+  private addCommand(folder: GUI, label: string, act: () => void): Controller {
+    return folder.add({ act }, "act").name(label);
+  }
+}

@@ -1,0 +1,34 @@
+/** How many pixels to ask for, and where a picture goes on the canvas. */
+
+export interface Size {
+  width: number;
+  height: number;
+}
+
+/** The largest picture asked for, either way round: a full HD screen. */
+const LONG_SIDE = 1920;
+const SHORT_SIDE = 1080;
+/** The protocol's smallest. */
+const SMALLEST = 16;
+
+/** A size of device pixels within the limits, with the same aspect. */
+export function pictureSize(width: number, height: number): Size {
+  const long = Math.max(width, height, 1);
+  const short = Math.max(Math.min(width, height), 1);
+  const scale = Math.min(1, LONG_SIDE / long, SHORT_SIDE / short);
+  const pixels = (side: number) => Math.max(SMALLEST, Math.round(side * scale));
+  return { width: pixels(width), height: pixels(height) };
+}
+
+export interface Rectangle extends Size {
+  x: number;
+  y: number;
+}
+
+/** The largest centred rectangle of the picture's aspect that fits the canvas. */
+export function letterbox(picture: Size, canvas: Size): Rectangle {
+  const scale = Math.min(canvas.width / picture.width, canvas.height / picture.height);
+  const width = Math.round(picture.width * scale);
+  const height = Math.round(picture.height * scale);
+  return { x: Math.floor((canvas.width - width) / 2), y: Math.floor((canvas.height - height) / 2), width, height };
+}

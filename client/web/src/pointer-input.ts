@@ -1,0 +1,56 @@
+/** Pointer and wheel events of the canvas, summed up and sent once an animation frame. */
+
+import type { SessionEvent, Target } from "./events";
+import { Fingers, orbitBy, pinchBy, wheelBy } from "./gestures";
+
+export function listenToPointers(
+  canvas: HTMLCanvasElement,
+  targetNow: () => Target,
+  send: (event: SessionEvent) => void,
+): void {
+  const fingers = new Fingers();
+  let pending: { target: Target; yaw: number; pitch: number; forward: number } | null = null;
+
+  function flush(): void {
+    if (!pending) return;
+    const { target, yaw, pitch, forward } = pending;
+    pending = null;
+    if (yaw !== 0 || pitch !== 0) send({ type: "orbit", target, yaw, pitch });
+    if (forward !== 0) send({ type: "dolly", target, forward });
+  }
+
+  function add(yaw: number, pitch: number, forward: number): void {
+    if (!pending) {
+      pending = { target: targetNow(), yaw: 0, pitch: 0, forward: 0 };
+      requestAnimationFrame(flush);
+    }
+    pending.yaw += yaw;
+    pending.pitch += pitch;
+    pending.forward += forward;
+  }
+
+  canvas.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    canvas.setPointerCapture(event.pointerId);
+    canvas.focus({ preventScroll: true });
+    fingers.down(event.pointerId, event.clientX, event.clientY);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const motion = fingers.move(event.pointerId, event.clientX, event.clientY);
+    if (!motion) return;
+    const side = Math.min(canvas.clientWidth, canvas.clientHeight);
+    const turn = orbitBy(motion.dx, motion.dy, side, targetNow());
+    add(turn.yaw, turn.pitch, pinchBy(motion.spread, targetNow()).forward);
+  });
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
+    canvas.addEventListener(end, (event) => fingers.up(event.pointerId));
+  }
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault(); // or a pinch on a touchpad would zoom the page
+      add(0, 0, wheelBy(event.deltaY, event.deltaMode, targetNow()).forward);
+    },
+    { passive: false },
+  );
+}

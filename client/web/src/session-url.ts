@@ -1,0 +1,26 @@
+/** What the page's address says about the session, and where its stream is. */
+
+/** An id as the gateway makes them; anything else in the address is treated as an unknown session. */
+const ID = /^[0-9a-f]{32}$/;
+
+export type Wanted =
+  | { kind: "session"; id: string }
+  | { kind: "new"; preset: string | undefined }
+  | { kind: "invalid"; id: string };
+
+export function wantedSession(search: string): Wanted {
+  const query = new URLSearchParams(search);
+  const id = query.get("session");
+  if (id !== null) return ID.test(id) ? { kind: "session", id } : { kind: "invalid", id };
+  return { kind: "new", preset: query.get("preset") ?? undefined };
+}
+
+/** The address that others may watch the session at. */
+export function sessionAddress(id: string): string {
+  return `/?session=${id}`;
+}
+
+export function streamUrl(location: Pick<Location, "protocol" | "host">, id: string): string {
+  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  return `${scheme}//${location.host}/api/sessions/${id}/stream`;
+}

@@ -1,0 +1,35 @@
+/** The status line's words. */
+
+import { Flag, type Frame } from "@culet/protocol/frame";
+import { viewersText } from "./view-state";
+
+export interface Status {
+  framesPerSecond: number;
+  frame: Omit<Frame, "payload"> | null;
+  roundTripMs: number | null;
+  viewers: number;
+}
+
+/** At most three significant digits before it gets noisy: 0.12, 1.75, 31.5, 2049. */
+export function milliseconds(value: number): string {
+  return value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(2);
+}
+
+export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
+  const parts: string[] = [];
+  if (frame) {
+    const still = framesPerSecond === 0 && frame.flags & Flag.FINAL;
+    const { simulateMs, renderMs, encodeMs } = frame;
+    parts.push(still ? "still picture" : `${framesPerSecond.toFixed(1)} frames/s`);
+    parts.push(
+      `server ${milliseconds(simulateMs + renderMs + encodeMs)} ms (simulate ${milliseconds(simulateMs)}, ` +
+        `render ${milliseconds(renderMs)}, encode ${milliseconds(encodeMs)})`,
+    );
+  } else parts.push("waiting for the first picture");
+  if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
+  if (frame) {
+    parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
+  }
+  parts.push(viewersText(viewers));
+  return parts.join(" \u00b7 ");
+}

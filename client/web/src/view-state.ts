@@ -1,0 +1,78 @@
+/** What the page knows of its session: an immutable value, changed by notices. */
+
+import type { JsonObject, Notice } from "@culet/protocol/messages";
+import type { Target } from "./events";
+
+export interface ViewState {
+  target: Target;
+  scene: JsonObject | null;
+  falling: boolean;
+  mirror: boolean;
+  light: boolean;
+  walls: boolean;
+  viewers: number;
+  engine: "down" | "up";
+}
+
+export const INITIAL: ViewState = {
+  target: "camera",
+  scene: null,
+  falling: false,
+  mirror: false,
+  light: false,
+  walls: false,
+  viewers: 1,
+  engine: "up",
+};
+
+/** The `kind` of the scene's floor, walls or environment, if it has one. */
+function kind(scene: JsonObject, part: "floor" | "walls" | "environment"): unknown {
+  const value = scene[part];
+  return typeof value === "object" && value !== null ? (value as JsonObject).kind : undefined;
+}
+
+export function withNotice(state: ViewState, notice: Notice): ViewState {
+  switch (notice.type) {
+    case "state": {
+      const { scene, falling } = notice;
+      const walls = kind(scene, "walls") ?? "none";
+      const mirror = kind(scene, "floor") === "mirror" || walls === "mirror";
+      return {
+        ...state,
+        scene,
+        falling,
+        mirror,
+        light: kind(scene, "environment") === "light",
+        walls: walls !== "none",
+      };
+    }
+    case "viewers":
+      return { ...state, viewers: notice.count };
+    case "engine":
+      return { ...state, engine: notice.status };
+    case "hello":
+      return { ...state, engine: "up" };
+    default:
+      return state;
+  }
+}
+
+export const TARGET_NAMES: Record<Target, string> = { camera: "camera", light_1: "red light", light_2: "blue light" };
+
+/** What changed, in words for those who cannot see it; empty if nothing worth saying. */
+export function describeChange(before: ViewState, after: ViewState): string {
+  const said: string[] = [];
+  if (before.target !== after.target) said.push(`moving the ${TARGET_NAMES[after.target]}`);
+  if (before.scene && after.scene) {
+    if (before.falling !== after.falling) said.push(after.falling ? "the stone falls" : "the stone is paused");
+    if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");
+    if (before.light !== after.light) said.push(after.light ? "light sky" : "dark sky");
+    if (before.walls !== after.walls) said.push(after.walls ? "walls shown" : "walls hidden");
+  }
+  if (before.viewers !== after.viewers) said.push(viewersText(after.viewers));
+  return said.join(", ");
+}
+
+export function viewersText(count: number): string {
+  return count === 1 ? "1 viewer" : `${count} viewers`;
+}

@@ -1,0 +1,89 @@
+/** One session on this page: stream, frames and state together. */
+
+import type { Frame } from "@culet/protocol/frame";
+import type { ControlEvent, Notice } from "@culet/protocol/messages";
+import type { Target } from "./events";
+import { FramePlayer } from "./frame-player";
+import { FrameRate } from "./frame-rate";
+import type { Size } from "./picture-size";
+import { type Connection, Stream } from "./stream";
+import { INITIAL, type ViewState, withNotice } from "./view-state";
+
+export interface ViewerListener {
+  show: (picture: ImageBitmap) => void;
+  size: () => Size;
+  connection: (connection: Connection) => void;
+  state: (before: ViewState, after: ViewState) => void;
+  problem: (text: string) => void;
+}
+
+export class Viewer {
+  readonly stream: Stream;
+  readonly rate = new FrameRate();
+  readonly player: FramePlayer<ImageBitmap>;
+  lastFrame: Frame | null = null;
+  state: ViewState = INITIAL;
+  private readonly listener: ViewerListener;
+
+  constructor(url: string, listener: ViewerListener) {
+    this.listener = listener;
+    this.player = new FramePlayer<ImageBitmap>({
+      decode: (encoded) => createImageBitmap(encoded),
+      show: (picture, frame) => this.show(picture, frame),
+      acknowledge: (frame) => this.stream.send({ type: "ack", sequence: frame.sequence }),
+      fail: (frame, reason) => listener.problem(`Picture ${frame.sequence} cannot be decoded: ${reason}`),
+    });
+    this.stream = new Stream(url, {
+      connection: (connection) => this.connected(connection),
+      notice: (notice) => this.heard(notice),
+      frame: (frame) => void this.player.push(frame),
+      malformed: (error) => listener.problem(`The server sent what this page does not understand: ${error.message}`),
+    });
+    document.addEventListener("visibilitychange", () => {
+      this.sendVisibility();
+      if (!document.hidden) this.stream.retryNow();
+    });
+    window.addEventListener("online", () => this.stream.retryNow());
+  }
+
+  send(event: ControlEvent): void {
+    if (!this.stream.send(event)) this.listener.problem("Not connected: nothing was sent.");
+  }
+
+  resize(size: Size): void {
+    this.stream.send({ type: "resize", ...size });
+  }
+
+  select(target: Target): void {
+    this.become({ ...this.state, target });
+  }
+
+  private connected(connection: Connection): void {
+    if (connection.status === "open") {
+      this.resize(this.listener.size());
+      this.sendVisibility();
+    }
+    this.listener.connection(connection);
+  }
+
+  private sendVisibility(): void {
+    this.stream.send({ type: "visibility", visible: !document.hidden });
+  }
+
+  private heard(notice: Notice): void {
+    if (notice.type === "problem") this.listener.problem(notice.message);
+    else this.become(withNotice(this.state, notice));
+  }
+
+  private become(state: ViewState): void {
+    const before = this.state;
+    this.state = state;
+    if (before !== state) this.listener.state(before, state);
+  }
+
+  private show(picture: ImageBitmap, frame: Frame): void {
+    this.lastFrame = frame;
+    this.rate.shown(performance.now());
+    this.listener.show(picture);
+  }
+}

@@ -1,0 +1,13 @@
+import { fileURLToPath } from "node:url";
+import { defineConfig } from "vitest/config";
+
+const protocol = fileURLToPath(new URL("../../protocol/typescript", import.meta.url));
+const server = "http://127.0.0.1:8000";
+
+export default defineConfig({
+  resolve: { alias: { "@culet/protocol": protocol } },
+  build: { target: "es2022" },
+  // `npm run dev` serves the page with hot reload and passes the rest on to a running `culet serve`.
+  server: { proxy: { "/api": { target: server, ws: true } } },
+  test: { include: ["src/**/*.test.ts"], restoreMocks: true },
+});
