@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import logging
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from culet.errors import CuletError
+from culet.errors import CuletError, MeshError, SceneError
+from culet_client.errors import ClientError
+
+if TYPE_CHECKING:
+    from culet.geometry.stone import Stone
+    from culet.scene import Scene
 
 app = typer.Typer(
     help="Dispersive gemstones, traced exactly on the processor and streamed to thin clients.",
@@ -32,12 +39,78 @@ Origins = Annotated[
 ]
 
 
+SceneFile = Annotated[
+    Path | None,
+    typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
+]
+Preset = Annotated[str | None, typer.Option(help="Start from a named scene instead; a wrong name lists them.")]
+MeshFile = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
+]
+Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
+SessionId = Annotated[
+    str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
+]
+Folder = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder for the frames; made if missing.")]
+Patience = Annotated[float, typer.Option(min=0.1, help="Seconds to wait for a frame before giving up.")]
+
+
+@app.command()
+def render(
+    scene: SceneFile = None,
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="FILE", help="Picture: .tga .png .jpg, or linear: .exr .npy")
+    ] = Path("out.png"),
+    width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 640,
+    height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 360,
+    samples: Annotated[
+        int | None, typer.Option(min=1, max=65536, help="Samples per pixel; without it, the scene's.")
+    ] = None,
+    preset: Preset = None,
+    mesh: MeshFile = None,
+) -> None:
+    """Render a still picture into a file."""
+    from culet.still_file import render_to_file, still_format
+
+    with errors_in_one_line():
+        still_format(out)
+        settings, stone = _subject(scene, preset, mesh)
+        wanted = samples or settings.sampling.samples_per_pixel
+        with _progress(f"rendering {out.name}") as advance:
+            report = render_to_file(settings, stone, out, width, height, wanted, advance)
+        typer.echo(report)
+
+
+@app.command()
+def simulate(
+    scene: SceneFile = None,
+    seconds: Annotated[float, typer.Option(min=0, help="Simulated time.")] = 5,
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="The stone's path: .csv .json .npz")] = Path(
+        "path.csv"
+    ),
+    preset: Preset = None,
+    mesh: MeshFile = None,
+) -> None:
+    """Let the stone fall and write its path, step by step: position, orientation, velocities, energy."""
+    from culet.simulation.paths import record as record_path
+    from culet.simulation.paths import write
+
+    with errors_in_one_line():
+        settings, stone = _subject(scene, preset, mesh)
+        if stone is None:
+            raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
+        with _progress("simulating") as advance:
+            path = record_path(settings, stone, seconds, advance)
+        write(path, out)
+        typer.echo(f"{out}: {len(path.time)} states, {path.time[-1]:g} s")
+
+
 @contextlib.contextmanager
 def errors_in_one_line() -> Iterator[None]:
-    """A CuletError is the user's to read: one line on stderr and exit code 1, no traceback."""
+    """Errors on purpose are the user's to read: one line on stderr and exit code 1, no traceback."""
     try:
         yield
-    except CuletError as error:
+    except (CuletError, ClientError) as error:
         typer.echo(f"culet: {error}", err=True)
         raise typer.Exit(1) from None
 
@@ -90,3 +163,84 @@ def engine(control: Control, frames: Frames) -> None:
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
         run(control, frames)
+
+
+@app.command()
+def view(
+    endpoint: Endpoint,
+    session: SessionId,
+    frames: Annotated[int, typer.Option(min=1, help="How many frames to take.")] = 10,
+    out: Folder = Path("frames"),
+    timeout: Patience = 10,
+) -> None:
+    """Take the latest frames of a session, straight from the engine, into a folder."""
+    from culet_client.view import view as view_frames
+
+    with errors_in_one_line():
+        count = view_frames(endpoint, session, frames, out, timeout_seconds=timeout)
+        typer.echo(f"{out}: {count} frames")
+
+
+@app.command()
+def record(
+    endpoint: Endpoint,
+    session: SessionId,
+    seconds: Annotated[float, typer.Option(min=0, help="How long, counted from the first frame.")] = 10,
+    out: Folder = Path("frames"),
+    timeout: Patience = 10,
+) -> None:
+    """Take every frame of a session that comes in some seconds, straight from the engine, into a folder."""
+    from culet_client.view import record as record_frames
+
+    with errors_in_one_line():
+        count = record_frames(endpoint, session, seconds, out, timeout_seconds=timeout)
+        typer.echo(f"{out}: {count} frames")
+
+
+def _subject(file: Path | None, preset: str | None, mesh: Path | None) -> tuple[Scene, Stone | None]:
+    """The scene and its stone, from what the user named."""
+    from culet.geometry.load import stone_of
+    from culet.scene import Scene
+    from culet.scene import preset as preset_scene
+
+    if file is not None and preset is not None:
+        raise SceneError("expected a scene file or a preset, got both")
+    scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
+    meshes = {}
+    if mesh is not None:
+        from culet.geometry.mesh import stone_from_mesh
+
+        try:
+            data = mesh.read_bytes()
+        except OSError as error:
+            raise MeshError(f"cannot read {mesh}: {error.strerror}") from error
+        meshes["file"] = stone_from_mesh(data, mesh.suffix.lower().lstrip("."), name=mesh.stem)
+        for finding in meshes["file"].findings:
+            typer.echo(f"{mesh}: {finding}", err=True)
+        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": "file"})
+        scene = scene.model_copy(update={"stones": (stone,)})
+    return scene, stone_of(scene.stones[0], meshes) if scene.stones else None
+
+
+def _json(file: Path | None) -> object:
+    """What a JSON file holds; nothing named, the empty object."""
+    if file is None:
+        return {}
+    try:
+        return json.loads(sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes())
+    except OSError as error:
+        raise SceneError(f"cannot read {file}: {error.strerror}") from error
+    except ValueError as error:  # JSONDecodeError, UnicodeDecodeError
+        raise SceneError(f"{file} is not JSON: {error}") from error
+
+
+@contextlib.contextmanager
+def _progress(label: str) -> Iterator[Callable[[float], None]]:
+    """A bar on a terminal, gone when done; call it with the part done, 0 to 1."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(label, total=1.0)
+        yield lambda done: progress.update(task, completed=done)

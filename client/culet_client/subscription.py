@@ -1,0 +1,72 @@
+"""Frames of one session straight from the engine's ZeroMQ socket, without the gateway."""
+
+from __future__ import annotations
+
+import re
+from types import TracebackType
+from typing import Self
+
+import zmq
+
+from culet_client.errors import ClientError, SilenceError
+from culet_protocol.frame import Frame, FrameError
+
+FRAMES_WAITING = 64
+"""Frames that wait here when every one is wanted: two seconds at 30 frames/s."""
+HEARTBEAT_MS = 2000
+"""Between ZeroMQ's probes on tcp, so that an engine that vanished is reconnected to when it comes back."""
+
+
+class FrameSubscription:
+    """Receives a session's frames; subscribing makes the engine render, and send its latest frame at once.
+
+    With `latest_only` a slow taker skips frames (ZMQ_CONFLATE: one slot, the newest wins) and is never behind.
+    """
+
+    def __init__(self, endpoint: str, session: str, *, latest_only: bool = True) -> None:
+        """ClientError for an id that is none, or an address that cannot be connected to."""
+        if not re.fullmatch(r"[0-9a-f]{32}", session):
+            raise ClientError(f"a session's id has 32 hexadecimal digits, got {session!r}")
+        self.endpoint, self.session = endpoint, session
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.SUB)
+        self._socket.setsockopt(zmq.LINGER, 0)
+        if latest_only:
+            self._socket.setsockopt(zmq.CONFLATE, 1)
+        else:
+            self._socket.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
+        if endpoint.startswith("tcp:"):
+            self._socket.setsockopt(zmq.HEARTBEAT_IVL, HEARTBEAT_MS)
+            self._socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 2 * HEARTBEAT_MS)
+        self._socket.setsockopt(zmq.SUBSCRIBE, bytes.fromhex(session))
+        try:
+            self._socket.connect(endpoint)
+        except zmq.ZMQError as error:
+            self.close()
+            raise ClientError(
+                f"cannot connect to {endpoint!r}: {error}; expected such as tcp://127.0.0.1:5556"
+            ) from error
+
+    def receive(self, timeout_seconds: float = 10) -> Frame:
+        """The next frame (a picture at rest comes again once a second); SilenceError, ClientError for other bytes."""
+        if not self._socket.poll(int(timeout_seconds * 1000)):
+            raise SilenceError(
+                f"no frame of session {self.session} from {self.endpoint} in {timeout_seconds:g} s; "
+                f"is the engine there, and does it publish frames at this address?"
+            )
+        try:
+            return Frame.unpack(self._socket.recv())
+        except FrameError as error:
+            raise ClientError(f"{self.endpoint} sent something else than a frame: {error}") from error
+
+    def close(self) -> None:
+        """Stop receiving; nobody else watching, the engine stops rendering."""
+        self._context.destroy(linger=0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
