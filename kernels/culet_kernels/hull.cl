@@ -1,0 +1,72 @@
+// A convex stone is the intersection of its facets' half-spaces n.x <= w: no triangle edges, no epsilon, no crack
+// (Haines, Fast Ray-Convex Polyhedron Intersection, Graphics Gems II, 1991).
+#ifndef CULET_HULL
+#define CULET_HULL
+#include "parameters.cl"
+#include "vector.cl"
+
+typedef struct {
+  maskL hit;
+  realL t;
+  vec3L normal; // outward
+} crossingL;
+
+// Where a facet is parallel to the ray, its plane is crossed this many R away: far, yet finite, since the kernels are
+// built on the promise that nothing is infinite.
+#define PARALLEL ((real)1e-18)
+
+// Where a ray from outside enters. A facet that is parallel to the ray and has it outside counts as entered at infinity,
+// so that the ray misses.
+static inline crossingL hull_entry(__global const real4 *facets, int count, vec3L origin, vec3L direction, realL t_min) {
+  realL t_in = splat(-1e30f), t_out = splat(1e30f);
+  vec3L normal = vec3(splat(0), splat(0), splat(0));
+  for (int i = 0; i < count; i++) {
+    const real4 facet = facets[i];
+    const realL speed = dot_uniform(direction, facet);
+    const realL gap = facet.w - dot_uniform(origin, facet);
+    const maskL entering = speed <= 0;
+    const realL t = gap / blend(entering, fmin(speed, -PARALLEL), fmax(speed, PARALLEL));
+    const maskL later = entering & (t > t_in);
+    t_in = blend(later, t, t_in);
+    normal = blend3(later, vec3(splat(facet.x), splat(facet.y), splat(facet.z)), normal);
+    t_out = blend(entering, t_out, fmin(t_out, t));
+  }
+  const crossingL crossing = {(t_in < t_out) & (t_in >= t_min), t_in, normal};
+  return crossing;
+}
+
+// A gap below this counts as this, R: the facet that the ray has just left has a gap of rounding size, and a speed of
+// rounding size if the ray grazes it; their quotient must not win over the facet that lies ahead.
+#if IS_DOUBLE
+#define SMALLEST_GAP 1e-16
+#else
+#define SMALLEST_GAP 1e-7f
+#endif
+
+// Where a ray inside leaves. Maximises speed / gap, which is 1 / t: one division for each facet and no branch on the
+// sign, since the facets that the ray moves away from are negative and never win.
+static inline crossingL hull_exit(__global const real4 *facets, int count, vec3L origin, vec3L direction) {
+  realL nearness = splat(0);
+  vec3L normal = vec3(splat(0), splat(0), splat(0));
+  for (int i = 0; i < count; i++) {
+    const real4 facet = facets[i];
+    const realL speed = dot_uniform(direction, facet);
+    const realL gap = fma(-origin.x, splat(facet.x), fma(-origin.y, splat(facet.y), fma(-origin.z, splat(facet.z), splat(facet.w))));
+    const realL candidate = speed / fmax(gap, splat(SMALLEST_GAP));
+    const maskL nearer = candidate > nearness;
+    nearness = fmax(nearness, candidate);
+    normal = blend3(nearer, vec3(splat(facet.x), splat(facet.y), splat(facet.z)), normal);
+  }
+  const crossingL crossing = {nearness > 0, (real)1 / fmax(nearness, splat(PARALLEL)), normal};
+  return crossing;
+}
+
+// Whether the stone shades points of the room from a light: whether they lie behind all planes of its shadow volume, which
+// the host makes of the silhouette's edges (and of the lit facets, where the stone reaches through a surface).
+static inline maskL hull_shadow(__global const real4 *planes, int first, int last, vec3L point) {
+  realL excess = splat(-1e30f);
+  for (int i = first; i < last; i++) excess = fmax(excess, dot_uniform(point, planes[i]) - planes[i].w);
+  return excess <= 0;
+}
+
+#endif

@@ -1,0 +1,100 @@
+// The lane types: the only file that knows how wide a packet is and how precise a number.
+//
+// A comparison yields 1 for scalars but -1 in each component of a vector, and select() looks at the top bit of vectors
+// only (OpenCL C 3.0, 6.4.4 and 6.15.6), so masks are used through the functions below and `!`, `&`, `|` alone.
+#ifndef CULET_LANES
+#define CULET_LANES
+
+#ifndef LANES // 1, 4, 8 or 16
+#define LANES 16
+#endif
+#ifndef REAL // float or double
+#define REAL float
+#endif
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define IS_DOUBLE_float 0
+#define IS_DOUBLE_double 1
+#define IS_DOUBLE JOIN(IS_DOUBLE_, REAL)
+
+#if IS_DOUBLE
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#define MASK long
+#else
+#define MASK int
+#endif
+
+typedef REAL real;
+typedef JOIN(REAL, 4) real4;
+
+#if LANES == 1
+typedef real realL;
+typedef int intL;
+typedef int maskL;
+#define PACKET_WIDTH 1
+#define PACKET_HEIGHT 1
+#define LANE_INDEX 0
+static inline realL blend(maskL mask, realL yes, realL no) { return mask ? yes : no; }
+static inline int any_lane(maskL mask) { return mask; }
+static inline realL load_lanes(const real *from) { return *from; }
+static inline intL load_ints(const int *from) { return *from; }
+static inline void store_lanes(realL value, real *to) { *to = value; }
+static inline void store_ints(intL value, int *to) { *to = value; }
+static inline void store_mask(maskL mask, int *to) { *to = mask; }
+static inline intL count_mask(maskL mask) { return mask; }
+static inline maskL widen(intL mask) { return mask; }
+#else
+typedef JOIN(REAL, LANES) realL;
+typedef JOIN(int, LANES) intL;
+typedef JOIN(MASK, LANES) maskL;
+#if LANES == 4
+#define PACKET_WIDTH 2
+#define PACKET_HEIGHT 2
+#define LANE_INDEX (intL)(0, 1, 2, 3)
+#elif LANES == 8
+#define PACKET_WIDTH 4
+#define PACKET_HEIGHT 2
+#define LANE_INDEX (intL)(0, 1, 2, 3, 4, 5, 6, 7)
+#elif LANES == 16
+#define PACKET_WIDTH 4
+#define PACKET_HEIGHT 4
+#define LANE_INDEX (intL)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#endif
+static inline realL blend(maskL mask, realL yes, realL no) { return select(no, yes, mask); }
+static inline int any_lane(maskL mask) { return any(mask); }
+static inline realL load_lanes(const real *from) { return JOIN(vload, LANES)(0, from); }
+static inline intL load_ints(const int *from) { return JOIN(vload, LANES)(0, from); }
+static inline void store_lanes(realL value, real *to) { JOIN(vstore, LANES)(value, 0, to); }
+static inline void store_ints(intL value, int *to) { JOIN(vstore, LANES)(value, 0, to); }
+static inline void store_mask(maskL mask, int *to) { JOIN(vstore, LANES)(JOIN(convert_int, LANES)(mask), 0, to); }
+static inline intL count_mask(maskL mask) { return -JOIN(convert_int, LANES)(mask); }
+static inline maskL widen(intL mask) { return JOIN(JOIN(convert_, MASK), LANES)(mask); }
+#endif
+#define PACKET_X (LANE_INDEX % PACKET_WIDTH)
+#define PACKET_Y (LANE_INDEX / PACKET_WIDTH)
+
+#if LANES == 1
+typedef double doubleL;
+static inline doubleL to_double(realL value) { return value; }
+static inline realL ints_to_real(intL value) { return (real)value; }
+static inline doubleL ints_to_double(intL value) { return value; }
+static inline realL from_double(doubleL value) { return (real)value; }
+#else
+typedef JOIN(double, LANES) doubleL;
+static inline doubleL to_double(realL value) { return JOIN(convert_double, LANES)(value); }
+static inline realL ints_to_real(intL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
+static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, LANES)(value); }
+static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
+#endif
+
+static inline realL splat(real value) { return (realL)(value); }
+
+// Fast where the reference in double precision shows it to be exact enough, full where real is double.
+#if IS_DOUBLE
+static inline realL exp_fast(realL x) { return exp(x); }
+#else
+static inline realL exp_fast(realL x) { return native_exp(x); }
+#endif
+
+#endif

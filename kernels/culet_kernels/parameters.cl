@@ -1,0 +1,33 @@
+// What a scene's quantities are: arguments, never compiled in. The layout is mirrored by rendering/parameters.py, and a
+// test compares the two. Positions are relative to the stone's centre, in the world's axes, in units of R.
+#ifndef CULET_PARAMETERS
+#define CULET_PARAMETERS
+#include "lanes.cl"
+
+#define MAX_LIGHTS 8
+#define MAX_SURFACES 4 // the floor and three walls
+
+typedef struct {
+  double foot[3];        // the point of pixel (0, 0)'s ray that is abreast of the stone
+  double foot_column[3]; // how it moves with each column of pixels,
+  double foot_row[3];    // and with each row
+  real direction[3], direction_column[3], direction_row[3]; // the same for the ray's direction, not normalised
+  real reach;                       // from the eye to the foot, in lengths of that direction
+  real cutoff;                      // weight below which a chain ends
+  real centre[3];                   // the stone's centre in the world, from where checkers are counted
+  real eta[3];                      // index of refraction, by chain
+  real absorption[3];               // per R, by channel
+  real sky_bottom[3], sky_top[3];   // radiance, by channel
+  real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
+  real light[MAX_LIGHTS][3];        // position
+  real light_colour[MAX_LIGHTS][3]; // by channel
+  real axes[3][3];                  // columns: the stone's own axes in the world's
+  int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
+  int facets;                       // half-spaces of the stone
+  int lights;
+  int max_bounces; // interior segments of a chain, at most
+  int width, height;
+  int floor_kind, walls_kind, sky_kind, fresnel_kind, camera_inside;
+} parameters_t;
+
+#endif

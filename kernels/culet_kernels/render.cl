@@ -1,0 +1,76 @@
+// The picture: one more sample of every pixel.
+#include "trace.cl"
+
+// What each pixel of the tile sees without the stone, directly or by way of mirrors, and where its ray meets the stone.
+static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, int row, double jitter_x, double jitter_y) {
+  const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
+  hits->count = 0;
+  for (int y = 0; y < TILE; y += PACKET_HEIGHT)
+    for (int x = 0; x < TILE; x += PACKET_WIDTH) {
+      const primaryL primary = primary_rays(world.scene, column + x, row + y, jitter_x, jitter_y);
+      rayL ray = {primary.origin, primary.direction, primary.eye, splat(1)};
+      vec3L point = along(primary.origin, primary.eye, primary.direction), normal = primary.direction;
+      const maskL all = ray.weight > 0;
+      maskL meets = camera_inside ? all : !all, open = camera_inside ? !all : all;
+      maskL heading = GEOMETRY == EMPTY ? !all : open & passes_stone(ray.origin, ray.direction, ray.start);
+      radianceL radiance = black();
+      realL cut = splat(0);
+      while (any_lane(open)) {
+        if (any_lane(heading)) {
+          const crossingL entry = stone_entry(world, ray.origin, ray.direction, ray.start, heading);
+          const maskL enters = heading & entry.hit;
+          point = blend3(enters, along(ray.origin, entry.t, ray.direction), point);
+          normal = blend3(enters, entry.normal, normal);
+          meets |= enters;
+          open &= !enters;
+        }
+        heading = open;
+        const radianceL seen = gather(world, &ray, splat(1), &heading, &cut, all_channels());
+        for (int k = 0; k < 3; k++) radiance.channel[k] += seen.channel[k];
+        open = heading;
+      }
+
+      // The tile's pixels lie packet by packet, so that this is a plain store.
+      const int first = (y / PACKET_HEIGHT * (TILE / PACKET_WIDTH) + x / PACKET_WIDTH) * LANES;
+      for (int k = 0; k < 3; k++) store_lanes(radiance.channel[k], tile->radiance[k] + first);
+      store_lanes(3 * cut, tile->cut + first);
+      if (any_lane(meets)) note(hits, meets, point, ray.direction, normal, ray.weight, first);
+    }
+  fill(hits);
+}
+
+__kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
+                     __global const real4 *shadows, __global const real *tree, __global const int *links,
+                     __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
+                     __global uint *segments) {
+  const world_t world = {scene, facets, shadows, tree, links, corners};
+  const int column = get_global_id(0) * TILE, tile_row = get_global_id(1) + first_tile_row, row = tile_row * TILE;
+  tile_t tile;
+  hits_t hits;
+  pools_t pools;
+  tile.segments = (intL)(0);
+  see(world, &tile, &hits, column, row, jitter_x, jitter_y);
+
+  if (GEOMETRY != EMPTY && hits.count > 0) {
+    clear(&pools.inside);
+    clear(&pools.outside);
+    for (int number = 0; number < CHAINS; number++) {
+      const chain_t chain = {number, {CHANNELS == 3 ? 0 : number, CHANNELS}, scene->eta[number]};
+      trace(world, &tile, &pools, chain, &hits);
+    }
+  }
+
+  for (int y = 0; y < TILE && row + y < scene->height; y++)
+    for (int x = 0; x < TILE && column + x < scene->width; x++) {
+      const int pixel = (y / PACKET_HEIGHT * (TILE / PACKET_WIDTH) + x / PACKET_WIDTH) * LANES + y % PACKET_HEIGHT * PACKET_WIDTH + x % PACKET_WIDTH;
+      __global real4 *sum = image + (row + y) * scene->width + (column + x);
+      const real4 sample = (real4)(tile.radiance[0][pixel], tile.radiance[1][pixel], tile.radiance[2][pixel], tile.cut[pixel] / 3);
+      *sum = accumulate ? *sum + sample : sample;
+    }
+
+  int counts[LANES];
+  store_ints(tile.segments, counts);
+  uint total = 0;
+  for (int lane = 0; lane < LANES; lane++) total += counts[lane];
+  segments[tile_row * get_global_size(0) + get_global_id(0)] = total;
+}

@@ -1,0 +1,38 @@
+// Vectors of three lanes.
+#ifndef CULET_VECTOR
+#define CULET_VECTOR
+#include "lanes.cl"
+
+typedef struct {
+  realL x, y, z;
+} vec3L;
+
+static inline vec3L vec3(realL x, realL y, realL z) {
+  vec3L v = {x, y, z};
+  return v;
+}
+
+static inline realL dot3(vec3L a, vec3L b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+
+// With a vector that is the same in every lane.
+static inline realL dot_uniform(vec3L a, real4 b) { return fma(a.x, splat(b.x), fma(a.y, splat(b.y), a.z * b.z)); }
+
+static inline vec3L along(vec3L origin, realL t, vec3L direction) {
+  return vec3(fma(t, direction.x, origin.x), fma(t, direction.y, origin.y), fma(t, direction.z, origin.z));
+}
+
+static inline vec3L scale3(realL s, vec3L a) { return vec3(s * a.x, s * a.y, s * a.z); }
+
+static inline vec3L blend3(maskL mask, vec3L yes, vec3L no) {
+  return vec3(blend(mask, yes.x, no.x), blend(mask, yes.y, no.y), blend(mask, yes.z, no.z));
+}
+
+static inline vec3L normalise(vec3L a) { return scale3(rsqrt(dot3(a, a)), a); }
+
+// One Newton step toward unit length: enough for a vector that rounding has moved from it.
+static inline vec3L renormalise(vec3L a) { return scale3(fma((real)-0.5, dot3(a, a), (realL)((real)1.5)), a); }
+
+// a is mirrored at the plane with normal n; a_dot_n is their dot product.
+static inline vec3L reflect3(vec3L a, realL a_dot_n, vec3L n) { return along(a, (real)-2 * a_dot_n, n); }
+
+#endif

@@ -1,0 +1,85 @@
+"""An OpenCL device that is known to work."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+
+from culet.errors import DeviceError
+
+_PROBE = """
+__kernel void probe(__global float4 *a) {
+  const size_t i = get_global_id(0);
+  a[i] = sqrt(a[i]) + (float4)((float)i);
+}
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Device:
+    """A device, its context, and how many lanes a packet should have on it."""
+
+    context: Any
+    queue: Any
+    name: str
+    driver: str
+    lanes: int
+    """Of single precision; double precision has half as many."""
+    units: int
+    lock: Any = field(repr=False)
+
+    def lanes_for(self, real: type[np.floating[Any]]) -> int:
+        """Lanes of a packet in that precision."""
+        return self.lanes if real is np.float32 else max(1, self.lanes // 2)
+
+
+def open_device() -> Device:
+    """The first device, processors before others, that builds, runs and gets a small kernel right.
+
+    CULET_DEVICE, a part of a device's or platform's name, narrows the choice. Listing platforms is not enough: a driver
+    can be installed and yet fail to build anything. DeviceError says what was tried.
+    """
+    import threading
+
+    wanted = os.environ.get("CULET_DEVICE", "").lower()
+    tried: list[str] = []
+    try:
+        platforms = cl.get_platforms()
+    except cl.Error as error:
+        raise DeviceError(f"no OpenCL platform is installed ({error}); on Debian: apt-get install pocl-opencl-icd") from error
+    candidates = [device for platform in platforms for device in platform.get_devices()]
+    candidates.sort(key=lambda device: not device.type & cl.device_type.CPU)
+    for candidate in candidates:
+        name = f"{candidate.name.strip()} | {candidate.platform.version.strip()}"
+        if wanted not in name.lower() and wanted not in candidate.platform.name.lower():
+            continue
+        try:
+            context = cl.Context([candidate])
+            queue = cl.CommandQueue(context)
+            _probe(context, queue)
+        except Exception as error:  # noqa: BLE001 - drivers fail in every way; the next one may work
+            tried.append(f"{name}: {str(error).splitlines()[0]}")
+            continue
+        width = candidate.native_vector_width_float
+        lanes = max(lane for lane in (1, 4, 8, 16) if lane <= max(1, width))
+        return Device(
+            context, queue, candidate.name.strip(), candidate.platform.version.strip(), lanes,
+            candidate.max_compute_units, threading.Lock(),
+        )  # fmt: skip
+    found = "; ".join(tried) or "none matches" + (f" CULET_DEVICE={wanted!r}" if wanted else "")
+    raise DeviceError(f"no OpenCL device works ({found}); on Debian: apt-get install pocl-opencl-icd")
+
+
+def _probe(context: Any, queue: Any) -> None:  # noqa: ANN401 - pyopencl has no types
+    values = np.arange(64, dtype=np.float32)
+    buffer = cl.Buffer(context, cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR, hostbuf=values)
+    cl.Kernel(cl.Program(context, _PROBE).build(), "probe")(queue, (16,), None, buffer)
+    result = np.empty_like(values)
+    cl.enqueue_copy(queue, result, buffer)
+    expected = np.sqrt(values) + np.repeat(np.arange(16), 4)
+    if not np.allclose(result, expected, rtol=1e-5):
+        raise DeviceError(f"computes wrong: expected {expected[:4]}, got {result[:4]}")

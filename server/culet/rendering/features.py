@@ -1,0 +1,87 @@
+"""What kind of scene it is: the few, slowly changing choices that are compiled into a program."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass, fields, replace
+from enum import IntEnum
+
+from culet.geometry.stone import Stone
+from culet.rendering.projection import camera_is_inside
+from culet.optics.dispersion import channel_indices
+from culet.scene.model import Environment, Plane, Scene
+
+RUNTIME = -1
+"""The choice is left to the parameters; the program holds the code of every kind."""
+
+
+class Geometry(IntEnum):
+    """As in features.cl."""
+
+    EMPTY = 0
+    HULL = 1
+    MESH = 2
+
+
+SURFACE = {"none": 0, "matte": 1, "mirror": 2}
+SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2}
+FRESNEL = {"exact": 0, "schlick": 1}
+
+
+@dataclass(frozen=True)
+class Features:
+    """One field for each feature of features.cl, by the same name in lower case."""
+
+    geometry: int = Geometry.HULL
+    floor: int = RUNTIME
+    walls: int = RUNTIME
+    lights: int = RUNTIME
+    sky: int = RUNTIME
+    dispersion: int = RUNTIME
+    absorption: int = RUNTIME
+    fresnel: int = RUNTIME
+    camera_inside: int = RUNTIME
+
+    @property
+    def general(self) -> Features:
+        """The program for every scene of this geometry."""
+        return Features(geometry=self.geometry)
+
+    @property
+    def options(self) -> list[str]:
+        """For the compiler; what is left to run time is not named."""
+        return [
+            f"-D{field.name.upper()}={int(value)}"
+            for field, value in zip(fields(self), astuple(self), strict=True)
+            if value != RUNTIME
+        ]
+
+    def without(self, name: str) -> Features:
+        """The same with one feature left to run time."""
+        return replace(self, **{name: RUNTIME})
+
+
+def geometry_of(stone: Stone | None) -> Geometry:
+    """How a stone is traced."""
+    if stone is None:
+        return Geometry.EMPTY
+    return Geometry.HULL if stone.convex else Geometry.MESH
+
+
+def features_of(scene: Scene, stone: Stone | None) -> Features:
+    """The program that holds what this scene needs, and nothing else."""
+    kinds: tuple[Plane, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
+    floor, walls, environment = kinds
+    surfaces = floor.kind != "none" or walls.kind != "none"
+    settings = scene.stones[0] if stone is not None else None
+    indices = channel_indices(settings.material) if settings else (1.0, 1.0, 1.0)
+    return Features(
+        geometry=geometry_of(stone),
+        floor=SURFACE[floor.kind],
+        walls=SURFACE[walls.kind],
+        lights=RUNTIME if scene.lights and surfaces else 0,
+        sky=SKY[environment.kind],
+        dispersion=int(len(set(indices)) > 1),
+        absorption=RUNTIME if settings and any(settings.absorption) else 0,
+        fresnel=FRESNEL[scene.optics.fresnel],
+        camera_inside=int(stone is not None and camera_is_inside(scene, stone)),
+    )

@@ -1,0 +1,112 @@
+"""A scene's quantities as the kernels read them: the mirror of parameters.cl."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.stone import Stone
+from culet.optics.dispersion import channel_indices
+from culet.rendering.features import FRESNEL, SKY, SURFACE
+from culet.rendering.projection import camera_is_inside, placement, project
+from culet.scene.model import (
+    ConstantEnvironment,
+    Environment,
+    GradientEnvironment,
+    HalfEnvironment,
+    LightEnvironment,
+    Scene,
+)
+
+MAX_LIGHTS = 8
+MAX_SURFACES = 4
+FLOOR_Y = -1.0
+"""Height of the floor, R."""
+WALL_DISTANCE = 8.0
+"""Of the walls from the world's origin, R."""
+WALL_NORMALS = ((0, 0, 1), (np.sqrt(0.75), 0, 0.5), (-np.sqrt(0.75), 0, 0.5))
+"""Inward: a hexagon's three far sides."""
+
+
+@cache
+def layout(real: type[np.floating[Any]]) -> np.dtype[np.void]:
+    """The struct for kernels of that precision, aligned as C does."""
+    r, d, i = np.dtype(real), np.float64, np.int32
+    return np.dtype(
+        [
+            ("foot", d, 3), ("foot_column", d, 3), ("foot_row", d, 3),
+            ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
+            ("reach", r), ("cutoff", r), ("centre", r, 3), ("eta", r, 3), ("absorption", r, 3),
+            ("sky_bottom", r, 3), ("sky_top", r, 3), ("surface", r, (MAX_SURFACES, 4)),
+            ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
+            ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("max_bounces", i),
+            ("width", i), ("height", i), ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i),
+            ("camera_inside", i),
+        ],
+        align=True,
+    )  # fmt: skip
+
+
+def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Radiance at the bottom and at the top; equal where it is the same everywhere. Dark and light are the report's."""
+    match environment:
+        case ConstantEnvironment(radiance=radiance):
+            return radiance, radiance
+        case HalfEnvironment(radiance=radiance):
+            return (0, 0, 0), radiance
+        case GradientEnvironment(bottom=bottom, top=top):
+            return bottom, top
+        case LightEnvironment():
+            return (0.7, 0.85, 1), (0.7, 0.85, 1)
+        case _:
+            return (0.05, 0.05, 0.1), (0.2, 0.2, 0.3)
+
+
+def absorption_per_radius(scene: Scene) -> tuple[float, ...]:
+    """Absorption coefficients by channel, per R; where the stone has a size they are given per millimetre."""
+    stone = scene.stones[0]
+    return tuple(a * (stone.size_mm if stone.size_mm is not None else 1) for a in stone.absorption)
+
+
+def room_surfaces(centre: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(4, 4) floor and walls as inward normal and offset, relative to the stone's centre."""
+    normals = np.array([(0, 1, 0), *WALL_NORMALS], dtype=float)
+    offsets = np.array([FLOOR_Y, *[-WALL_DISTANCE] * 3]) - normals @ centre
+    return np.column_stack([normals, offsets])
+
+
+def parameters(
+    scene: Scene, stone: Stone | None, width: int, height: int, shadow_start: NDArray[np.int32], real: type[np.floating[Any]]
+) -> NDArray[np.void]:
+    """One struct; every position is relative to the stone's centre, subtracted in double precision."""
+    p = np.zeros((), layout(real))
+    centre, rotation = placement(scene)
+    projection = project(scene, width, height)
+    p["foot"], p["foot_column"], p["foot_row"] = projection.foot
+    p["direction"], p["direction_column"], p["direction_row"] = projection.direction
+    p["reach"] = projection.reach
+    p["cutoff"] = scene.optics.cutoff
+    p["centre"] = centre
+    p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
+    p["surface"] = room_surfaces(centre)
+    for number, light in enumerate(scene.lights):
+        p["light"][number] = np.array(light.position) - centre
+        p["light_colour"][number] = light.colour
+    p["lights"] = len(scene.lights)
+    p["axes"] = rotation
+    p["shadow_start"][: len(shadow_start)] = shadow_start
+    p["max_bounces"] = scene.optics.max_bounces
+    p["width"], p["height"] = width, height
+    p["floor_kind"], p["walls_kind"] = SURFACE[scene.floor.kind], SURFACE[scene.walls.kind]
+    p["sky_kind"] = SKY[scene.environment.kind]
+    p["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
+    p["eta"] = 1
+    if stone is not None:
+        p["eta"] = channel_indices(scene.stones[0].material)
+        p["absorption"] = absorption_per_radius(scene)
+        p["facets"] = len(stone.planes)
+        p["camera_inside"] = camera_is_inside(scene, stone)
+    return p

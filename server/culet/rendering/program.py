@@ -1,0 +1,102 @@
+"""Programs by features: built once, ready when they have been launched, made in the background while others serve."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+import culet_kernels
+import numpy as np
+import pyopencl as cl
+
+from culet.errors import DeviceError
+from culet.rendering.device import Device
+from culet.rendering.features import Features
+
+FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What names a program besides its features."""
+
+    kernel: str = "render"
+    lanes: int = 16
+    real: type[np.floating[Any]] = np.float32
+    tile: int = 32
+
+    @property
+    def options(self) -> list[str]:
+        """For the compiler."""
+        return [f"-DLANES={self.lanes}", f"-DREAL={'double' if self.real is np.float64 else 'float'}", f"-DTILE={self.tile}"]
+
+
+def build(device: Device, name: str, options: list[str]) -> Any:  # noqa: ANN401 - pyopencl has no types
+    """Compile one source file; DeviceError carries the compiler's words."""
+    try:
+        return cl.Program(device.context, culet_kernels.source(name)).build([*FLAGS, *options])
+    except cl.Error as error:
+        raise DeviceError(f"{name} does not build with {' '.join(options)}:\n{error}") from error
+
+
+class Programs:
+    """Kernels by features and variant, for one device.
+
+    PoCL makes machine code at the first launch, for that shape of work-group; so a kernel counts as ready when it has
+    been launched once.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self._ready: dict[tuple[Features, Variant], Any] = {}
+        self._making: set[tuple[Features, Variant]] = set()
+        self._lock = threading.Lock()
+        self._build_lock = threading.Lock()
+
+    def exact(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+        """The kernel for just these features; waits for the compiler if need be."""
+        key = features, variant
+        with self._build_lock:
+            if key not in self._ready:
+                kernel = self._make(features, variant)
+                with self._lock:
+                    self._ready[key] = kernel
+        return self._ready[key]
+
+    def best(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+        """The kernel for these features if it is ready; else the general one, while the special one is made."""
+        key = features, variant
+        with self._lock:
+            if key in self._ready:
+                return self._ready[key]
+            if key not in self._making:
+                self._making.add(key)
+                threading.Thread(target=self._make_ready, args=key, name="culet-compile", daemon=True).start()
+        return self.exact(features.general, variant)
+
+    def _make_ready(self, features: Features, variant: Variant) -> None:
+        try:
+            self.exact(features, variant)
+        finally:
+            with self._lock:
+                self._making.discard((features, variant))
+
+    def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+        program = build(self._device, "render.cl", [*variant.options, *features.options])
+        kernel = cl.Kernel(program, variant.kernel)
+        warm_up(self._device, kernel, variant)
+        return cl.Kernel(program, variant.kernel)
+
+
+def warm_up(device: Device, kernel: Any, variant: Variant) -> None:  # noqa: ANN401
+    """Launch once on one tile, a picture of no pixels, in a queue of its own."""
+    from culet.rendering.parameters import layout
+
+    queue = cl.CommandQueue(device.context)
+    flags = cl.mem_flags.READ_WRITE
+    scene = cl.Buffer(device.context, flags | cl.mem_flags.COPY_HOST_PTR, hostbuf=np.zeros((), layout(variant.real)))
+    scratch = cl.Buffer(device.context, flags, 1024)
+    args = (scratch, scene, *[scratch] * 5, np.float64(0), np.float64(0), np.int32(0), np.int32(0), scratch)
+    kernel(queue, (1, 1), (1, 1), *args)
+    queue.finish()
