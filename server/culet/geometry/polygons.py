@@ -22,7 +22,7 @@ def fan(polygons: Sequence[Sequence[int]]) -> tuple[NDArray[np.int32], NDArray[n
 
 
 def loops(edges: NDArray[np.int64]) -> list[list[int]] | None:
-    """Closed loops that directed edges (E, 2) form; None if a vertex begins more than one edge, or an end stays open."""
+    """Closed loops that directed edges (E, 2) form; None if a vertex begins two of them, or an end stays open."""
     following = {int(a): int(b) for a, b in edges}
     if len(following) != len(edges):
         return None

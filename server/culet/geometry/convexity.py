@@ -1,0 +1,146 @@
+"""Is a closed surface convex? And if so: its facets and corners, from its hull."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from culet.errors import MeshError
+from culet.geometry.facets import FLATNESS, bend, facets_of, neighbours, planes_of
+from culet.geometry.mass import surface_area
+from culet.geometry.polygons import fan, loops
+from culet.geometry.surface import Points, Triangles
+
+DENT = 1e-4
+"""A surface that stays within this of its hull, in units of its mean thickness 3 V / A, is convex and the hull is taken:
+coordinates of four digits leave such dents in every quad. Larger fills what was carved; smaller sends rounded files of
+convex stones to the slower triangles, with creases in their facets."""
+
+_CHUNK = 1 << 22
+"""Products of vertices and planes held at once, 32 MiB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Polyhedron:
+    """A convex surface with its facets."""
+
+    vertices: Points
+    triangles: NDArray[np.int32]
+    facet_of_triangle: NDArray[np.int32]
+    planes: NDArray[np.float64]
+    """(F, 4), no vertex outside any."""
+    dent: float
+    """How deep the source lay below this surface, R."""
+
+
+@dataclass(frozen=True)
+class Dent:
+    """Why a surface is not convex."""
+
+    depth: float
+    """R; of the deepest dent that was measured."""
+
+
+def convex_form(vertices: Points, triangles: Triangles, volume: float) -> Polyhedron | Dent:
+    """Decide, for a closed, outward wound surface of about unit radius.
+
+    Three things together make it convex: no edge is concave, every vertex lies on the hull, and the volume is the
+    hull's, each to within DENT. None alone would do: a fine, wide dimple has edges that are nearly flat, and a cube
+    wound twice round itself has all its vertices on the hull.
+    """
+    area = surface_area(vertices, triangles)
+    limit = max(FLATNESS, DENT * 3 * volume / area)
+    pairs, corners = neighbours(triangles)
+    edge = float(bend(vertices, corners).max(initial=0.0))
+    if edge > limit:
+        return Dent(edge)
+    try:
+        hull = ConvexHull(vertices)
+    except QhullError as error:
+        raise MeshError("the mesh is flat: its vertices lie in one plane") from error
+    mean_depth = abs(float(hull.volume) - volume) / area
+    if mean_depth > limit:
+        return Dent(mean_depth)
+    below = _deepest(vertices, hull, limit)
+    if below > limit:
+        return Dent(below)
+    dent = max(edge, below)
+    return _from_hull(vertices, hull, max(FLATNESS, 2 * dent), dent)
+
+
+def _deepest(vertices: Points, hull: ConvexHull, limit: float) -> float:
+    """How far below the hull its farthest vertex lies; stops early beyond the limit."""
+    buried = np.ones(len(vertices), np.bool_)
+    buried[hull.vertices] = False
+    inner = vertices[buried]
+    equations = np.unique(np.round(hull.equations, 12), axis=0)
+    deepest = 0.0
+    step = max(1, _CHUNK // len(equations))
+    for start in range(0, len(inner), step):
+        heights = inner[start : start + step] @ equations[:, :3].T + equations[:, 3]
+        deepest = max(deepest, float(-heights.max(axis=1).min()))
+        if deepest > limit:
+            break
+    return deepest
+
+
+def _from_hull(vertices: Points, hull: ConvexHull, tolerance: float, dent: float) -> Polyhedron:
+    simplices = hull.simplices.astype(np.int64)
+    a, b, c = (vertices[simplices[:, k]] for k in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    simplices[inward] = simplices[inward][:, ::-1]
+    facet = facets_of(vertices, simplices, tolerance)
+    polygons = _polygons(simplices, facet)
+    if polygons is None:  # facets that rounding ties into knots stay as the hull has them
+        triangles, owner = simplices, facet.astype(np.int32)
+    else:
+        fans, owner = fan(polygons)
+        triangles = fans.astype(np.int64)
+    used, compact = np.unique(triangles, return_inverse=True)
+    triangles, points = compact.reshape(-1, 3), vertices[used]
+    planes = planes_of(vertices, simplices, facet, int(facet.max()) + 1)
+    planes[:, 3] = _support(planes[:, :3], vertices[hull.vertices])
+    own = np.full(len(planes), np.inf)
+    np.minimum.at(own, owner, np.einsum("tkj,tj->tk", points[triangles], planes[owner, :3]).min(axis=1))
+    gap = float((planes[:, 3] - own).max())
+    if not gap <= 4 * tolerance:
+        raise MeshError(f"the convex mesh is not the intersection of its facets: they stand off by {gap:.2g} R")
+    return Polyhedron(points, triangles.astype(np.int32), owner, planes, dent)
+
+
+def _support(normals: Points, points: Points) -> NDArray[np.float64]:
+    """(F,) the largest n.x over all points."""
+    step = max(1, _CHUNK // len(points))
+    return np.concatenate([(normals[k : k + step] @ points.T).max(axis=1) for k in range(0, len(normals), step)])
+
+
+def _polygons(triangles: Triangles, facet: NDArray[np.int64]) -> list[list[int]] | None:
+    """Each facet's corners in order: the ends of its boundary that at least three facets share.
+
+    None if a facet's boundary is not one simple loop of three corners or more.
+    """
+    count = int(triangles.max()) + 1
+    directed = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    owner = np.tile(facet, 3)
+    key = directed[:, 0] * count + directed[:, 1]
+    order = np.argsort(key)
+    across = owner[order[np.searchsorted(key[order], directed[:, 1] * count + directed[:, 0])]]
+    border = owner != across
+    directed, owner = directed[border], owner[border]
+    meeting = np.unique(np.column_stack([directed.ravel(), np.repeat(owner, 2)]), axis=0)
+    corner = np.bincount(meeting[:, 0], minlength=count) >= 3
+    order = np.argsort(owner, kind="stable")
+    bounds = np.searchsorted(owner[order], np.arange(int(facet.max()) + 2))
+    polygons = []
+    for k in range(len(bounds) - 1):
+        ring = loops(directed[order[bounds[k] : bounds[k + 1]]])
+        if ring is None or len(ring) != 1:
+            return None
+        polygon = [v for v in ring[0] if corner[v]]
+        if len(polygon) < 3:
+            return None
+        polygons.append(polygon)
+    return polygons

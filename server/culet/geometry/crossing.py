@@ -1,0 +1,138 @@
+"""Does a surface cross itself? Every pair of triangles that may meet, found by a tree of boxes, tested exactly enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.errors import TooLargeError
+from culet.geometry.surface import Points, Triangles
+
+DEPTH = 1e-6
+"""Triangles cross if a side of one passes through the other with both ends farther than this from its plane, in units of
+R. Less is what single precision makes of surfaces that only touch; more hides walls that pass through each other."""
+
+PAIRS_LIMIT = 30_000_000
+"""Box pairs looked at, at most: some seconds. A surface of 200 000 triangles needs about 5 million."""
+
+_INSIDE = 1e-9
+"""How far outside a triangle, relative to its area, a side may pass and still count: sides meet sides in symmetric
+shapes exactly."""
+
+_CHUNK = 200_000
+
+
+def crossing_triangles(vertices: Points, triangles: Triangles) -> tuple[int, int] | None:
+    """The first pair found that crosses, or overlaps within one plane; None if there is none.
+
+    TooLargeError if the triangles' boxes overlap so much that the search would not end in time.
+    """
+    corners = vertices[triangles]
+    for pairs in _near_pairs(corners):
+        for start in range(0, len(pairs), _CHUNK):
+            some = pairs[start : start + _CHUNK]
+            hit = _cross(corners, triangles, some) | _overlap(corners, some)
+            if hit.any():
+                a, b = some[int(hit.argmax())]
+                return int(a), int(b)
+    return None
+
+
+def _near_pairs(corners: Points) -> Iterator[NDArray[np.int64]]:
+    """(P, 2) pairs of triangles whose boxes overlap, from a complete binary tree along a space-filling curve."""
+    count = len(corners)
+    order = np.argsort(_morton(corners.mean(axis=1)), kind="stable")
+    depth = max(1, int(np.ceil(np.log2(count))))
+    low = np.full((1 << depth, 3), np.inf)
+    high = np.full((1 << depth, 3), -np.inf)
+    low[:count] = corners[order].min(axis=1) - DEPTH
+    high[:count] = corners[order].max(axis=1) + DEPTH
+    levels = [(low, high)]
+    while len(levels[-1][0]) > 1:
+        low, high = levels[-1]
+        levels.append((np.minimum(low[::2], low[1::2]), np.maximum(high[::2], high[1::2])))
+    front = np.zeros((1, 2), np.int64)
+    looked_at = 0
+    for low, high in reversed(levels[:-1]):
+        left, right = 2 * front[:, 0], 2 * front[:, 1]
+        same = front[:, 0] == front[:, 1]
+        # A node with itself gives three pairs of children, two nodes give four.
+        children = [(left, right), (left, right + 1), (left + 1, right + 1), (left[~same] + 1, right[~same])]
+        front = np.concatenate([np.column_stack(pair) for pair in children])
+        looked_at += len(front)
+        if looked_at > PAIRS_LIMIT:
+            raise TooLargeError(
+                f"the mesh cannot be checked for crossing faces: its {count} triangles overlap one another's boxes "
+                f"more than {PAIRS_LIMIT} times; expected a surface whose triangles lie side by side"
+            )
+        a, b = front.T
+        front = front[((low[a] <= high[b]) & (low[b] <= high[a])).all(axis=1)]
+    yield order[front[front[:, 0] != front[:, 1]]]
+
+
+def _morton(points: Points) -> NDArray[np.int64]:
+    """Position along the Z-order curve, 20 bits an axis."""
+    size = np.ptp(points, axis=0).max() or 1.0
+    cells = ((points - points.min(axis=0)) / size * (2**20 - 1)).astype(np.int64)
+    code = np.zeros(len(points), np.int64)
+    for bit in range(20):
+        for axis in range(3):
+            code |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return code
+
+
+def _cross(corners: Points, triangles: Triangles, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether a side of one triangle passes through the other. A side that shares a corner with it cannot."""
+    hit = np.zeros(len(pairs), np.bool_)
+    for one, other in (pairs.T, pairs.T[::-1]):
+        a, b, c = (corners[one, k] for k in range(3))
+        normal = np.cross(b - a, c - a)
+        length = np.sqrt(np.einsum("ij,ij->i", normal, normal))
+        solid = length > 0
+        normal = np.divide(normal, length[:, None], out=np.zeros_like(normal), where=solid[:, None])
+        height = np.einsum("ikj,ij->ik", corners[other] - a[:, None], normal)
+        for k in range(3):
+            p, q = k, (k + 1) % 3
+            shared = np.zeros(len(pairs), np.bool_)
+            for end in (p, q):
+                shared |= (triangles[one] == triangles[other, end][:, None]).any(axis=1)
+            through = solid & ~shared & (height[:, p] * height[:, q] < 0) & (abs(height[:, [p, q]]).min(axis=1) > DEPTH)
+            rows = np.flatnonzero(through & ~hit)
+            share = height[rows, p] / (height[rows, p] - height[rows, q])
+            start, end_point = corners[other[rows], p], corners[other[rows], q]
+            point = start + share[:, None] * (end_point - start)
+            inside = np.ones(len(rows), np.bool_)
+            for u, v in ((a, b), (b, c), (c, a)):
+                turn = np.einsum("ij,ij->i", np.cross(v[rows] - u[rows], point - u[rows]), normal[rows])
+                inside &= turn >= -_INSIDE * length[rows]
+            hit[rows] |= inside
+    return hit
+
+
+def _overlap(corners: Points, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether two triangles in one plane cover common ground: no side of either separates them."""
+    first, second = corners[pairs[:, 0]], corners[pairs[:, 1]]
+    normal = np.cross(first[:, 1] - first[:, 0], first[:, 2] - first[:, 0])
+    length = np.sqrt(np.einsum("ij,ij->i", normal, normal))
+    height = abs(np.einsum("ikj,ij->ik", second - first[:, :1], normal)).max(axis=1)
+    rows = np.flatnonzero((height <= DEPTH * length) & (length > 0))
+    hit = np.zeros(len(pairs), np.bool_)
+    if not len(rows):
+        return hit
+    one, two = first[rows], second[rows]
+    unit = normal[rows] / length[rows, None]
+    apart = np.zeros(len(rows), np.bool_)
+    for source in (one, two):
+        for k in range(3):
+            side = source[:, (k + 1) % 3] - source[:, k]
+            outward = np.cross(side, unit)
+            size = np.sqrt(np.einsum("ij,ij->i", outward, outward))
+            ahead = [np.einsum("ikj,ij->ik", shape - source[:, k][:, None], outward) for shape in (one, two)]
+            slack = DEPTH * size
+            apart |= ahead[1].min(axis=1) >= ahead[0].max(axis=1) - slack
+            apart |= ahead[0].min(axis=1) >= ahead[1].max(axis=1) - slack
+            apart |= size == 0
+    hit[rows] = ~apart
+    return hit
