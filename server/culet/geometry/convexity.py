@@ -15,9 +15,9 @@ from culet.geometry.polygons import fan, loops
 from culet.geometry.surface import Points, Triangles
 
 DENT = 1e-4
-"""A surface that stays within this of its hull, in units of its mean thickness 3 V / A, is convex and the hull is taken:
-coordinates of four digits leave such dents in every quad. Larger fills what was carved; smaller sends rounded files of
-convex stones to the slower triangles, with creases in their facets."""
+"""A surface that stays within this of its hull, in units of its mean thickness 3 V / A, is convex and the hull is
+taken: coordinates of four digits leave such dents in every quad. Larger fills what was carved; smaller sends rounded
+files of convex stones to the slower triangles, with creases in their facets."""
 
 _CHUNK = 1 << 22
 """Products of vertices and planes held at once, 32 MiB."""
@@ -53,7 +53,7 @@ def convex_form(vertices: Points, triangles: Triangles, volume: float) -> Polyhe
     """
     area = surface_area(vertices, triangles)
     limit = max(FLATNESS, DENT * 3 * volume / area)
-    pairs, corners = neighbours(triangles)
+    _, corners = neighbours(triangles)
     edge = float(bend(vertices, corners).max(initial=0.0))
     if edge > limit:
         return Dent(edge)
@@ -102,7 +102,9 @@ def _from_hull(vertices: Points, hull: ConvexHull, tolerance: float, dent: float
     used, compact = np.unique(triangles, return_inverse=True)
     triangles, points = compact.reshape(-1, 3), vertices[used]
     planes = planes_of(vertices, simplices, facet, int(facet.max()) + 1)
-    planes[:, 3] = _support(planes[:, :3], vertices[hull.vertices])
+    # The hull vouches for the planes of its own triangles; those of merged ones are moved out to the farthest vertex.
+    merged = np.bincount(facet) > 1
+    planes[merged, 3] = _support(planes[merged, :3], vertices[hull.vertices])
     own = np.full(len(planes), np.inf)
     np.minimum.at(own, owner, np.einsum("tkj,tj->tk", points[triangles], planes[owner, :3]).min(axis=1))
     gap = float((planes[:, 3] - own).max())
@@ -114,7 +116,10 @@ def _from_hull(vertices: Points, hull: ConvexHull, tolerance: float, dent: float
 def _support(normals: Points, points: Points) -> NDArray[np.float64]:
     """(F,) the largest n.x over all points."""
     step = max(1, _CHUNK // len(points))
-    return np.concatenate([(normals[k : k + step] @ points.T).max(axis=1) for k in range(0, len(normals), step)])
+    farthest = np.empty(len(normals))
+    for k in range(0, len(normals), step):
+        farthest[k : k + step] = (normals[k : k + step] @ points.T).max(axis=1)
+    return farthest
 
 
 def _polygons(triangles: Triangles, facet: NDArray[np.int64]) -> list[list[int]] | None:
@@ -134,11 +139,18 @@ def _polygons(triangles: Triangles, facet: NDArray[np.int64]) -> list[list[int]]
     corner = np.bincount(meeting[:, 0], minlength=count) >= 3
     order = np.argsort(owner, kind="stable")
     bounds = np.searchsorted(owner[order], np.arange(int(facet.max()) + 2))
+    single = np.bincount(facet) == 1
+    triangle_of = np.zeros(len(single), np.int64)
+    triangle_of[facet] = np.arange(len(triangles))
     polygons = []
     for k in range(len(bounds) - 1):
-        ring = loops(directed[order[bounds[k] : bounds[k + 1]]])
-        if ring is None or len(ring) != 1:
-            return None
+        if single[k]:
+            ring = [triangles[triangle_of[k]].tolist()]
+        else:
+            found = loops(directed[order[bounds[k] : bounds[k + 1]]])
+            if found is None or len(found) != 1:
+                return None
+            ring = found
         polygon = [v for v in ring[0] if corner[v]]
         if len(polygon) < 3:
             return None

@@ -1,4 +1,4 @@
-"""Does a surface cross itself? Every pair of triangles that may meet, found by a tree of boxes, tested exactly enough."""
+"""Does a surface cross itself? Every pair of triangles that may meet is found by a tree of boxes, and tested."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from culet.errors import TooLargeError
 from culet.geometry.surface import Points, Triangles
 
 DEPTH = 1e-6
-"""Triangles cross if a side of one passes through the other with both ends farther than this from its plane, in units of
-R. Less is what single precision makes of surfaces that only touch; more hides walls that pass through each other."""
+"""Triangles cross if a side of one passes through the other with both ends farther than this from its plane, in units
+of R. Less is what single precision makes of surfaces that only touch; more hides walls that pass through each other."""
 
 PAIRS_LIMIT = 30_000_000
 """Box pairs looked at, at most: some seconds. A surface of 200 000 triangles needs about 5 million."""

@@ -39,7 +39,9 @@ def bend(vertices: Points, corners: NDArray[np.int64]) -> NDArray[np.float64]:
     six_volumes = np.einsum("ij,ij->i", np.cross(q - p, a - p), b - p)
     double_areas = [_norm(np.cross(v - u, w - u)) for u, v, w in ((p, q, a), (p, q, b), (p, a, b), (q, a, b))]
     largest = np.max(double_areas, axis=0)
-    return np.divide(six_volumes, largest, out=np.zeros_like(six_volumes), where=largest > 0)
+    heights: NDArray[np.float64] = np.zeros_like(six_volumes)
+    np.divide(six_volumes, largest, out=heights, where=largest > 0)
+    return heights
 
 
 def facets_of(vertices: Points, triangles: Triangles, tolerance: float) -> NDArray[np.int64]:
@@ -64,15 +66,16 @@ def facets_of(vertices: Points, triangles: Triangles, tolerance: float) -> NDArr
     curved = np.zeros(number, np.bool_)
     curved[label[(off > tolerance) | folded]] = True
     if not curved.any():
-        return label
+        flat_label: NDArray[np.int64] = label
+        return flat_label
     return _grown(vertices, triangles, label, curved, linked, normals, areas, thin, tolerance)
 
 
 def planes_of(vertices: Points, triangles: Triangles, facet: NDArray[np.int64], number: int) -> NDArray[np.float64]:
     """(F, 4) the area-weighted normal of each facet's triangles, and the middle of its vertices' offsets."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    area_vectors = np.cross(b - a, c - a)
-    sums = np.column_stack([np.bincount(facet, area_vectors[:, k], number) for k in range(3)])
+    area_vectors: Points = np.cross(b - a, c - a)
+    sums: Points = np.column_stack([np.bincount(facet, area_vectors[:, k], number) for k in range(3)])
     lengths = _norm(sums)
     normals = np.divide(sums, lengths[:, None], out=np.zeros_like(sums), where=lengths[:, None] > 0)
     heights = np.einsum("tkj,tj->tk", vertices[triangles], normals[facet])

@@ -20,7 +20,7 @@ class SolidIntegrals:
     """(3, 3) tensor about the centre of mass, per unit of mass; zero where the volume is 0."""
 
 
-def solid_integrals(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> SolidIntegrals:
+def solid_integrals(vertices: NDArray[np.float64], triangles: NDArray[np.integer]) -> SolidIntegrals:
     """Sum the tetrahedra between each triangle and one common apex.
 
     Of a tetrahedron with one corner at the origin and the others at a, b, c, the volume is V = a.(b x c) / 6, the first
@@ -41,7 +41,7 @@ def solid_integrals(vertices: NDArray[np.float64], triangles: NDArray[np.int32])
     return SolidIntegrals(volume, apex + offset, np.trace(covariance) * np.eye(3) - covariance)
 
 
-def surface_area(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> float:
+def surface_area(vertices: NDArray[np.float64], triangles: NDArray[np.integer]) -> float:
     """Sum of the triangles' areas."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)

@@ -1,8 +1,8 @@
 """A mesh file, made into a stone or refused.
 
-Files are untidy, and a picture of the wrong stone looks like a picture of the right one. So each step either proves what
-the renderer relies on (one closed body, wound outward, not crossing itself, convex or not), repairs it and says so in
-the stone's findings, or refuses with the defect's name.
+Files are untidy, and a picture of the wrong stone looks like a picture of the right one. So each step either proves
+what the renderer relies on (one closed body, wound outward, not crossing itself, convex or not), repairs it and says so
+in the stone's findings, or refuses with the defect's name.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from culet.errors import MeshError
 from culet.geometry.assembly import Centre, assemble
@@ -86,7 +85,7 @@ def _scaled(used: Points, vertices: Points) -> Points:
         raise MeshError("the mesh is flat: all its vertices are one point")
     middle = low / 2 + high / 2
     with np.errstate(all="ignore"):  # vertices that no face uses may be anything
-        scaled = (vertices - middle) / half
+        scaled: Points = (vertices - middle) / half
     if not np.isfinite(scaled[np.isfinite(vertices).all(axis=1)]).all():
         raise MeshError(f"the mesh has an extent of {2 * half:.3g}; expected between 1e-300 and 1e300")
     return scaled
@@ -198,8 +197,10 @@ def _finished(name: str, body: _Body, source: int, centre: Centre, findings: lis
         where = body.vertices[triangles[crossing[0]]].mean(axis=0)
         shown = ", ".join(f"{x:.3g}" for x in where)
         raise MeshError(f"the mesh crosses itself: two of its faces meet near ({shown}) in units of its radius")
-    facet: NDArray[np.int64] = facets_of(body.vertices, triangles, FLATNESS)
+    facet = facets_of(body.vertices, triangles, FLATNESS)
     planes = planes_of(body.vertices, triangles, facet, int(facet.max()) + 1)
+    if not planes[:, :3].any(axis=1).all():
+        raise MeshError("the mesh has facets without area that no repair removed; clean it and export it again")
     findings.append(f"Not convex: a dent of {form.depth:.1e} R; {source} triangles in the file, {len(planes)} facets.")
     return assemble(
         name, body.vertices, triangles.astype(np.int32), facet.astype(np.int32), planes,

@@ -13,7 +13,7 @@ from culet.errors import MeshError
 
 NEAR = 1e-6
 """Vertices within half of this, in units of the mesh's extent, are one, if without it no body is closed: what seven
-digits in a file leave of equal corners. Larger closes gaps that were meant; smaller refuses files that print six digits."""
+digits in a file leave of equal corners. Larger closes gaps that were meant; smaller refuses files of six digits."""
 
 Points = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -33,7 +33,8 @@ class Edges:
     def pairs(self) -> NDArray[np.int64]:
         """(P, 2) the two sides of each edge that has exactly two."""
         order = np.argsort(self.of_side, kind="stable")
-        return order[self.uses[self.of_side[order]] == 2].reshape(-1, 2)
+        twice: NDArray[np.int64] = order[self.uses[self.of_side[order]] == 2].reshape(-1, 2)
+        return twice
 
 
 def edges_of(triangles: Triangles) -> Edges:
@@ -72,16 +73,16 @@ def weld_near(vertices: Points, triangles: Triangles, distance: float) -> tuple[
 def without_collapsed(triangles: Triangles) -> Triangles:
     """Those with three different corners."""
     a, b, c = triangles.T
-    return triangles[(a != b) & (b != c) & (c != a)]
+    solid: Triangles = triangles[(a != b) & (b != c) & (c != a)]
+    return solid
 
 
 def without_duplicates(triangles: Triangles, *, keep_one: bool) -> Triangles:
     """Of triangles on the same three corners, one; or, unless `keep_one`, none where they come in opposite pairs."""
     corners = np.sort(triangles, axis=1)
     _, first, group, count = np.unique(corners, axis=0, return_index=True, return_inverse=True, return_counts=True)
-    if keep_one:
-        return triangles[np.sort(first)]
-    return triangles[(count == 1)[group.ravel()]]
+    kept: Triangles = triangles[np.sort(first)] if keep_one else triangles[(count == 1)[group.ravel()]]
+    return kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +107,8 @@ class Bodies:
     @property
     def closed(self) -> NDArray[np.bool_]:
         """(K,) pieces that enclose a volume."""
-        return (self.open_edges == 0) & (self.crowded_edges == 0) & ~self.one_sided
+        closed: NDArray[np.bool_] = (self.open_edges == 0) & (self.crowded_edges == 0) & ~self.one_sided
+        return closed
 
 
 def bodies_of(vertices: Points, triangles: Triangles) -> Bodies:

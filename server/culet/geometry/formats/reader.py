@@ -32,7 +32,7 @@ class Soup:
     """Meshes that the file's scene shows."""
 
 
-class _NoOtherFiles(Resolver):  # type: ignore[misc]  # trimesh ships no types
+class _NoOtherFiles(Resolver):
     """A mesh that names another file does not get it."""
 
     def __init__(self) -> None:
@@ -42,11 +42,11 @@ class _NoOtherFiles(Resolver):  # type: ignore[misc]  # trimesh ships no types
         """Refuse."""
         raise MeshError(f"the mesh asks for another file, {str(key)[:60]!r}; expected all of it in one")
 
-    def write(self, name: str, data: object) -> NoReturn:  # noqa: ARG002 - trimesh's signature
+    def write(self, name: str, data: object) -> NoReturn:
         """Refuse."""
         raise MeshError("a mesh writes nothing")
 
-    def namespaced(self, namespace: str) -> _NoOtherFiles:  # noqa: ARG002 - trimesh's signature
+    def namespaced(self, namespace: str) -> _NoOtherFiles:
         """Nothing there either."""
         return self
 
