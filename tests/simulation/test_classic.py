@@ -137,13 +137,15 @@ def test_an_impact_is_soft_up_to_the_random_torque_speed(box: Stone) -> None:
 
 
 def test_the_random_torque_is_uniform_between_its_limits() -> None:
-    draws = [kick for impacts in range(2000) for kick in random_torque(11, impacts, 5)]
-    assert len(set(draws)) == len(draws)
-    assert all(-5 <= draw < 5 for draw in draws)
-    assert max(draws) > 4.99
-    assert min(draws) < -4.99
-    # the mean of n uniform draws deviates by 10 / sqrt(12 n) = 0.046
-    assert abs(sum(draws) / len(draws)) < 3 * 10 / math.sqrt(12 * len(draws))  # measured 0.045
+    kicks = [random_torque(11, impacts, 5) for impacts in range(2000)]
+    about_x, about_z = zip(*kicks, strict=True)
+    assert not set(about_x) & set(about_z)
+    for draws in (about_x, about_z):
+        assert all(-5 <= draw < 5 for draw in draws)
+        assert max(draws) > 4.97
+        assert min(draws) < -4.97
+        # the mean of n uniform draws deviates by 10 / sqrt(12 n) = 0.065
+        assert abs(sum(draws) / len(draws)) < 3 * 10 / math.sqrt(12 * len(draws))  # measured 0.05 and -0.14
 
 
 def test_the_random_torque_depends_on_seed_and_impact_alone() -> None:
@@ -226,6 +228,9 @@ def test_a_stone_that_slides_or_turns_stays_awake(box: Stone, settings: dict[str
     assert not states(simulation(box, (0.0, 0.0, 0.0), **settings), 1)[1].asleep
 
 
-def test_a_stone_at_the_top_of_its_bounce_is_not_at_rest(box: Stone) -> None:
-    moving = simulation(box, (0.0, 3.0, 0.0), spin=(0, 0, 0))
-    assert not states(moving, 1)[1].asleep
+def test_a_stone_that_neither_slides_nor_turns_bounces_on(box: Stone) -> None:
+    path = states(simulation(box, (0.0, 0.5, 0.0), spin=(0, 0, 0), time_step=0.001, restitution=0.5), 2000)
+    assert apexes(path)[:2] == pytest.approx(
+        [0.5 * 0.25, 0.5 * 0.25**2], rel=0.05
+    )  # measured 0.8 % and 2.7 %, by the step
+    assert path[-1].asleep

@@ -83,7 +83,7 @@ def test_slerp_of_equal_poses_is_that_pose_to_the_bit() -> None:
 
 
 @pytest.mark.parametrize("fraction", [0.1, 0.5, 0.9])
-@pytest.mark.parametrize("angle", [1e-9, 1e-7, 1e-5, 0.1, 3.0])
+@pytest.mark.parametrize("angle", [1e-9, 1e-7, 1e-5, 1e-3, 0.1, 3.0])
 def test_slerp_agrees_with_scipy(angle: float, fraction: float) -> None:
     (start,) = random_rotations(1)
     step = Rotation.from_rotvec(np.array([0.6, 0.0, 0.8]) * angle)

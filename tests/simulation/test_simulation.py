@@ -160,6 +160,16 @@ def test_interpolation_meets_both_states_and_halves_the_way(box: Stone) -> None:
     assert chords[0] > 0.01
 
 
+def test_interpolation_meets_the_current_state_to_the_bit(box: Stone) -> None:
+    moving = simulation(box)
+    moving.step()
+    near_zero = moving.snapshot()
+    near_zero["previous"]["position"], near_zero["state"]["position"] = [1.0, 4.0, 0.0], [1e-17, 3.9, 0.0]
+    moving.restore(near_zero)
+    assert 1.0 + (1e-17 - 1.0) == 0  # what a + (b - a) gives
+    assert moving.interpolated(1)[0] == (1e-17, 3.9, 0.0)
+
+
 @pytest.mark.parametrize("fraction", [-0.1, 1.1, math.nan])
 def test_a_fraction_outside_the_step_is_refused(box: Stone, fraction: float) -> None:
     with pytest.raises(InputError, match="between 0 and 1"):
