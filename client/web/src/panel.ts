@@ -59,7 +59,7 @@ export class Panel {
     this.addCommand(this.files, "Open a scene\u2026", () => actions.openScene());
     this.addCommand(this.files, "Open a mesh\u2026", () => actions.openMesh());
     this.addCommand(this.files, "New session", () => actions.newSession());
-    if (window.innerWidth < NARROW) this.gui.close();
+    if (window.innerWidth < NARROW) for (const folder of [this.gui, ...this.gui.folders]) folder.close();
   }
 
   update(state: ViewState): void {
@@ -78,7 +78,9 @@ export class Panel {
     controller.onChange((name: string) => {
       const preset = presets.find((candidate) => candidate.name === name);
       list?.blur(); // or the next key would choose another preset
-      if (preset) this.actions.choosePreset(preset);
+      if (!preset) return;
+      controller.setValue(""); // what is shown may soon differ from it, and it may be wanted again
+      this.actions.choosePreset(preset);
     });
   }
 

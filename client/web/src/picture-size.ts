@@ -11,6 +11,15 @@ const SHORT_SIDE = 1080;
 /** The protocol's smallest. */
 const SMALLEST = 16;
 
+/**
+ * Device pixels of a length in css pixels. The browser's exact value says how it rounded; it is not believed further than
+ * that, since Chromium gives css pixels when it emulates another screen.
+ */
+export function deviceLength(css: number, ratio: number, exact?: number): number {
+  const pixels = css * ratio;
+  return exact !== undefined && Math.abs(exact - pixels) <= 1 ? exact : Math.round(pixels);
+}
+
 /** A size of device pixels within the limits, with the same aspect. */
 export function pictureSize(width: number, height: number): Size {
   const long = Math.max(width, height, 1);

@@ -1,6 +1,6 @@
 /** The canvas: as many device pixels as it covers, and the picture last shown. */
 
-import { letterbox, pictureSize, type Size } from "./picture-size";
+import { deviceLength, letterbox, pictureSize, type Size } from "./picture-size";
 
 export class Screen {
   private readonly context: CanvasRenderingContext2D;
@@ -52,7 +52,9 @@ export class Screen {
 
 function devicePixels(entry: ResizeObserverEntry): Size {
   const exact = entry.devicePixelContentBoxSize?.[0];
-  if (exact) return { width: exact.inlineSize, height: exact.blockSize };
   const { width, height } = entry.contentRect;
-  return { width: Math.round(width * devicePixelRatio), height: Math.round(height * devicePixelRatio) };
+  return {
+    width: deviceLength(width, devicePixelRatio, exact?.inlineSize),
+    height: deviceLength(height, devicePixelRatio, exact?.blockSize),
+  };
 }

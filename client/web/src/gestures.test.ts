@@ -1,0 +1,79 @@
+import { describe, expect, it, test } from "vitest";
+import { Fingers, orbitBy, pinchBy, wheelBy } from "./gestures";
+
+describe("fingers", () => {
+  it("drag when there is one", () => {
+    const fingers = new Fingers();
+    fingers.down(1, 10, 20);
+    expect(fingers.move(1, 15, 18)).toEqual({ dx: 5, dy: -2, spread: 1 });
+    expect(fingers.move(1, 15, 19)).toEqual({ dx: 0, dy: 1, spread: 1 });
+  });
+
+  it("pinch when there are two, and do not drag", () => {
+    const fingers = new Fingers();
+    fingers.down(1, 0, 0);
+    fingers.down(2, 100, 0);
+    expect(fingers.move(2, 200, 0)).toEqual({ dx: 0, dy: 0, spread: 2 });
+    fingers.up(1);
+    expect(fingers.move(2, 210, 0)).toEqual({ dx: 10, dy: 0, spread: 1 });
+  });
+
+  it("are ignored before they come down, after they leave, and from the third on", () => {
+    const fingers = new Fingers();
+    expect(fingers.move(1, 5, 5)).toBeNull();
+    for (const id of [1, 2, 3]) fingers.down(id, id, 0);
+    expect(fingers.move(3, 9, 9)).toBeNull();
+    fingers.up(1);
+    expect(fingers.move(1, 0, 0)).toBeNull();
+  });
+
+  it("at the same point spread by no ratio", () => {
+    const fingers = new Fingers();
+    fingers.down(1, 50, 50);
+    fingers.down(2, 50, 50);
+    expect(fingers.move(2, 60, 50)?.spread).toBe(1); // 10 over 0
+    expect(fingers.move(2, 50, 50)?.spread).toBe(1); // 0 over 10
+  });
+});
+
+describe("a drag", () => {
+  it("over the shorter side is half a turn against the finger", () => {
+    expect(orbitBy(400, 0, 400, "camera").yaw).toBeCloseTo(-Math.PI, 12);
+  });
+
+  it("downwards lifts the camera, so that the scene follows the finger", () => {
+    expect(orbitBy(0, 100, 400, "camera").pitch).toBeCloseTo(Math.PI / 4, 12);
+  });
+
+  it("moves a light with the finger", () => {
+    const { yaw, pitch } = orbitBy(100, 100, 400, "light_1");
+    expect(yaw).toBeCloseTo(Math.PI / 4, 12);
+    expect(pitch).toBeCloseTo(-Math.PI / 4, 12);
+  });
+
+  it("on a canvas without size stays finite", () => {
+    expect(Number.isFinite(orbitBy(1, 1, 0, "camera").yaw)).toBe(true);
+  });
+});
+
+test("spreading two fingers comes nearer, and closing them goes back as far", () => {
+  expect(pinchBy(2, "camera").forward).toBeGreaterThan(0);
+  expect(pinchBy(2, "camera").forward + pinchBy(0.5, "camera").forward).toBeCloseTo(0, 12);
+});
+
+describe("the wheel", () => {
+  it("moves half a radius a notch, away from the user to come nearer", () => {
+    expect(wheelBy(-100, 0, "camera")).toEqual({ type: "dolly", target: "camera", forward: 0.5 });
+    expect(wheelBy(100, 0, "light_1").forward).toBe(-0.5);
+  });
+
+  it("may count in lines or pages", () => {
+    expect(wheelBy(-3, 1, "camera").forward).toBeCloseTo(0.24, 12); // 3 lines of 16 px
+    expect(wheelBy(-0.25, 2, "camera").forward).toBeCloseTo(1, 12); // 200 px
+  });
+
+  it("is limited in bursts", () => {
+    expect(wheelBy(-1e5, 0, "camera").forward).toBe(2);
+    expect(wheelBy(1e5, 0, "camera").forward).toBe(-2);
+  });
+});

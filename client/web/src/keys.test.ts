@@ -1,0 +1,90 @@
+import { describe, expect, it, test } from "vitest";
+import { ACTIONS } from "./actions";
+import { actionOf, isTyping, type KeyPress } from "./keys";
+
+function press(code: string, key: string, more: Partial<KeyPress> = {}): string | undefined {
+  const plain = { repeat: false, ctrlKey: false, metaKey: false, altKey: false, isComposing: false };
+  return actionOf({ code, key, ...plain, ...more })?.name;
+}
+
+describe("a key press", () => {
+  // The report's section 2.
+  test.each([
+    ["KeyC", "c", "camera"],
+    ["Digit1", "1", "light_1"],
+    ["Digit2", "2", "light_2"],
+    ["ArrowLeft", "ArrowLeft", "left"],
+    ["ArrowRight", "ArrowRight", "right"],
+    ["ArrowUp", "ArrowUp", "up"],
+    ["ArrowDown", "ArrowDown", "down"],
+    ["KeyI", "i", "in"],
+    ["KeyO", "o", "out"],
+    ["KeyF", "f", "reset_camera"],
+    ["KeyP", "p", "fall"],
+    ["KeyR", "r", "reset_stone"],
+    ["KeyM", "m", "mirror"],
+    ["KeyL", "l", "sky"],
+    ["KeyW", "w", "walls"],
+    ["KeyS", "s", "download"],
+  ])("%s means what the report says", (code, key, name) => {
+    expect(press(code, key)).toBe(name);
+  });
+
+  it("on AZERTY counts by the printed letter, and by position where that prints nothing of ours", () => {
+    expect(press("Semicolon", "m")).toBe("mirror");
+    expect(press("KeyM", ",")).toBe("mirror");
+    expect(press("Digit1", "&")).toBe("light_1");
+    expect(press("KeyZ", "w")).toBe("walls");
+  });
+
+  it("whose letter and position mean two things does what is printed on it, once", () => {
+    expect(press("KeyI", "c")).toBe("camera"); // Dvorak
+  });
+
+  it("in another script counts by position", () => {
+    expect(press("KeyC", "\u0441")).toBe("camera"); // Cyrillic es
+  });
+
+  it("counts with shift or caps lock, and on the keypad", () => {
+    expect(press("KeyM", "M")).toBe("mirror");
+    expect(press("Numpad2", "2")).toBe("light_2");
+  });
+
+  it.each(["ctrlKey", "metaKey", "altKey", "isComposing"] as const)("with %s is the browser's", (modifier) => {
+    expect(press("KeyS", "s", { [modifier]: true })).toBeUndefined();
+  });
+
+  it("that is held down moves on, but toggles once", () => {
+    expect(press("ArrowUp", "ArrowUp", { repeat: true })).toBe("up");
+    expect(press("KeyP", "p", { repeat: true })).toBeUndefined();
+  });
+
+  it("of another key means nothing", () => {
+    expect(press("KeyQ", "q")).toBeUndefined();
+    expect(press("Tab", "Tab")).toBeUndefined();
+  });
+});
+
+test("no two actions share a key", () => {
+  expect(new Set(ACTIONS.map(({ key }) => key)).size).toBe(ACTIONS.length);
+  expect(new Set(ACTIONS.map(({ code }) => code)).size).toBe(ACTIONS.length);
+});
+
+test("moves are sent for the chosen target, half a radius a press", () => {
+  const sent = ACTIONS.flatMap(({ effect }) => (effect.kind === "send" ? [effect.event("light_2")] : []));
+  expect(sent).toContainEqual({ type: "translate", target: "light_2", right: -0.5, up: 0 });
+  expect(sent).toContainEqual({ type: "dolly", target: "light_2", forward: 0.5 });
+});
+
+test("keys belong to whom types, not to buttons and check boxes", () => {
+  const element = (tagName: string, type?: string) =>
+    type === undefined ? { tagName, isContentEditable: false } : { tagName, isContentEditable: false, type };
+  expect(isTyping(element("INPUT", "text"))).toBe(true);
+  expect(isTyping(element("INPUT", "number"))).toBe(true);
+  expect(isTyping(element("SELECT"))).toBe(true);
+  expect(isTyping(element("TEXTAREA"))).toBe(true);
+  expect(isTyping({ tagName: "DIV", isContentEditable: true })).toBe(true);
+  expect(isTyping(element("INPUT", "checkbox"))).toBe(false);
+  expect(isTyping(element("BUTTON", "button"))).toBe(false);
+  expect(isTyping(element("CANVAS"))).toBe(false);
+});

@@ -1,0 +1,69 @@
+import { afterEach, describe, expect, it, vi } from "vitest";
+import { createSession, findSession, ProblemError, problemText, targa, uploadMesh } from "./rest";
+
+afterEach(() => vi.unstubAllGlobals());
+
+/** What fetch was called with, and what it answers. */
+function answering(status: number, body: unknown) {
+  const calls: { path: string; init: RequestInit | undefined }[] = [];
+  vi.stubGlobal("fetch", async (path: string, init?: RequestInit) => {
+    calls.push({ path, init });
+    return new Response(typeof body === "string" ? body : JSON.stringify(body), { status });
+  });
+  return calls;
+}
+
+describe("a new session", () => {
+  it("is of the default scene, or of a preset", async () => {
+    const calls = answering(201, { id: "abc", scene: {} });
+    expect(await createSession()).toBe("abc");
+    await createSession("classic");
+    expect(calls.map(({ path }) => path)).toEqual(["/api/sessions", "/api/sessions"]);
+    expect(calls.map(({ init }) => init?.body)).toEqual(["{}", '{"preset":"classic"}']);
+    expect(calls[0]?.init?.method).toBe("POST");
+  });
+
+  it("that is refused says why", async () => {
+    answering(429, { title: "at the limit", detail: "64 sessions are open; try again later", status: 429 });
+    await expect(createSession()).rejects.toThrow("at the limit: 64 sessions are open; try again later");
+  });
+
+  it("without an id is an error", async () => {
+    answering(201, {});
+    await expect(createSession()).rejects.toThrow(ProblemError);
+  });
+});
+
+it("tells an unknown session by its status", async () => {
+  answering(404, { title: "not found", detail: "no such session" });
+  await expect(findSession("abc")).rejects.toMatchObject({ status: 404 });
+});
+
+it("says that the server cannot be reached", async () => {
+  vi.stubGlobal("fetch", () => Promise.reject(new TypeError("failed to fetch")));
+  await expect(findSession("abc")).rejects.toMatchObject({ status: 0, message: "The server cannot be reached." });
+});
+
+it("uploads a mesh as a form with one file", async () => {
+  const calls = answering(201, { id: "m", name: "cube.off", facets: 6, triangles: 12, convex: true, findings: [] });
+  expect((await uploadMesh(new File(["OFF"], "cube.off"))).facets).toBe(6);
+  const form = calls[0]?.init?.body as FormData;
+  expect((form.get("file") as File).name).toBe("cube.off");
+});
+
+it("asks for a step that a double cannot hold by all its digits", async () => {
+  const calls = answering(200, "tga");
+  await targa("abc", 2n ** 53n + 1n);
+  expect(calls[0]?.path).toBe("/api/sessions/abc/frame.tga?step=9007199254740993");
+});
+
+describe("a refusal in words", () => {
+  it("is the problem's title and detail", () => {
+    expect(problemText(422, '{"title": "unusable mesh", "detail": "it is open"}')).toBe("unusable mesh: it is open");
+    expect(problemText(422, '{"title": "unusable mesh"}')).toBe("unusable mesh");
+  });
+
+  it.each(["<html>Bad Gateway</html>", "null", "{}", ""])("falls back to the status for %j", (body) => {
+    expect(problemText(502, body)).toBe("The server answered with status 502.");
+  });
+});

@@ -1,0 +1,30 @@
+import { describe, expect, it } from "vitest";
+import { sessionAddress, streamUrl, wantedSession } from "./session-url";
+
+const ID = "0123456789abcdef0123456789abcdef";
+
+describe("the address", () => {
+  it("names a session to watch", () => {
+    expect(wantedSession(`?session=${ID}`)).toEqual({ kind: "session", id: ID });
+  });
+
+  it("names a preset for a new one, or nothing", () => {
+    expect(wantedSession("?preset=classic")).toEqual({ kind: "new", preset: "classic" });
+    expect(wantedSession("")).toEqual({ kind: "new", preset: undefined });
+  });
+
+  it.each(["", "zz", ID.toUpperCase(), `${ID}0`, "../../etc"])("does not take %j for a session", (id) => {
+    expect(wantedSession(`?session=${encodeURIComponent(id)}`)).toEqual({ kind: "invalid", id });
+  });
+
+  it("of a session is one that the page reads back", () => {
+    expect(wantedSession(sessionAddress(ID).slice(1))).toEqual({ kind: "session", id: ID });
+  });
+});
+
+it("streams by wss where the page came by https", () => {
+  expect(streamUrl({ protocol: "http:", host: "localhost:8000" }, ID)).toBe(
+    `ws://localhost:8000/api/sessions/${ID}/stream`,
+  );
+  expect(streamUrl({ protocol: "https:", host: "culet.test" }, ID)).toBe(`wss://culet.test/api/sessions/${ID}/stream`);
+});

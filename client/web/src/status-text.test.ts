@@ -1,0 +1,43 @@
+import { Flag, parseFrame } from "@culet/protocol/frame";
+import { expect, it, test } from "vitest";
+import { FrameRate } from "./frame-rate";
+import { milliseconds, statusText } from "./status-text";
+import { bytes } from "./testing/fixtures";
+
+const frame = parseFrame(bytes("jpeg.bin")); // 0.125 + 31.5 + 1.75 ms
+
+test("the status line says rate, times, size, samples and viewers", () => {
+  expect(statusText({ framesPerSecond: 24, frame, roundTripMs: 3.25, viewers: 2 })).toBe(
+    "24.0 frames/s \u00b7 server 33.4 ms (simulate 0.13, render 31.5, encode 1.75) \u00b7 round trip 3.25 ms" +
+      " \u00b7 16\u00d78 \u00b7 1 sample \u00b7 2 viewers",
+  );
+});
+
+test("a finished picture is called still, one that is late is not", () => {
+  const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
+  expect(statusText({ ...status, frame: { ...frame, flags: Flag.FINAL, samples: 64 } })).toMatch(/^still picture/);
+  expect(statusText({ ...status, frame: { ...frame, flags: 0 } })).toMatch(/^0\.0 frames\/s/);
+});
+
+test("before the first frame it says that it waits", () => {
+  expect(statusText({ framesPerSecond: 0, frame: null, roundTripMs: null, viewers: 1 })).toBe(
+    "waiting for the first picture \u00b7 1 viewer",
+  );
+});
+
+test.each([
+  [0, "0.00"],
+  [1.756, "1.76"],
+  [31.46, "31.5"],
+  [2048.5, "2049"],
+])("%d ms is written %s", (value, text) => {
+  expect(milliseconds(value)).toBe(text);
+});
+
+it("counts frames over the last two seconds", () => {
+  const rate = new FrameRate();
+  for (let time = 0; time < 5000; time += 40) rate.shown(time);
+  expect(rate.perSecond(4999)).toBe(25);
+  expect(rate.perSecond(6000)).toBe(12); // the 24 frames after 4000 ms
+  expect(rate.perSecond(9000)).toBe(0);
+});

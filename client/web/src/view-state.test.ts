@@ -1,0 +1,63 @@
+import type { Notice } from "@culet/protocol/messages";
+import { describe, expect, it } from "vitest";
+import { describeChange, INITIAL, withNotice } from "./view-state";
+
+function shown(scene: Record<string, unknown>, falling = false): Notice {
+  return { type: "state", scene, falling };
+}
+
+const DEFAULT = { floor: { kind: "mirror" }, walls: { kind: "none" }, environment: { kind: "dark" } };
+
+describe("the state after a notice", () => {
+  it("shows what the scene says", () => {
+    expect(withNotice(INITIAL, shown(DEFAULT, true))).toMatchObject({
+      scene: DEFAULT,
+      falling: true,
+      mirror: true,
+      light: false,
+      walls: false,
+    });
+    const other = { floor: { kind: "matte" }, walls: { kind: "matte" }, environment: { kind: "light" } };
+    expect(withNotice(INITIAL, shown(other))).toMatchObject({ mirror: false, light: true, walls: true });
+  });
+
+  it("survives a scene without the parts it looks at", () => {
+    expect(withNotice(INITIAL, shown({ floor: null }))).toMatchObject({ mirror: false, light: false, walls: false });
+  });
+
+  it("keeps the target, which is this page's own affair", () => {
+    expect(withNotice({ ...INITIAL, target: "light_2" }, shown(DEFAULT)).target).toBe("light_2");
+  });
+
+  it("knows whether the engine lives; a new stream has one until told otherwise", () => {
+    const down = withNotice(INITIAL, { type: "engine", status: "down" });
+    expect(down.engine).toBe("down");
+    expect(withNotice(down, { type: "engine", status: "up" }).engine).toBe("up");
+    expect(withNotice(down, { type: "hello", protocol: 1, session: "0", viewer: 1 }).engine).toBe("up");
+  });
+
+  it("is the same value if nothing in it changed", () => {
+    expect(withNotice(INITIAL, { type: "pong", time: 1 })).toBe(INITIAL);
+  });
+});
+
+describe("a change in words", () => {
+  const before = withNotice(INITIAL, shown(DEFAULT));
+
+  it("names every switch", () => {
+    const after = { ...before, falling: true, mirror: false, light: true, walls: true, target: "light_1" } as const;
+    expect(describeChange(before, after)).toBe(
+      "moving the red light, the stone falls, checker, light sky, walls shown",
+    );
+  });
+
+  it("says nothing of the first scene, or of a camera that moved", () => {
+    expect(describeChange(INITIAL, before)).toBe("");
+    expect(describeChange(before, { ...before, scene: {} })).toBe("");
+  });
+
+  it("counts viewers in grammar", () => {
+    expect(describeChange(before, { ...before, viewers: 2 })).toBe("2 viewers");
+    expect(describeChange({ ...before, viewers: 2 }, before)).toBe("1 viewer");
+  });
+});
