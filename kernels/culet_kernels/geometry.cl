@@ -5,17 +5,15 @@
 #include "hull.cl"
 #include "mesh.cl"
 
-// What a scene is made of; the quantities are constants, the rest is read in long runs.
+// What a scene is made of.
 typedef struct {
   __constant const parameters_t *scene;
-  __global const real4 *facets;  // HULL: normal and offset, the world's axes
+  __global const real4 *facets;  // HULL: normal and offset, in the world's axes
   __global const real4 *shadows; // HULL: planes of the lights' shadow volumes
-  __global const real *tree;     // MESH: boxes of the tree's nodes
-  __global const int *links;     // MESH: what they lead to
-  __global const real *corners;  // MESH: triangles, a packet to a leaf
+  tree_t tree;                   // MESH
 } world_t;
 
-// Whether a ray can meet the stone at all: whether it passes the unit sphere around it, ahead of t_min.
+// Whether a ray can meet the stone at all: whether it passes the unit sphere around it, not wholly before t_min.
 static inline maskL passes_stone(vec3L origin, vec3L direction, realL t_min) {
   const realL middle = -dot3(origin, direction);
   const vec3L nearest = along(origin, middle, direction);
@@ -24,28 +22,25 @@ static inline maskL passes_stone(vec3L origin, vec3L direction, realL t_min) {
 
 static inline crossingL stone_entry(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask) {
   if (GEOMETRY == HULL) return hull_entry(world.facets, world.scene->facets, origin, direction, t_min);
-  if (GEOMETRY == MESH)
-    return mesh_crossing(world.scene, world.tree, world.links, world.corners, origin, direction, t_min, mask, true);
-  const crossingL none = {t_min < t_min, t_min, direction};
-  return none;
+  return mesh_crossing(world.scene, world.tree, origin, direction, t_min, (real)1e30, mask, 1);
 }
 
 static inline crossingL stone_exit(world_t world, vec3L origin, vec3L direction, maskL mask) {
-  if (GEOMETRY == MESH)
-    return mesh_crossing(world.scene, world.tree, world.links, world.corners, origin, direction, splat(0), mask, false);
-  return hull_exit(world.facets, world.scene->facets, origin, direction);
+  if (GEOMETRY == HULL) return hull_exit(world.facets, world.scene->facets, origin, direction);
+  return mesh_crossing(world.scene, world.tree, origin, direction, splat(0), (real)1e30, mask, -1);
 }
 
 // Whether the stone lies between points of the room and a light.
 static inline maskL stone_shadow(world_t world, int light, vec3L point, vec3L to_light, maskL mask) {
   if (GEOMETRY == EMPTY) return mask & !mask;
-  const vec3L lever = vec3(fma(point.y, to_light.z, -point.z * to_light.y), fma(point.z, to_light.x, -point.x * to_light.z),
-                           fma(point.x, to_light.y, -point.y * to_light.x));
-  const maskL near = mask & (dot3(lever, lever) < (real)1.0001 * dot3(to_light, to_light));
+  // The line to the light passes the unit sphere if its moment about the centre is less than its length.
+  const vec3L moment = vec3(point.y * to_light.z - point.z * to_light.y, point.z * to_light.x - point.x * to_light.z,
+                            point.x * to_light.y - point.y * to_light.x);
+  const maskL near = mask & (dot3(moment, moment) < (real)1.0001 * dot3(to_light, to_light));
   if (!any_lane(near)) return near;
   if (GEOMETRY == HULL)
     return near & hull_shadow(world.shadows, world.scene->shadow_start[light], world.scene->shadow_start[light + 1], point);
-  return near & mesh_shadow(world.scene, world.tree, world.links, world.corners, point, to_light, near);
+  return mesh_crossing(world.scene, world.tree, point, to_light, splat(0), 1, near, 1).hit;
 }
 
 #endif

@@ -1,17 +1,171 @@
+// A stone that is not convex: triangles in a tree of boxes, in the stone's own axes.
+//
+// Rays inside such a stone scatter, so a packet of them shares no way through the tree. The packet is of boxes instead:
+// one ray is tested against all children of a node at once, and against all triangles of a leaf. The host makes the tree
+// (rendering/tree.py) and sees to it that the stack suffices.
 #ifndef CULET_MESH
 #define CULET_MESH
 #include "hull.cl"
 
-static inline crossingL mesh_crossing(__constant const parameters_t *scene, __global const real *tree,
-                                      __global const int *links, __global const real *corners, vec3L origin,
-                                      vec3L direction, realL t_min, maskL mask, bool from_outside) {
-  const crossingL none = {t_min < t_min, t_min, direction};
-  return none;
+#ifndef TREE_WIDTH // children of a node, triangles of a leaf: 4, 8 or 16
+#define TREE_WIDTH 8
+#endif
+#ifndef TREE_STACK // (TREE_WIDTH - 1) x the tree's depth + 1, at most
+#define TREE_STACK 128
+#endif
+
+typedef JOIN(REAL, TREE_WIDTH) realW;
+typedef JOIN(MASK, TREE_WIDTH) maskW;
+typedef JOIN(int, TREE_WIDTH) intW;
+static inline realW load_wide(__global const real *from, int row) { return JOIN(vload, TREE_WIDTH)(row, from); }
+
+// Part of a triangle's extent, or of R along a ray, within which rounding may place a hit on the wrong side of an edge or
+// of the ray's start. Neighbours overlap by this much, which closes the cracks between them.
+#if IS_DOUBLE
+#define OVERLAP 1e-12
+#else
+#define OVERLAP 2e-6f
+#endif
+
+typedef struct {
+  __global const real *boxes;   // for each node the children's lower x, y, z and upper x, y, z, TREE_WIDTH of each
+  __global const int *links;    // for each child the node, or ~leaf
+  __global const real *corners; // for each leaf one corner, two edges and the facet's normal, TREE_WIDTH of each
+} tree_t;
+
+typedef struct {
+  real origin[3], direction[3];
+  real start; // hits before this do not count,
+  real limit; // nor do those behind this; becomes the nearest hit
+  int triangle; // leaf x TREE_WIDTH + place, -1 for none
+} probe_t;
+
+// Moller & Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997). Only triangles that the ray meets from the
+// right side count (side 1: from outside, -1: from inside): one that it has just left is turned away and needs no epsilon.
+static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) {
+  __global const real *rows = tree.corners + leaf * 12 * TREE_WIDTH;
+  const realW dx = (realW)(probe->direction[0]), dy = (realW)(probe->direction[1]), dz = (realW)(probe->direction[2]);
+  const realW ax = load_wide(rows, 3), ay = load_wide(rows, 4), az = load_wide(rows, 5);
+  const realW bx = load_wide(rows, 6), by = load_wide(rows, 7), bz = load_wide(rows, 8);
+  const realW px = dy * bz - dz * by, py = dz * bx - dx * bz, pz = dx * by - dy * bx;
+  const realW det = ax * px + ay * py + az * pz;
+  const maskW faces = side * det > (real)1e-30;
+  const realW inverse = (real)1 / select((realW)(1), det, faces);
+  const realW tx = probe->origin[0] - load_wide(rows, 0), ty = probe->origin[1] - load_wide(rows, 1), tz = probe->origin[2] - load_wide(rows, 2);
+  const realW u = (tx * px + ty * py + tz * pz) * inverse;
+  const realW qx = ty * az - tz * ay, qy = tz * ax - tx * az, qz = tx * ay - ty * ax;
+  const realW v = (dx * qx + dy * qy + dz * qz) * inverse;
+  const realW t = (bx * qx + by * qy + bz * qz) * inverse;
+  const maskW hits = faces & (u >= -OVERLAP) & (v >= -OVERLAP) & (u + v <= 1 + OVERLAP) & (t >= probe->start - OVERLAP) & (t < probe->limit);
+  if (!any(hits)) return;
+  int hit[TREE_WIDTH];
+  real distance[TREE_WIDTH];
+  JOIN(vstore, TREE_WIDTH)(JOIN(convert_int, TREE_WIDTH)(hits), 0, hit);
+  JOIN(vstore, TREE_WIDTH)(t, 0, distance);
+  for (int k = 0; k < TREE_WIDTH; k++)
+    if (hit[k] && distance[k] < probe->limit) {
+      probe->limit = distance[k];
+      probe->triangle = leaf * TREE_WIDTH + k;
+    }
 }
 
-static inline maskL mesh_shadow(__constant const parameters_t *scene, __global const real *tree,
-                                __global const int *links, __global const real *corners, vec3L point, vec3L to_light,
-                                maskL mask) {
-  return mask & !mask;
+static inline real away_from_zero(real x) { return fabs(x) < PARALLEL ? copysign(PARALLEL, x) : x; }
+
+// The nearest triangle along a ray.
+static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
+  int stack[TREE_STACK];
+  real nearness[TREE_STACK];
+  int size = 1;
+  stack[0] = 0;
+  nearness[0] = probe->start;
+  real inverse[3];
+  for (int k = 0; k < 3; k++) inverse[k] = 1 / away_from_zero(probe->direction[k]);
+  while (size > 0) {
+    size--;
+    if (nearness[size] > probe->limit) continue;
+    const int node = stack[size];
+    if (node < 0) {
+      probe_leaf(tree, ~node, side, probe);
+      continue;
+    }
+    __global const real *rows = tree.boxes + node * 6 * TREE_WIDTH;
+    realW near = (realW)(probe->start - OVERLAP), far = (realW)(probe->limit);
+    for (int k = 0; k < 3; k++) {
+      const realW lower = (load_wide(rows, k) - probe->origin[k]) * inverse[k];
+      const realW upper = (load_wide(rows, 3 + k) - probe->origin[k]) * inverse[k];
+      near = fmax(near, fmin(lower, upper));
+      far = fmin(far, fmax(lower, upper));
+    }
+    // The far side is moved by the rounding of its three operations (Ize, Robust BVH Ray Traversal, 2013).
+    const maskW enters = near <= far * (1 + 4 * OVERLAP) + OVERLAP;
+    if (!any(enters)) continue;
+    int enter[TREE_WIDTH];
+    real distance[TREE_WIDTH];
+    JOIN(vstore, TREE_WIDTH)(JOIN(convert_int, TREE_WIDTH)(enters), 0, enter);
+    JOIN(vstore, TREE_WIDTH)(near, 0, distance);
+    const int base = size;
+    for (int k = 0; k < TREE_WIDTH; k++) {
+      if (!enter[k]) continue;
+      int place = size++; // sorted, the nearest on top
+      for (; place > base && nearness[place - 1] < distance[k]; place--) {
+        stack[place] = stack[place - 1];
+        nearness[place] = nearness[place - 1];
+      }
+      stack[place] = tree.links[node * TREE_WIDTH + k];
+      nearness[place] = distance[k];
+    }
+  }
 }
+
+static inline vec3L to_stone(__constant const parameters_t *scene, vec3L v) {
+  return vec3(v.x * scene->axes[0][0] + v.y * scene->axes[1][0] + v.z * scene->axes[2][0],
+              v.x * scene->axes[0][1] + v.y * scene->axes[1][1] + v.z * scene->axes[2][1],
+              v.x * scene->axes[0][2] + v.y * scene->axes[1][2] + v.z * scene->axes[2][2]);
+}
+
+static inline vec3L to_world(__constant const parameters_t *scene, vec3L v) {
+  return vec3(v.x * scene->axes[0][0] + v.y * scene->axes[0][1] + v.z * scene->axes[0][2],
+              v.x * scene->axes[1][0] + v.y * scene->axes[1][1] + v.z * scene->axes[1][2],
+              v.x * scene->axes[2][0] + v.y * scene->axes[2][1] + v.z * scene->axes[2][2]);
+}
+
+// The nearest crossing of each lane's ray between t_min and t_max, from outside (side 1) or from inside (side -1).
+static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree_t tree, vec3L origin, vec3L direction,
+                                      realL t_min, real t_max, maskL mask, real side) {
+  const vec3L o = to_stone(scene, origin), d = to_stone(scene, direction);
+  int wanted[LANES];
+  real quantity[7][LANES], t[LANES], normal[3][LANES];
+  store_mask(mask, wanted);
+  store_lanes(o.x, quantity[0]);
+  store_lanes(o.y, quantity[1]);
+  store_lanes(o.z, quantity[2]);
+  store_lanes(d.x, quantity[3]);
+  store_lanes(d.y, quantity[4]);
+  store_lanes(d.z, quantity[5]);
+  store_lanes(t_min, quantity[6]);
+  for (int lane = 0; lane < LANES; lane++) {
+    t[lane] = -1e30f;
+    normal[0][lane] = normal[1][lane] = normal[2][lane] = 0;
+    if (!wanted[lane]) continue;
+    probe_t probe;
+    for (int k = 0; k < 3; k++) {
+      probe.origin[k] = quantity[k][lane];
+      probe.direction[k] = quantity[3 + k][lane];
+    }
+    probe.start = quantity[6][lane];
+    probe.limit = t_max;
+    probe.triangle = -1;
+    probe_tree(tree, side, &probe);
+    if (probe.triangle < 0) continue;
+    t[lane] = fmax(probe.limit, probe.start);
+    __global const real *rows = tree.corners + (probe.triangle / TREE_WIDTH * 12 + 9) * TREE_WIDTH + probe.triangle % TREE_WIDTH;
+    for (int k = 0; k < 3; k++) normal[k][lane] = rows[k * TREE_WIDTH];
+  }
+  const realL found = load_lanes(t);
+  const maskL hit = mask & (found > (real)-1e29);
+  const crossingL crossing = {hit, blend(hit, found, splat(0)),
+                              to_world(scene, vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2])))};
+  return crossing;
+}
+
 #endif

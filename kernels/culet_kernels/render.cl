@@ -40,10 +40,10 @@ static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, in
 }
 
 __kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
-                     __global const real4 *shadows, __global const real *tree, __global const int *links,
+                     __global const real4 *shadows, __global const real *boxes, __global const int *links,
                      __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
                      __global uint *segments) {
-  const world_t world = {scene, facets, shadows, tree, links, corners};
+  const world_t world = {scene, facets, shadows, {boxes, links, corners}};
   const int column = get_global_id(0) * TILE, tile_row = get_global_id(1) + first_tile_row, row = tile_row * TILE;
   tile_t tile;
   hits_t hits;

@@ -90,12 +90,14 @@ class Programs:
 
 
 def warm_up(device: Device, kernel: Any, variant: Variant) -> None:  # noqa: ANN401
-    """Launch once on one tile, a picture of no pixels, in a queue of its own."""
+    """Launch once on one tile of a picture of no pixels, whose rays all pass the stone by, in a queue of its own."""
     from culet.rendering.parameters import layout
 
     queue = cl.CommandQueue(device.context)
     flags = cl.mem_flags.READ_WRITE
-    scene = cl.Buffer(device.context, flags | cl.mem_flags.COPY_HOST_PTR, hostbuf=np.zeros((), layout(variant.real)))
+    parameters = np.zeros((), layout(variant.real))
+    parameters["foot"], parameters["direction"] = (0, 10, 0), (1, 0, 0)
+    scene = cl.Buffer(device.context, flags | cl.mem_flags.COPY_HOST_PTR, hostbuf=parameters)
     scratch = cl.Buffer(device.context, flags, 1024)
     args = (scratch, scene, *[scratch] * 5, np.float64(0), np.float64(0), np.int32(0), np.int32(0), scratch)
     kernel(queue, (1, 1), (1, 1), *args)

@@ -19,6 +19,7 @@ from culet.rendering.parameters import parameters
 from culet.rendering.program import Programs, Variant, build
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
+from culet.rendering.tree import tree_of
 from culet.scene.model import Scene
 
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2}
@@ -98,6 +99,9 @@ class Picture:
         self._segments = self._allocate(4 * self._tiles[0] * self._tiles[1])
         self._inputs = [self._upload(struct), self._upload(facets.astype(real)), self._upload(shadows.astype(real))]
         self._mesh = [None, None, None]
+        if stone is not None and features.geometry == Geometry.MESH:
+            tree = tree_of(stone)
+            self._mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""

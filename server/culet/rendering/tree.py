@@ -1,0 +1,155 @@
+"""The tree of boxes over a stone's triangles, as mesh.cl reads it.
+
+A binary tree by the surface area heuristic (MacDonald & Booth, Visual Computer 6, 153 (1990)), binned, down to leaves of
+WIDTH triangles; then each node adopts its largest grandchildren until it has WIDTH children (Wald, Benthin & Boulos,
+Getting Rid of Packets, 2008).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.stone import Stone
+
+WIDTH = 8
+"""Children of a node, and triangles of a leaf: TREE_WIDTH of mesh.cl."""
+STACK = 128
+"""Nodes that a ray may have waiting: TREE_STACK of mesh.cl."""
+BINS = 16
+"""Places at which a split is tried, along the longest side."""
+
+Array = NDArray[np.float64]
+NOWHERE = (1e15, -2e15, 3e15)
+"""The box of a child that does not exist, R. The odd ray that points there finds the first leaf, which is empty."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """Nodes in breadth-first order, the root first."""
+
+    boxes: Array
+    """(N, 6, WIDTH): lower x, y, z and upper x, y, z of each child."""
+    links: NDArray[np.int32]
+    """(N, WIDTH): the child's node, or ~leaf."""
+    corners: Array
+    """(L, 12, WIDTH): a corner, two edges, the facet's normal; zeros where a leaf is not full. The first leaf is empty."""
+
+
+@dataclass(eq=False)
+class _Branch:
+    """A node of the binary tree; a leaf has no children."""
+
+    lower: Array
+    upper: Array
+    triangles: NDArray[np.int64]
+    children: tuple[_Branch, _Branch] | None = None
+
+    @property
+    def area(self) -> float:
+        """Half the box's surface."""
+        x, y, z = self.upper - self.lower
+        return float(x * y + y * z + z * x)
+
+
+@lru_cache(maxsize=16)
+def tree_of(stone: Stone) -> Tree:
+    """The tree of a stone; made once, since stones are immutable."""
+    corners = stone.vertices[stone.triangles]
+    lower, upper = corners.min(axis=1), corners.max(axis=1)
+    for by_median in (False, True):
+        tree, depth = _collapse(_grow(lower, upper, by_median=by_median), stone, corners)
+        if (WIDTH - 1) * depth + 1 <= STACK:
+            return tree
+    raise AssertionError("splits at the median halve a node, so 2^32 triangles need no more than STACK")
+
+
+def _grow(lower: Array, upper: Array, *, by_median: bool) -> _Branch:
+    centres = (lower + upper) / 2
+    root = _Branch(lower.min(axis=0), upper.max(axis=0), np.arange(len(lower)))
+    waiting = [root]
+    while waiting:
+        branch = waiting.pop()
+        if len(branch.triangles) <= WIDTH:
+            continue
+        left = _split(centres[branch.triangles], lower[branch.triangles], upper[branch.triangles], by_median=by_median)
+        parts = [branch.triangles[left], branch.triangles[~left]]
+        a, b = (_Branch(lower[part].min(axis=0), upper[part].max(axis=0), part) for part in parts)
+        branch.children = a, b
+        waiting += [a, b]
+    return root
+
+
+def _split(centres: Array, lower: Array, upper: Array, *, by_median: bool) -> NDArray[np.bool_]:
+    """Which triangles go to the left: never none, never all."""
+    extent = centres.max(axis=0) - centres.min(axis=0)
+    axis = int(extent.argmax())
+    count = len(centres)
+    if extent[axis] > 0 and not by_median:
+        place = (centres[:, axis] - centres[:, axis].min()) / extent[axis]
+        number = np.minimum((place * BINS).astype(int), BINS - 1)
+        low, high = np.full((BINS, 3), np.inf), np.full((BINS, 3), -np.inf)
+        np.minimum.at(low, number, lower)
+        np.maximum.at(high, number, upper)
+        counts = np.bincount(number, minlength=BINS)
+        from_left = counts.cumsum()[:-1], _areas(np.minimum.accumulate(low), np.maximum.accumulate(high))[:-1]
+        from_right = (
+            counts[::-1].cumsum()[::-1][1:],
+            _areas(np.minimum.accumulate(low[::-1]), np.maximum.accumulate(high[::-1]))[::-1][1:],
+        )
+        cost = from_left[0] * from_left[1] + from_right[0] * from_right[1]
+        return number <= int(cost.argmin())  # the outermost bins are never empty
+    left = np.zeros(count, bool)
+    left[np.argpartition(centres[:, axis], count // 2)[: count // 2]] = True
+    return left
+
+
+def _areas(lower: Array, upper: Array) -> Array:
+    x, y, z = np.maximum(upper - lower, 0).T
+    return x * y + y * z + z * x
+
+
+def _collapse(root: _Branch, stone: Stone, corners: Array) -> tuple[Tree, int]:
+    """The wide tree, and its depth in nodes."""
+    boxes, links, leaves, depth = [], [], [np.empty(0, np.int64)], 0
+    level = [root]
+    numbered = 1
+    while level:
+        depth += 1
+        below: list[_Branch] = []
+        for node in level:
+            box, link = np.tile(np.array([*NOWHERE, *NOWHERE])[:, None], WIDTH), np.full(WIDTH, ~0, np.int32)
+            for place, child in enumerate(_adopt(node)):
+                box[:3, place], box[3:, place] = child.lower, child.upper
+                if child.children is None:
+                    link[place] = ~len(leaves)
+                    leaves.append(child.triangles)
+                else:
+                    link[place] = numbered
+                    numbered += 1
+                    below.append(child)
+            boxes.append(box)
+            links.append(link)
+        level = below
+    rows = np.zeros((len(leaves), 12, WIDTH))
+    normals = stone.planes[stone.facet_of_triangle, :3]
+    for number, triangles in enumerate(leaves):
+        a, b, c = corners[triangles].transpose(1, 0, 2)
+        rows[number, :, : len(triangles)] = np.hstack([a, b - a, c - a, normals[triangles]]).T
+    return Tree(np.array(boxes), np.array(links), rows), depth
+
+
+def _adopt(node: _Branch) -> list[_Branch]:
+    children = [node] if node.children is None else list(node.children)
+    while len(children) < WIDTH:
+        inner = [child for child in children if child.children is not None]
+        if not inner:
+            break
+        largest = max(inner, key=lambda child: child.area)
+        children.remove(largest)
+        assert largest.children is not None
+        children += largest.children
+    return children
