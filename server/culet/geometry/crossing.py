@@ -87,35 +87,44 @@ def _cross(corners: Points, triangles: Triangles, pairs: NDArray[np.int64]) -> N
     """Whether a side of one triangle passes through the other. A side that shares a corner with it cannot."""
     hit = np.zeros(len(pairs), np.bool_)
     for one, other in (pairs.T, pairs.T[::-1]):
-        a, b, c = (corners[one, k] for k in range(3))
-        normal = np.cross(b - a, c - a)
-        length = np.sqrt(np.einsum("ij,ij->i", normal, normal))
-        solid = length > 0
-        normal = np.divide(normal, length[:, None], out=np.zeros_like(normal), where=solid[:, None])
-        height = np.einsum("ikj,ij->ik", corners[other] - a[:, None], normal)
+        normal, length = _normal(corners[one])
+        height = np.einsum("ikj,ij->ik", corners[other] - corners[one, :1], normal)
+        deep = DEPTH * length
+        straddling = np.flatnonzero((height.min(axis=1) < -deep) & (height.max(axis=1) > deep) & ~hit)
         for k in range(3):
-            p, q = k, (k + 1) % 3
-            shared = np.zeros(len(pairs), np.bool_)
-            for end in (p, q):
-                shared |= (triangles[one] == triangles[other, end][:, None]).any(axis=1)
-            through = solid & ~shared & (height[:, p] * height[:, q] < 0) & (abs(height[:, [p, q]]).min(axis=1) > DEPTH)
-            rows = np.flatnonzero(through & ~hit)
-            share = height[rows, p] / (height[rows, p] - height[rows, q])
-            start, end_point = corners[other[rows], p], corners[other[rows], q]
-            point = start + share[:, None] * (end_point - start)
-            inside = np.ones(len(rows), np.bool_)
-            for u, v in ((a, b), (b, c), (c, a)):
-                turn = np.einsum("ij,ij->i", np.cross(v[rows] - u[rows], point - u[rows]), normal[rows])
-                inside &= turn >= -_INSIDE * length[rows]
-            hit[rows] |= inside
+            ends = [k, (k + 1) % 3]
+            p, q = height[straddling[:, None], ends].T
+            through = (p * q < 0) & (np.minimum(abs(p), abs(q)) > deep[straddling])
+            rows = straddling[through]
+            shared = triangles[one[rows]][:, :, None] == triangles[other[rows]][:, None, ends]
+            rows = rows[~shared.any(axis=(1, 2))]
+            p, q = height[rows[:, None], ends].T
+            start, end = (corners[other[rows], side] for side in ends)
+            point = start + (p / (p - q))[:, None] * (end - start)
+            hit[rows] |= _within(corners[one[rows]], normal[rows], point)
     return hit
+
+
+def _normal(shapes: Points) -> tuple[Points, NDArray[np.float64]]:
+    """Of triangles (N, 3, 3): normals twice their area long, and those lengths."""
+    normal = np.cross(shapes[:, 1] - shapes[:, 0], shapes[:, 2] - shapes[:, 0])
+    return normal, np.sqrt(np.einsum("ij,ij->i", normal, normal))
+
+
+def _within(shapes: Points, normal: Points, point: Points) -> NDArray[np.bool_]:
+    """Whether points in the triangles' planes lie inside them or on their sides."""
+    size = np.einsum("ij,ij->i", normal, normal)
+    inside = np.ones(len(point), np.bool_)
+    for k in range(3):
+        side = shapes[:, (k + 1) % 3] - shapes[:, k]
+        inside &= np.einsum("ij,ij->i", np.cross(side, point - shapes[:, k]), normal) >= -_INSIDE * size
+    return inside
 
 
 def _overlap(corners: Points, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether two triangles in one plane cover common ground: no side of either separates them."""
     first, second = corners[pairs[:, 0]], corners[pairs[:, 1]]
-    normal = np.cross(first[:, 1] - first[:, 0], first[:, 2] - first[:, 0])
-    length = np.sqrt(np.einsum("ij,ij->i", normal, normal))
+    normal, length = _normal(first)
     height = abs(np.einsum("ikj,ij->ik", second - first[:, :1], normal)).max(axis=1)
     rows = np.flatnonzero((height <= DEPTH * length) & (length > 0))
     hit = np.zeros(len(pairs), np.bool_)
