@@ -56,9 +56,9 @@ def _deepest_point(name: str, unit: NDArray[np.float64]) -> NDArray[np.float64]:
     if answer.status == 3:
         raise MeshError(f"{name}: the half-spaces leave the stone open to infinity")
     if answer.status != 0:
-        raise MeshError(f"{name}: no point lies inside all half-spaces")
+        raise MeshError(f"{name}: the half-spaces enclose nothing that can be found ({answer.message})")
     if not answer.x[3] > 0:
-        raise MeshError(f"{name}: the half-spaces enclose nothing (depth {answer.x[3]:.3g})")
+        raise MeshError(f"{name}: no point lies inside all half-spaces (depth {answer.x[3] * scale:.3g})")
     point: NDArray[np.float64] = answer.x[:3] * scale
     return point
 
@@ -80,7 +80,7 @@ def _corners(
     try:
         hull = ConvexHull(dual)
     except QhullError as error:
-        raise MeshError(f"{name}: the half-spaces enclose no solid") from error
+        raise MeshError(f"{name}: the half-spaces leave the stone open to infinity: a prism without ends") from error
     offset = hull.equations[:, 3]
     if not (offset < -1e-12).all():
         raise MeshError(f"{name}: the half-spaces leave the stone open to infinity")
