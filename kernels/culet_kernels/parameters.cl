@@ -27,7 +27,9 @@ typedef struct {
   int lights;
   int max_bounces; // interior segments of a chain, at most
   int width, height;
-  int floor_kind, walls_kind, sky_kind, fresnel_kind, camera_inside;
+  int floor_kind, walls_kind, sky_kind, fresnel_kind;
+  int camera_inside; // the stone
+  int pierces;       // the stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 
 #endif

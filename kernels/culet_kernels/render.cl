@@ -18,7 +18,7 @@ static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, in
       while (any_lane(open)) {
         if (any_lane(heading)) {
           const crossingL entry = stone_entry(world, ray.origin, ray.direction, ray.start, heading);
-          const maskL enters = heading & entry.hit;
+          const maskL enters = heading & entry.hit & !hidden_by_room(world, ray, entry.t);
           point = blend3(enters, along(ray.origin, entry.t, ray.direction), point);
           normal = blend3(enters, entry.normal, normal);
           meets |= enters;
@@ -30,8 +30,7 @@ static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, in
         open = heading;
       }
 
-      // The tile's pixels lie packet by packet, so that this is a plain store.
-      const int first = (y / PACKET_HEIGHT * (TILE / PACKET_WIDTH) + x / PACKET_WIDTH) * LANES;
+      const int first = first_pixel(x, y);
       for (int k = 0; k < 3; k++) store_lanes(radiance.channel[k], tile->radiance[k] + first);
       store_lanes(3 * cut, tile->cut + first);
       if (any_lane(meets)) note(hits, meets, point, ray.direction, normal, ray.weight, first);
@@ -44,14 +43,13 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
                      __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
                      __global uint *segments) {
   const world_t world = {scene, facets, shadows, {boxes, links, corners}};
-  const int column = get_global_id(0) * TILE, tile_row = get_global_id(1) + first_tile_row, row = tile_row * TILE;
+  const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
   tile_t tile;
   hits_t hits;
-  pools_t pools;
   tile.segments = (intL)(0);
-  see(world, &tile, &hits, column, row, jitter_x, jitter_y);
-
+  see(world, &tile, &hits, tile_column * TILE, tile_row * TILE, jitter_x, jitter_y);
   if (GEOMETRY != EMPTY && hits.count > 0) {
+    pools_t pools;
     clear(&pools.inside);
     clear(&pools.outside);
     for (int number = 0; number < CHAINS; number++) {
@@ -59,18 +57,5 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
       trace(world, &tile, &pools, chain, &hits);
     }
   }
-
-  for (int y = 0; y < TILE && row + y < scene->height; y++)
-    for (int x = 0; x < TILE && column + x < scene->width; x++) {
-      const int pixel = (y / PACKET_HEIGHT * (TILE / PACKET_WIDTH) + x / PACKET_WIDTH) * LANES + y % PACKET_HEIGHT * PACKET_WIDTH + x % PACKET_WIDTH;
-      __global real4 *sum = image + (row + y) * scene->width + (column + x);
-      const real4 sample = (real4)(tile.radiance[0][pixel], tile.radiance[1][pixel], tile.radiance[2][pixel], tile.cut[pixel] / 3);
-      *sum = accumulate ? *sum + sample : sample;
-    }
-
-  int counts[LANES];
-  store_ints(tile.segments, counts);
-  uint total = 0;
-  for (int lane = 0; lane < LANES; lane++) total += counts[lane];
-  segments[tile_row * get_global_size(0) + get_global_id(0)] = total;
+  write_tile(&tile, image, segments, scene, tile_column, tile_row, accumulate);
 }

@@ -16,7 +16,8 @@
 #define SLOP ((real)1e-3)
 
 typedef struct {
-  maskL reflects;     // where the ray goes on
+  maskL meets;        // floor or walls, not the sky
+  maskL reflects;     // a mirror: the ray goes on
   vec3L point, normal; // from where, if it does
   radianceL radiance; // what is seen there: the surface's own light, or the sky
 } viewL;
@@ -50,12 +51,26 @@ typedef struct {
   realL weight;
 } rayL;
 
+// Whether floor or walls come before the stone; only where the stone reaches through one of them.
+static inline maskL hidden_by_room(world_t world, rayL ray, realL t) {
+  __constant const parameters_t *scene = world.scene;
+  maskL hidden = t < t; // none
+  if (!scene->pierces) return hidden;
+  const int floor_kind = DECIDED(FLOOR, scene->floor_kind), walls_kind = DECIDED(WALLS, scene->walls_kind);
+  for (int i = floor_kind == NONE ? 1 : 0; i < (walls_kind == NONE ? 1 : MAX_SURFACES); i++) {
+    const real4 surface = (real4)(scene->surface[i][0], scene->surface[i][1], scene->surface[i][2], scene->surface[i][3]);
+    const vec3L start = along(ray.origin, ray.start, ray.direction), end = along(ray.origin, t, ray.direction);
+    hidden |= (dot_uniform(start, surface) > surface.w) & (dot_uniform(end, surface) < surface.w);
+  }
+  return hidden;
+}
+
 // What a ray that meets no stone shows.
 static inline viewL look(world_t world, rayL ray, channels_t channels) {
   __constant const parameters_t *scene = world.scene;
   const int floor_kind = DECIDED(FLOOR, scene->floor_kind), walls_kind = DECIDED(WALLS, scene->walls_kind);
   viewL view;
-  view.reflects = ray.start < ray.start; // none
+  view.meets = view.reflects = ray.start < ray.start; // none
   view.point = ray.origin;
   view.normal = ray.direction;
   view.radiance = sky(scene, ray.direction, channels);
@@ -63,7 +78,7 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
   if (first == last) return view;
 
   realL nearest = splat(1e30f);
-  maskL met = view.reflects, mirror = view.reflects;
+  maskL met = view.meets, mirror = view.meets;
   for (int i = first; i < last; i++) {
     const real nx = scene->surface[i][0], ny = scene->surface[i][1], nz = scene->surface[i][2];
     const realL speed = ray.direction.x * nx + ray.direction.y * ny + ray.direction.z * nz;
@@ -91,6 +106,7 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
   const radianceL light = lighting(world, view.point, view.normal, met, channels);
   for (int k = 0; k < channels.count; k++)
     view.radiance.channel[k] = blend(met, albedo * light.channel[k], view.radiance.channel[k]);
+  view.meets = met;
   view.reflects = met & mirror;
   return view;
 }

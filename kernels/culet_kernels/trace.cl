@@ -12,23 +12,13 @@
 #include "fresnel.cl"
 #include "pool.cl"
 #include "room.cl"
-
-#ifndef TILE // pixels on each side; a multiple of a packet's, at most 64 for the tag's bits
-#define TILE 32
-#endif
-#define TILE_PIXELS (TILE * TILE)
+#include "tile.cl"
 
 // Segments of a chain between two looks at which of the packet's lanes have ended: a lane that idles for a segment costs
 // less than sorting the packet each time.
 #ifndef STRIDE
 #define STRIDE 2
 #endif
-
-typedef struct {
-  real radiance[3][TILE_PIXELS]; // by channel
-  real cut[TILE_PIXELS];         // weight that was dropped, summed over the channels
-  intL segments;                 // inside the stone
-} tile_t;
 
 // Where pixels' rays first meet the stone.
 #define HITS (TILE_PIXELS + LANES) // a packet is written whole, and counted as far as it is meant
@@ -176,7 +166,9 @@ static inline void come_back(world_t world, tile_t *tile, pools_t *pools, chain_
   maskL taken;
   packetL packet = pop(&pools->outside, &taken);
   const crossingL crossing = stone_entry(world, packet.origin, packet.direction, splat(0), taken);
-  const maskL hits = taken & crossing.hit, misses = taken & !crossing.hit;
+  const rayL ray = {packet.origin, packet.direction, splat(0), splat(1)};
+  const maskL meets = crossing.hit & !hidden_by_room(world, ray, crossing.t);
+  const maskL hits = taken & meets, misses = taken & !meets;
   if (any_lane(misses)) {
     packetL passing = packet;
     const realL cut = leave(world, pools, chain, &passing, packet.origin, packet.direction, splat(1), misses, true);

@@ -44,7 +44,7 @@ def layout(real: type[np.floating[Any]]) -> np.dtype[np.void]:
             ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
             ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("max_bounces", i),
             ("width", i), ("height", i), ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i),
-            ("camera_inside", i),
+            ("camera_inside", i), ("pierces", i),
         ],
         align=True,
     )  # fmt: skip
@@ -78,6 +78,11 @@ def room_surfaces(centre: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.column_stack([normals, offsets])
 
 
+def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(S, 4) those of the room's surfaces that the scene has."""
+    return room_surfaces(centre)[[scene.floor.kind != "none", *[scene.walls.kind != "none"] * 3]]
+
+
 def parameters(
     scene: Scene, stone: Stone | None, width: int, height: int, shadow_start: NDArray[np.int32], real: type[np.floating[Any]]
 ) -> NDArray[np.void]:
@@ -109,4 +114,12 @@ def parameters(
         p["absorption"] = absorption_per_radius(scene)
         p["facets"] = len(stone.planes)
         p["camera_inside"] = camera_is_inside(scene, stone)
+        p["pierces"] = _pierces(scene, stone)
     return p
+
+
+def _pierces(scene: Scene, stone: Stone) -> bool:
+    """Whether the stone reaches through the floor or a wall that is there."""
+    centre, rotation = placement(scene)
+    surfaces = shown_surfaces(scene, centre)
+    return bool((stone.vertices @ rotation.T @ surfaces[:, :3].T < surfaces[:, 3]).any())

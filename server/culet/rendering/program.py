@@ -21,7 +21,7 @@ FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 class Variant:
     """What names a program besides its features."""
 
-    kernel: str = "render"
+    source: str = "render.cl"
     lanes: int = 16
     real: type[np.floating[Any]] = np.float32
     tile: int = 32
@@ -83,10 +83,10 @@ class Programs:
                 self._making.discard((features, variant))
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
-        program = build(self._device, "render.cl", [*variant.options, *features.options])
-        kernel = cl.Kernel(program, variant.kernel)
+        program = build(self._device, variant.source, [*variant.options, *features.options])
+        kernel = cl.Kernel(program, "render")
         warm_up(self._device, kernel, variant)
-        return cl.Kernel(program, variant.kernel)
+        return cl.Kernel(program, "render")
 
 
 def warm_up(device: Device, kernel: Any, variant: Variant) -> None:  # noqa: ANN401

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,15 @@ from culet.geometry.polygons import edges_of_facets
 from culet.geometry.stone import Stone
 from culet.rendering.device import Device, open_device
 from culet.rendering.features import Features, Geometry, features_of
-from culet.rendering.parameters import parameters
+from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.program import Programs, Variant, build
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
 from culet.rendering.tree import tree_of
 from culet.scene.model import Scene
 
+SOURCES = {"chain": "render.cl", "classic": "classic.cl"}
+"""Of each estimator; both have a kernel `render` with the same arguments."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2}
 
 
@@ -40,7 +43,7 @@ class Renderer:
         """Open the device (DeviceError if none works). With `background_compile` a picture never waits for a special
         program: the general one serves until it is ready."""
         self.device = device or open_device()
-        self.variant = Variant("render", lanes or self.device.lanes_for(real), real, tile)
+        self.variant = Variant(lanes=lanes or self.device.lanes_for(real), real=real, tile=tile)
         self.programs = Programs(self.device)
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
@@ -84,7 +87,7 @@ class Picture:
         stone = stone if scene.stones else None
         features = features or features_of(scene, stone)
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
-        self._kernel = get(features, renderer.variant)
+        self._kernel = get(features, replace(renderer.variant, source=SOURCES[scene.optics.estimator]))
 
         shadow_start, shadows = np.zeros(1, np.int32), np.zeros((1, 4))
         facets = np.zeros((1, 4))
@@ -92,7 +95,7 @@ class Picture:
         if stone is not None and features.geometry == Geometry.HULL:
             facets = world_planes(scene, stone)
             if features.lights != 0:
-                shadow_start, shadows = _shadow_volumes(scene, stone, facets, struct["surface"])
+                shadow_start, shadows = _shadow_volumes(scene, stone, facets)
                 struct["shadow_start"][: len(shadow_start)] = shadow_start
         self._tiles = math.ceil(width / renderer.variant.tile), math.ceil(height / renderer.variant.tile)
         self._image = self._allocate(width * height * 4 * np.dtype(real).itemsize)
@@ -175,12 +178,11 @@ class Picture:
 
 
 def _shadow_volumes(
-    scene: Scene, stone: Stone, facets: NDArray[np.float64], surfaces: NDArray[np.floating[Any]]
+    scene: Scene, stone: Stone, facets: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """Where each light's planes begin, and all of them."""
     centre, rotation = placement(scene)
-    shown = surfaces[[scene.floor.kind != "none", *[scene.walls.kind != "none"] * 3]].astype(float)
-    vertices, edges = stone.vertices @ rotation.T, edges_of_facets(stone)
-    volumes = [shadow_planes(facets, vertices, edges, np.array(light.position) - centre, shown) for light in scene.lights]
+    surfaces, vertices, edges = shown_surfaces(scene, centre), stone.vertices @ rotation.T, edges_of_facets(stone)
+    volumes = [shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights]
     starts = np.cumsum([0, *map(len, volumes)]).astype(np.int32)
     return starts, np.vstack([*volumes, np.zeros((1, 4))])

@@ -1,0 +1,102 @@
+// The report's own estimator, for comparison: one path for each channel, a fixed number of meetings, no partial reflection
+// inside the stone.
+//
+// At the stone's surface Schlick's term with the cosine of incidence, on both sides, adds the sky in the mirrored
+// direction as if nothing were in the way; what can be refracted is, and only total reflection stays inside.
+// Absorption counts the last segment, where light leaves. Where meetings run out, the sky in the mirrored direction takes
+// the place of what is missing.
+#include "camera.cl"
+#include "fresnel.cl"
+#include "room.cl"
+#include "tile.cl"
+
+static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel, intL *segments) {
+  __constant const parameters_t *scene = world.scene;
+  const channels_t channels = {channel, 1};
+  const real eta = scene->eta[channel];
+  const maskL all = splat(0) < splat(1), none = !all;
+  rayL ray = {origin, direction, start, splat(1)};
+  maskL inside = DECIDED(CAMERA_INSIDE, scene->camera_inside) ? all : none, active = all;
+  if (any_lane(inside)) ray.origin = along(origin, start, direction);
+  realL radiance = splat(0);
+  for (int meeting = 0; meeting < scene->max_bounces && any_lane(active); meeting++) {
+    const maskL last = (maskL)(meeting == scene->max_bounces - 1 ? -1 : 0) & all;
+
+    // The nearest of stone and room.
+    maskL at_stone = none;
+    realL t = splat(0);
+    vec3L normal = ray.direction; // outward
+    if (GEOMETRY != EMPTY) {
+      const maskL heading = active & !inside & passes_stone(ray.origin, ray.direction, ray.start);
+      if (any_lane(heading)) {
+        const crossingL entry = stone_entry(world, ray.origin, ray.direction, ray.start, heading);
+        at_stone = heading & entry.hit & !hidden_by_room(world, ray, entry.t);
+        t = blend(at_stone, entry.t, t);
+        normal = blend3(at_stone, entry.normal, normal);
+      }
+      const maskL leaving = active & inside;
+      if (any_lane(leaving)) {
+        const crossingL exit = stone_exit(world, ray.origin, ray.direction, leaving);
+        *segments += count_mask(leaving);
+        const maskL found = leaving & exit.hit;
+        t = blend(found, exit.t, t);
+        normal = blend3(found, exit.normal, normal);
+        at_stone |= found;
+        active &= !(leaving & !exit.hit);
+      }
+    }
+    const maskL in_room = active & !at_stone;
+    const viewL view = look(world, ray, channels);
+    const radianceL fallback = sky(scene, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
+    const maskL faces_room = in_room & view.meets;
+    const realL seen = blend(faces_room & last, fallback.channel[0], view.radiance.channel[0]);
+    radiance += blend(in_room, ray.weight * seen, splat(0));
+    const maskL mirrored = in_room & view.reflects & !last;
+
+    // At the stone.
+    const vec3L point = along(ray.origin, t, ray.direction);
+    const realL cosine = dot3(ray.direction, normal); // negative from outside
+    const vec3L reflected = reflect3(ray.direction, cosine, normal);
+    const radianceL mirrored_sky = sky(scene, reflected, channels);
+    const realL term = fresnel_schlick(fabs(cosine), eta);
+    const realL ratio = blend(inside, splat(eta), splat(1 / eta));
+    const realL squared = (real)1 - ratio * ratio * ((real)1 - cosine * cosine);
+    const maskL refracted = at_stone & (squared >= 0) & !last, total = at_stone & !refracted & !last;
+    radiance += blend(at_stone, ray.weight * mirrored_sky.channel[0] * blend(last, splat(1), term), splat(0));
+    const realL bend = blend(inside, sqrt(fmax(squared, splat(0))), -sqrt(fmax(squared, splat(0)))) - ratio * cosine;
+    const vec3L bent = renormalise(vec3(fma(ratio, ray.direction.x, bend * normal.x), fma(ratio, ray.direction.y, bend * normal.y),
+                                        fma(ratio, ray.direction.z, bend * normal.z)));
+    if (ABSORPTION != 0)
+      ray.weight *= blend(refracted & inside, exp_fast(-scene->absorption[channel] * t), splat(1));
+    ray.weight *= blend(refracted, (real)1 - term, blend(mirrored, splat(MIRROR_REFLECTANCE), splat(1)));
+
+    const maskL goes_on = refracted | total | mirrored;
+    ray.origin = blend3(mirrored, view.point, blend3(at_stone, point, ray.origin));
+    ray.direction = blend3(mirrored, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal),
+                           blend3(refracted, bent, blend3(total, reflected, ray.direction)));
+    ray.start = blend(goes_on, splat(0), ray.start);
+    inside = (inside & !refracted) | (refracted & !inside);
+    active &= goes_on;
+  }
+  return radiance;
+}
+
+__kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
+                     __global const real4 *shadows, __global const real *boxes, __global const int *links,
+                     __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
+                     __global uint *segments) {
+  const world_t world = {scene, facets, shadows, {boxes, links, corners}};
+  const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
+  tile_t tile;
+  tile.segments = (intL)(0);
+  for (int y = 0; y < TILE; y += PACKET_HEIGHT)
+    for (int x = 0; x < TILE; x += PACKET_WIDTH) {
+      const primaryL primary = primary_rays(scene, tile_column * TILE + x, tile_row * TILE + y, jitter_x, jitter_y);
+      const int first = first_pixel(x, y);
+      for (int channel = 0; channel < 3; channel++)
+        store_lanes(classic_path(world, primary.origin, primary.direction, primary.eye, channel, &tile.segments),
+                    tile.radiance[channel] + first);
+      store_lanes(splat(0), tile.cut + first);
+    }
+  write_tile(&tile, image, segments, scene, tile_column, tile_row, accumulate);
+}
