@@ -1,0 +1,82 @@
+# Every target sets up what it needs, and is quick when that is there. README.md names the prerequisites.
+SHELL := /bin/bash
+PYTHON ?= python3
+ARGS ?=
+
+BIN := .venv/bin
+DONE := .venv/done
+WEB := client/web
+WEB_PACKAGES := $(WEB)/node_modules/.package-lock.json
+WEB_BUILD := $(WEB)/dist/index.html
+WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts)
+
+# Node.js from the Python index, if the system's is missing or too old (.ci/node).
+export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
+
+.PHONY: setup serve test check format validate bench compose-test opencl chromium node
+.DELETE_ON_ERROR:
+
+setup: $(DONE)/dev opencl $(WEB_BUILD)
+	@echo "Ready. make serve | test | check | validate | bench | compose-test"
+
+serve: opencl $(WEB_BUILD)
+	@exec $(BIN)/culet serve $(ARGS)
+
+test: $(DONE)/dev opencl chromium $(WEB_BUILD)
+	$(BIN)/pytest -m "not validation" $(ARGS)
+	cd $(WEB) && npm test
+
+check: $(DONE)/dev opencl $(WEB_PACKAGES)
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/clang-format --dry-run --Werror kernels/culet_kernels/*.cl
+	$(BIN)/python .ci/compile_kernels.py
+	$(BIN)/pytest -q tests/protocol/test_generate.py
+	cd $(WEB) && npm run check
+
+format: $(DONE)/dev $(WEB_PACKAGES)
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+	$(BIN)/clang-format -i kernels/culet_kernels/*.cl
+	cd $(WEB) && npm run format
+
+# pytest ends with 5 if it has found no test.
+validate: $(DONE)/dev opencl
+	$(BIN)/pytest -m validation $(ARGS) || [ $$? -eq 5 ]
+
+bench: opencl
+	$(BIN)/culet bench $(ARGS)
+
+compose-test: $(DONE)/dev
+	.ci/compose-test
+
+$(DONE)/venv:
+	@PYTHON=$(PYTHON) .ci/need venv
+	$(PYTHON) -m venv .venv
+	@mkdir -p $(DONE) && touch $@
+
+$(DONE)/base: pyproject.toml | $(DONE)/venv
+	$(BIN)/pip install --quiet --editable .
+	@touch $@
+
+$(DONE)/dev: pyproject.toml | $(DONE)/base
+	$(BIN)/pip install --quiet --editable '.[dev]'
+	@touch $@
+
+opencl: $(DONE)/base
+	@.ci/need opencl
+
+chromium:
+	@.ci/need chromium
+
+node: | $(DONE)/venv
+	@.ci/node
+
+$(WEB_PACKAGES): $(WEB)/package.json $(WEB)/package-lock.json | node
+	cd $(WEB) && npm ci --no-audit --no-fund
+	@touch $@
+
+$(WEB_BUILD): $(WEB_PACKAGES) $(WEB_SOURCES) | node
+	cd $(WEB) && npm run build
+	@touch $@
