@@ -16,6 +16,7 @@
 #define CONSTANT 0
 #define GRADIENT 1
 #define HALF 2
+#define STUDIO 3
 
 // Kinds of GEOMETRY: no stone, facet half-spaces, or triangles in a tree. Never RUNTIME.
 #define EMPTY 0

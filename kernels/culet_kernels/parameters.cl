@@ -5,6 +5,7 @@
 #include "lanes.cl"
 
 #define MAX_LIGHTS 8
+#define MAX_LAMPS 8
 #define MAX_SURFACES 4 // the floor and three walls
 
 typedef struct {
@@ -18,13 +19,16 @@ typedef struct {
   real eta[3];                      // index of refraction, by chain
   real absorption[3];               // per R, by channel
   real sky_bottom[3], sky_top[3];   // radiance, by channel
+  real lamp[MAX_LAMPS][3];          // direction of a lamp in the sky, over the width of its edge (in cosine),
+  real lamp_edge[MAX_LAMPS];        // and how far along that scale the edge begins
+  real lamp_radiance[MAX_LAMPS][3]; // by channel
   real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
   real light[MAX_LIGHTS][3];        // position
   real light_colour[MAX_LIGHTS][3]; // by channel
   real axes[3][3];                  // columns: the stone's own axes in the world's
   int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
   int facets;                       // half-spaces of the stone
-  int lights;
+  int lights, lamps;
   int max_bounces; // interior segments of a chain, at most
   int width, height;
   int floor_kind, walls_kind, sky_kind, fresnel_kind;

@@ -28,6 +28,18 @@ static inline radianceL black(void) {
 static inline radianceL sky(__constant const parameters_t *scene, vec3L direction, channels_t channels) {
   const int kind = DECIDED(SKY, scene->sky_kind);
   radianceL radiance = black();
+  if (kind == STUDIO) {
+    for (int k = 0; k < channels.count; k++) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);
+    for (int i = 0; i < scene->lamps; i++) {
+      // Smoothstep from the lamp's rim to where it has its full radiance.
+      const realL cosine = direction.x * scene->lamp[i][0] + direction.y * scene->lamp[i][1] + direction.z * scene->lamp[i][2];
+      const realL s = clamp(cosine - scene->lamp_edge[i], (realL)0, (realL)1);
+      const realL share = s * s * ((real)3 - 2 * s);
+      for (int k = 0; k < channels.count; k++)
+        radiance.channel[k] = fma(share, splat(scene->lamp_radiance[i][channels.first + k]), radiance.channel[k]);
+    }
+    return radiance;
+  }
   for (int k = 0; k < channels.count; k++) {
     const real bottom = scene->sky_bottom[channels.first + k], top = scene->sky_top[channels.first + k];
     if (kind == GRADIENT)

@@ -19,8 +19,10 @@ from culet.scene.model import (
     HalfEnvironment,
     LightEnvironment,
     Scene,
+    StudioEnvironment,
 )
 
+MAX_LAMPS = 8
 MAX_LIGHTS = 8
 MAX_SURFACES = 4
 FLOOR_Y = -1.0
@@ -40,9 +42,10 @@ def layout(real: type[np.floating[Any]]) -> np.dtype[np.void]:
             ("foot", d, 3), ("foot_column", d, 3), ("foot_row", d, 3),
             ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
             ("reach", r), ("cutoff", r), ("centre", r, 3), ("eta", r, 3), ("absorption", r, 3),
-            ("sky_bottom", r, 3), ("sky_top", r, 3), ("surface", r, (MAX_SURFACES, 4)),
+            ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
+            ("lamp_edge", r, MAX_LAMPS), ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
             ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
-            ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("max_bounces", i),
+            ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("max_bounces", i),
             ("width", i), ("height", i), ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i),
             ("camera_inside", i), ("pierces", i),
         ],
@@ -59,6 +62,8 @@ def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[floa
             return (0, 0, 0), radiance
         case GradientEnvironment(bottom=bottom, top=top):
             return bottom, top
+        case StudioEnvironment(ambient=ambient):
+            return ambient, ambient
         case LightEnvironment():
             return (0.7, 0.85, 1), (0.7, 0.85, 1)
         case _:
@@ -96,6 +101,8 @@ def parameters(
     p["cutoff"] = scene.optics.cutoff
     p["centre"] = centre
     p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
+    if isinstance(scene.environment, StudioEnvironment):
+        _set_lamps(p, scene.environment)
     p["surface"] = room_surfaces(centre)
     for number, light in enumerate(scene.lights):
         p["light"][number] = np.array(light.position) - centre
@@ -116,6 +123,17 @@ def parameters(
         p["camera_inside"] = camera_is_inside(scene, stone)
         p["pierces"] = _pierces(scene, stone)
     return p
+
+
+def _set_lamps(p: NDArray[np.void], studio: StudioEnvironment) -> None:
+    """A lamp's share is smoothstep((direction . axis - rim) / (full - rim)); the division is put into axis and rim."""
+    for number, lamp in enumerate(studio.lamps):
+        rim, full = np.cos(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])))
+        axis = np.array(lamp.direction) / np.linalg.norm(lamp.direction)
+        p["lamp"][number] = axis / (full - rim)
+        p["lamp_edge"][number] = rim / (full - rim)
+        p["lamp_radiance"][number] = lamp.radiance
+    p["lamps"] = len(studio.lamps)
 
 
 def _pierces(scene: Scene, stone: Stone) -> bool:

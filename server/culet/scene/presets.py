@@ -15,14 +15,16 @@ from culet.scene.model import (
     StoneSettings,
 )
 
-_CLASSIC_STONE = StoneSettings(material="classic", absorption=(0.02, 0.02, 0.02), position=(0, 4, 0))
+_CLASSIC_STONE = StoneSettings(
+    material="classic", absorption=(0.02, 0.02, 0.02), position=(0, 4, 0), orientation=(1, 0, 0, 0)
+)
 
 CLASSIC = Scene(
     stones=(_CLASSIC_STONE,),
     floor=Plane(kind="mirror"),
     walls=Plane(kind="mirror"),
-    environment=DarkEnvironment(),
-    camera=Camera(position=(0, 2, 13), target=(0, 1.4, 0)),
+    environment=DarkEnvironment(kind="dark"),
+    camera=Camera(position=(0, 2, 13), target=(0, 1.4, 0), fov_degrees=45),
     optics=Optics(fresnel="schlick", estimator="classic", max_bounces=12),
     film=Film(tone_map="classic"),
     simulation=Simulation(inertia="cone"),
@@ -45,13 +47,13 @@ def _classic(
             "stones": (stone,),
             "floor": Plane.model_validate({"kind": floor}),
             "walls": Plane.model_validate({"kind": walls}),
-            "environment": LightEnvironment(kind="light") if light else DarkEnvironment(),
+            "environment": LightEnvironment(kind="light") if light else DarkEnvironment(kind="dark"),
             "camera": camera,
         }
     )
 
 
-_CLOSE = Camera(position=(0, 2.2, 5.5), target=(0, 0.9, 0))
+_CLOSE = Camera(position=(0, 2.2, 5.5), target=(0, 0.9, 0), fov_degrees=45)
 
 
 def _tinted(absorption: tuple[float, float, float]) -> Scene:
@@ -64,7 +66,7 @@ PRESETS: dict[str, tuple[str, Scene]] = {
     "classic": ("The report's own scene, to its constants.", CLASSIC),
     "falling": (
         "The report's Fig. 1: a falling diamond and its reflection.",
-        _classic(position=(0, 2, 0), camera=Camera(position=(0, 1.6, 8), target=(0, 0.6, 0))),
+        _classic(position=(0, 2, 0), camera=Camera(position=(0, 1.6, 8), target=(0, 0.6, 0), fov_degrees=45)),
     ),
     "light-walls": ("The report's Fig. 2: light sky, walls, checker.", _classic(floor="matte", walls="matte", light=True)),
     "dark-checker": ("The report's Fig. 3: dark sky, checker, no walls.", _classic(floor="matte")),
