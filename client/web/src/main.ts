@@ -89,8 +89,7 @@ async function openScene(file: File): Promise<void> {
 async function openMesh(file: File): Promise<void> {
   const clear = toasts.note(`Reading ${file.name}\u2026`);
   const mesh = await rest.uploadMesh(file).finally(clear);
-  const shape = mesh.convex ? "convex" : "not convex";
-  toasts.finding([`${mesh.name}: ${mesh.facets} facets, ${shape}.`, ...mesh.findings].join("\n"));
+  toasts.finding([`${file.name}:`, ...mesh.findings].join("\n"));
   viewer?.send({ type: "patch_scene", patch: meshPatch(viewer.state.scene, mesh.id) });
 }
 

@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
-import { createSession, findSession, ProblemError, problemText, targa, uploadMesh } from "./rest";
+import { createSession, findSession, ProblemError, parseMesh, problemText, targa, uploadMesh } from "./rest";
 
 afterEach(() => vi.unstubAllGlobals());
 
@@ -45,10 +45,17 @@ it("says that the server cannot be reached", async () => {
 });
 
 it("uploads a mesh as a form with one file", async () => {
-  const calls = answering(201, { id: "m", name: "cube.off", facets: 6, triangles: 12, convex: true, findings: [] });
-  expect((await uploadMesh(new File(["OFF"], "cube.off"))).facets).toBe(6);
+  const findings = ["2 duplicate vertices merged."];
+  const calls = answering(201, { id: "m", description: { facets: 6, convex: true, findings } });
+  const mesh = await uploadMesh(new File(["OFF"], "cube.off"));
+  expect(mesh).toEqual({ id: "m", findings: ["6 facets, convex.", ...findings] });
   const form = calls[0]?.init?.body as FormData;
   expect((form.get("file") as File).name).toBe("cube.off");
+});
+
+it("reads what was found in a mesh from the answer itself as well", () => {
+  expect(parseMesh({ id: "m", facets: 6, convex: false }).findings).toEqual(["6 facets, not convex."]);
+  expect(() => parseMesh({ facets: 6 })).toThrow("expected the id of a mesh");
 });
 
 it("asks for a step that a double cannot hold by all its digits", async () => {

@@ -19,12 +19,9 @@ export interface Preset {
   scene: JsonObject;
 }
 
+/** An uploaded mesh: its id for the scene, and sentences about it for the user. */
 export interface Mesh {
   id: string;
-  name: string;
-  facets: number;
-  triangles: number;
-  convex: boolean;
   findings: string[];
 }
 
@@ -73,13 +70,23 @@ export async function findSession(id: string): Promise<void> {
 
 export async function presets(): Promise<Preset[]> {
   const response = await request("/api/presets");
-  return ((await response.json()) as { presets: Preset[] }).presets;
+  const { presets } = (await response.json()) as { presets?: Preset[] };
+  if (!Array.isArray(presets)) throw new ProblemError(response.status, "expected a list of presets, got none");
+  return presets;
 }
 
 export async function uploadMesh(file: File): Promise<Mesh> {
   const body = new FormData();
   body.append("file", file);
-  return (await (await request("/api/meshes", { method: "POST", body })).json()) as Mesh;
+  return parseMesh((await (await request("/api/meshes", { method: "POST", body })).json()) as JsonObject);
+}
+
+/** The gateway's answer to an upload; what it found may stand in a `description`. */
+export function parseMesh(answer: JsonObject): Mesh {
+  const { id, facets, convex, findings }: JsonObject = { ...(answer.description as JsonObject | undefined), ...answer };
+  if (typeof id !== "string") throw new ProblemError(201, "expected the id of a mesh, got none");
+  const said = Array.isArray(findings) ? findings.map(String) : [];
+  return { id, findings: [`${facets} facets, ${convex ? "convex" : "not convex"}.`, ...said] };
 }
 
 /** The state of that number, rendered at full quality. */
