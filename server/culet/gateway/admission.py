@@ -22,7 +22,7 @@ def may_enter(headers: Headers, allowed_origins: Collection[str]) -> bool:
     origin = headers.get("origin")
     if origin is None:
         return True
-    return origin in allowed_origins or urlsplit(origin).netloc == headers.get("host", "")
+    return origin in allowed_origins or urlsplit(origin).netloc == headers.get("host")
 
 
 class Admission:

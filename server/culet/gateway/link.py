@@ -71,7 +71,10 @@ class EngineLink:
         for socket in (control, frames):
             socket.setsockopt(zmq.HEARTBEAT_IVL, TCP_HEARTBEAT_MS)
             socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 3 * TCP_HEARTBEAT_MS)
-        control.setsockopt(zmq.PROBE_ROUTER, 1)  # makes this peer known at every reconnection
+        # The probe makes this peer known to the engine. It is sent when a pipe is made; by IMMEDIATE that is at every
+        # connection, and nothing that was meant for an engine before waits in it.
+        control.setsockopt(zmq.PROBE_ROUTER, 1)
+        control.setsockopt(zmq.IMMEDIATE, 1)
         frames.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
         control.connect(self._settings.control)
         frames.connect(self._settings.frames)
@@ -170,7 +173,7 @@ class EngineLink:
         if self.ready.is_set() and not new:
             return
         if self.ready.is_set():
-            self._lose("the render process was replaced")
+            self.lose("the render process was replaced")
         if new:
             self.instance = instance
             self.instances += 1
@@ -190,9 +193,12 @@ class EngineLink:
         while True:
             await asyncio.sleep(silence / 8)
             if self.ready.is_set() and loop.time() - self._last_heard > silence:
-                self._lose(f"the render process was silent for {silence:g} s")
+                self.lose(f"the render process was silent for {silence:g} s")
 
-    def _lose(self, reason: str) -> None:
+    def lose(self, reason: str) -> None:
+        """The engine is gone, says who knows."""
+        if not self.ready.is_set():
+            return
         log.warning("%s", reason)
         self.ready.clear()
         self._fail_pending(reason)

@@ -15,6 +15,7 @@ import uvicorn
 from culet.errors import InputError
 from culet.gateway.app import create_app
 from culet.gateway.settings import MEBIBYTE, GatewaySettings
+from culet.gateway.state import Gateway
 
 GRACEFUL_SHUTDOWN_SECONDS = 3
 """For answers under way at SIGTERM; containers are killed after 10 s."""
@@ -27,7 +28,6 @@ class Listener:
     """Holds the address from its creation on, so that a taken port is known before anything is started."""
 
     def __init__(self, settings: GatewaySettings, host: str, port: int) -> None:
-        self.settings = settings
         family = socket.AF_INET6 if ":" in host else socket.AF_INET
         self._socket = socket.socket(family, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -38,9 +38,11 @@ class Listener:
             raise InputError(f"cannot listen on {host} port {port}: {error}", "port") from error
         shown = f"[{host}]" if family == socket.AF_INET6 else host
         self.url = f"http://{shown}:{self._socket.getsockname()[1]}/"
+        app = create_app(settings)
+        self.gateway: Gateway = app.state.gateway
         self._server = _Server(
             uvicorn.Config(
-                create_app(settings),
+                app,
                 lifespan="on",
                 log_level="warning",
                 ws="websockets-sansio",
@@ -68,7 +70,7 @@ class Listener:
         self._server.should_exit = True
 
     async def _announce(self) -> None:
-        await self._server.config.app.state.gateway.link.ready.wait()  # type: ignore[union-attr]
+        await self.gateway.link.ready.wait()
         print(f"culet is ready: {self.url}", flush=True)
 
     def __enter__(self) -> Self:

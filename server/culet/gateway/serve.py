@@ -33,7 +33,8 @@ def serve(
         settings = GatewaySettings(
             control=control, frames=reachable(frames), web=web, allowed_origins=tuple(allowed_origins)
         )
-        asyncio.run(_serve(Listener(settings, host, port), Supervisor(control, frames)))
+        listener = Listener(settings, host, port)
+        asyncio.run(_serve(listener, Supervisor(control, frames, on_death=listener.gateway.link.lose)))
 
 
 def run_gateway(

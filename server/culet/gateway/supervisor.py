@@ -36,7 +36,15 @@ def engine_command(control: str, frames: str) -> list[str]:
 class Supervisor:
     """Keeps one engine process running until told to stop."""
 
-    def __init__(self, control: str, frames: str, command: Sequence[str] | None = None) -> None:
+    def __init__(
+        self,
+        control: str,
+        frames: str,
+        command: Sequence[str] | None = None,
+        on_death: Callable[[str], None] = lambda _reason: None,
+    ) -> None:
+        """`on_death` is told why when the engine ended without being asked to."""
+        self._on_death = on_death
         self.command = list(command or engine_command(control, frames))
         self.starts = 0
         self._process: asyncio.subprocess.Process | None = None
@@ -55,6 +63,7 @@ class Supervisor:
             code = await self._live()
             if self._stopping:
                 return
+            self._on_death(f"the render process ended with code {code}")
             if time.monotonic() - began > STEADY_SECONDS:
                 backoff, short_lives, was_steady = FIRST_BACKOFF_SECONDS, 0, True
             short_lives += 1

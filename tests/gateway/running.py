@@ -1,0 +1,138 @@
+"""Starts what the gateway's tests talk to, and talks to it as a browser would."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+from collections.abc import AsyncIterator, Callable
+from typing import Any, NamedTuple
+
+import httpx
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.typing import Origin, Subprotocol
+
+from culet.gateway.listener import Listener
+from culet.gateway.settings import GatewaySettings
+from culet.gateway.state import Gateway as Parts
+from culet_protocol import SUBPROTOCOL
+from culet_protocol.frame import Flags, Frame
+from culet_protocol.messages import Message, Resize
+
+PATIENCE = 30.0
+"""Seconds until a condition that should come true counts as failed; machines can be slow, kernels must be built."""
+SIZE = Resize(width=64, height=36)
+
+TETRAHEDRON = b"v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+
+
+class Endpoints(NamedTuple):
+    """Of an engine."""
+
+    control: str
+    frames: str
+
+
+class Gateway(NamedTuple):
+    """A running web server."""
+
+    url: str
+    http: httpx.AsyncClient
+    parts: Parts
+
+    async def session(self, scene: dict[str, Any] | None = None) -> str:
+        """A new session's id."""
+        answer = await self.http.post("/api/sessions", json={"scene": scene or {}})
+        assert answer.status_code == 201, answer.text
+        session: str = answer.json()["id"]
+        return session
+
+    async def engine_status(self) -> dict[str, float]:
+        """The engine's numbers, from /metrics."""
+        text = (await self.http.get("/metrics")).text
+        lines = [line.split() for line in text.splitlines() if line.startswith("culet_engine_")]
+        return {name.removeprefix("culet_engine_"): float(value) for name, value in lines}
+
+    @contextlib.asynccontextmanager
+    async def viewer(self, session: str, *, size: Message | None = SIZE, **options: Any) -> AsyncIterator[Viewer]:  # noqa: ANN401
+        """A viewer that has said its size."""
+        options = {"subprotocols": [Subprotocol(SUBPROTOCOL)], "max_size": None, "compression": None} | options
+        url = self.url.replace("http", "ws", 1) + f"api/sessions/{session}/stream"
+        async with connect(url, **options) as websocket:
+            viewer = Viewer(websocket)
+            if size is not None:
+                await viewer.say(size)
+            yield viewer
+
+
+class Viewer:
+    """The other end of a stream: reads always, keeps all notices and frames, acknowledges if it is told to."""
+
+    def __init__(self, websocket: ClientConnection, *, acknowledges: bool = True) -> None:
+        self.websocket = websocket
+        self.acknowledges = acknowledges
+        self.frames: list[Frame] = []
+        self.notices: list[dict[str, Any]] = []
+
+    async def say(self, message: Message) -> None:
+        """Send a control event."""
+        await self.websocket.send(message.model_dump_json())
+
+    async def receive(self) -> None:
+        """One message."""
+        message = await self.websocket.recv()
+        if isinstance(message, str):
+            self.notices.append(json.loads(message))
+            return
+        frame = Frame.unpack(message)
+        self.frames.append(frame)
+        if self.acknowledges:
+            await self.websocket.send(json.dumps({"type": "ack", "sequence": frame.sequence}))
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        """Receive until the condition holds."""
+        async with asyncio.timeout(PATIENCE):
+            while not condition():
+                await self.receive()
+
+    async def notice(self, kind: str) -> dict[str, Any]:
+        """The first notice of that type that is not taken yet, taken; receives until there is one."""
+        await self.until(lambda: any(notice["type"] == kind for notice in self.notices))
+        found = next(notice for notice in self.notices if notice["type"] == kind)
+        self.notices.remove(found)
+        return found
+
+    async def frame(self) -> Frame:
+        """The next frame."""
+        before = len(self.frames)
+        await self.until(lambda: len(self.frames) > before)
+        return self.frames[-1]
+
+    async def final(self) -> Frame:
+        """The last frame of a picture at rest."""
+        await self.until(lambda: bool(self.frames and Flags.FINAL in self.frames[-1].flags))
+        return self.frames[-1]
+
+
+@contextlib.asynccontextmanager
+async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gateway]:  # noqa: ANN401
+    """A web server with these settings, in this process, once it hears the engine."""
+    with Listener(GatewaySettings(*engine, **limits), "127.0.0.1", 0) as listener:
+        serving = asyncio.create_task(listener.run())
+        try:
+            async with asyncio.timeout(PATIENCE), httpx.AsyncClient(base_url=listener.url, timeout=PATIENCE) as http:
+                await listener.gateway.link.ready.wait()
+                yield Gateway(listener.url, http, listener.gateway)
+        finally:
+            listener.stop()
+            await serving
+
+
+async def eventually(condition: Callable[[], Any]) -> None:
+    """Until an awaitable condition is true."""
+    async with asyncio.timeout(PATIENCE):
+        while not await condition():  # noqa: ASYNC110 - the condition is another process's
+            await asyncio.sleep(0.01)
+
+
+FOREIGN = Origin("http://elsewhere.example")

@@ -1,0 +1,81 @@
+"""Health, metrics, the documentation and the page."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from gateway.running import Endpoints, Gateway, gateway_before
+
+NOBODY = Endpoints("ipc:///tmp/culet-nobody-control", "ipc:///tmp/culet-nobody-frames")
+
+
+async def test_with_an_engine_the_gateway_is_healthy_and_ready(gateway: Gateway) -> None:
+    assert (await gateway.http.get("/healthz")).json() == {"status": "ok"}
+    assert (await gateway.http.get("/readyz")).json() == {"status": "ready"}
+
+
+async def test_metrics_are_prometheus_text_without_a_label_that_grows(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as viewer:
+        await viewer.frame()
+        answer = await gateway.http.get("/metrics")
+    assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
+    line = re.compile(r'(# (HELP|TYPE) \w+ .+|\w+(\{status="\d+"\})? -?[0-9.e+-]+)')
+    assert [text for text in answer.text.splitlines() if not line.fullmatch(text)] == []
+    assert session not in answer.text
+    for expected in ("culet_engine_up 1", "culet_sessions 1", "culet_viewers 1"):
+        assert f"\n{expected}\n" in answer.text
+    assert (await gateway.engine_status())["frames_rendered"] >= 1
+
+
+async def test_the_documentation_lists_every_route_and_loads_nothing_from_elsewhere(gateway: Gateway) -> None:
+    page = (await gateway.http.get("/docs")).text
+    assert "openapi.json" in page
+    assert "//" not in re.sub(r"^// .*$", "", page, flags=re.MULTILINE), "no address of another server"
+    paths = (await gateway.http.get("/openapi.json")).json()["paths"]
+    session = "/api/sessions/{session_id}"
+    for path in ("/api/render.tga", "/api/render", "/api/presets", "/api/materials", "/api/cuts", "/api/meshes"):
+        assert path in paths
+    for path in ("/api/sessions", session, f"{session}/frame.tga", "/healthz", "/readyz", "/metrics"):
+        assert path in paths
+
+
+async def test_every_example_in_the_documentation_runs(gateway: Gateway) -> None:
+    document = (await gateway.http.get("/openapi.json")).json()
+    session, ran = await gateway.session(), 0
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            content = operation.get("requestBody", {}).get("content", {}).get("application/json")
+            if content is None:
+                continue
+            schema = content["schema"]
+            reference = schema.get("$ref") or next((s["$ref"] for s in schema.get("anyOf", []) if "$ref" in s), None)
+            if reference:
+                schema = document["components"]["schemas"][reference.rpartition("/")[2]]
+            for example in schema["examples"]:
+                answer = await gateway.http.request(method, path.replace("{session_id}", session), json=example)
+                assert answer.status_code in (200, 201), (path, answer.text)
+                ran += 1
+    assert ran == 3
+
+
+async def test_the_page_is_served_or_its_absence_explained(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path) as gateway:
+        assert "not built" in (await gateway.http.get("/")).text
+    (tmp_path / "index.html").write_text("<h1>the page</h1>")
+    async with gateway_before(engine, web=tmp_path) as gateway:
+        assert (await gateway.http.get("/")).text == "<h1>the page</h1>"
+        assert (await gateway.http.get("/healthz")).status_code == 200
+        assert (await gateway.http.get("/../../etc/passwd")).status_code == 404
+
+
+def test_the_gateway_never_loads_opencl_or_the_renderer() -> None:
+    script = (
+        "import sys, culet.gateway.serve\n"
+        "print([name for name in sys.modules if name.startswith(('pyopencl', 'culet.rendering', 'culet.engine'))])"
+    )
+    loaded = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert loaded.stdout.strip() == "[]"

@@ -1,0 +1,43 @@
+"""Numbers that JSON cannot hold, and errors from the engine."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from culet.errors import BusyError, CuletError, EngineUnavailableError, InputError, NotFoundError, TooLargeError
+from culet.gateway.link import error_of
+from culet.gateway.problems import finite
+from culet_protocol.engine import Reply
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
+def test_a_number_that_is_none_is_named_by_its_place(number: float) -> None:
+    with pytest.raises(InputError, match=r"lights\.1\.position: expected a finite number") as refused:
+        finite({"lights": [{"position": 0.0}, {"position": number}], "name": "x"})
+    assert refused.value.field == "lights.1.position"
+
+
+def test_finite_numbers_pass_at_any_depth() -> None:
+    finite({"a": [1, 2.5, {"b": None, "c": "NaN", "d": True}]})
+
+
+@pytest.mark.parametrize(
+    ("status", "error", "field"),
+    [
+        (404, NotFoundError, None),
+        (413, TooLargeError, "file"),
+        (422, InputError, "camera.up"),
+        (429, BusyError, None),
+        (500, CuletError, None),
+        (503, EngineUnavailableError, None),
+    ],
+)
+def test_the_engines_refusals_keep_their_status_title_and_field(
+    status: int, error: type[CuletError], field: str | None
+) -> None:
+    raised = error_of(Reply(status=status, title="a title", detail="what happened", field=field))
+    assert type(raised) is error
+    assert (raised.status, raised.title, str(raised)) == (status, "a title", "what happened")
+    assert getattr(raised, "field", None) == field

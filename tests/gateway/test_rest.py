@@ -1,0 +1,242 @@
+"""REST over a real server and engine: answers, and a clear problem document for everything that cannot be done."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from PIL import Image
+
+from gateway.running import FOREIGN, Endpoints, Gateway, eventually, gateway_before
+
+SMALL = {"width": 64, "height": 36}
+JSON = {"Content-Type": "application/json"}
+
+
+def assert_problem(answer: httpx.Response, status: int, field: str | None = None) -> None:
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    body = answer.json()
+    assert body["status"] == status
+    assert body["title"]
+    assert body["detail"]
+    assert body.get("field") == field, body
+
+
+async def test_a_preset_renders_as_a_tga_with_a_footer(gateway: Gateway) -> None:
+    answer = await gateway.http.get("/api/render.tga", params={**SMALL, "preset": "matte", "samples": 1})
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "image/x-tga"
+    assert answer.content.endswith(b"TRUEVISION-XFILE.\0")
+    picture = Image.open(io.BytesIO(answer.content))
+    assert (picture.format, picture.size, picture.mode) == ("TGA", (64, 36), "RGB")
+
+
+async def test_without_parameters_the_picture_is_640_by_360(gateway: Gateway) -> None:
+    answer = await gateway.http.get("/api/render.tga")
+    assert Image.open(io.BytesIO(answer.content)).size == (640, 360)
+
+
+@pytest.mark.parametrize(
+    ("file_format", "media_type", "magic"),
+    [
+        ("tga", "image/x-tga", b"\0\0\2"),
+        ("png", "image/png", b"\x89PNG"),
+        ("jpeg", "image/jpeg", b"\xff\xd8"),
+        ("exr", "image/x-exr", b"\x76\x2f\x31\x01"),
+    ],
+)
+async def test_a_scene_renders_in_every_format(
+    gateway: Gateway, file_format: str, media_type: str, magic: bytes
+) -> None:
+    answer = await gateway.http.post("/api/render", json={"scene": {}, **SMALL, "format": file_format})
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == media_type
+    assert answer.content.startswith(magic)
+
+
+async def test_every_preset_is_a_scene_that_renders(gateway: Gateway) -> None:
+    presets = (await gateway.http.get("/api/presets")).json()["presets"]
+    assert {"default", "classic"} <= {preset["name"] for preset in presets}
+    for preset in presets:
+        answer = await gateway.http.post("/api/render", json={"scene": preset["scene"], "width": 16, "height": 9})
+        assert answer.status_code == 200, (preset["name"], answer.text)
+
+
+async def test_materials_and_cuts_can_be_named_in_a_scene(gateway: Gateway) -> None:
+    materials = (await gateway.http.get("/api/materials")).json()["materials"]
+    cuts = (await gateway.http.get("/api/cuts")).json()["cuts"]
+    # Diamond at 656.3, 546.1 and 435.8 nm by Peter's Sellmeier fit (1923).
+    assert materials[0]["indices"] == pytest.approx([2.4097, 2.4236, 2.4514], abs=2e-3)
+    assert "table_percent" in cuts[0]["proportions"]
+    stone = {"cut": {"name": cuts[0]["name"], "table_percent": 57}, "material": materials[1]["name"]}
+    answer = await gateway.http.post("/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9})
+    assert answer.status_code == 200, answer.text
+
+
+@pytest.mark.parametrize(
+    ("body", "field"),
+    [
+        ('{"scene": {"camera": {"fov_degrees": NaN}}}', "scene.camera.fov_degrees"),
+        ('{"scene": {"camera": {"fov_degrees": Infinity}}}', "scene.camera.fov_degrees"),
+        ('{"scene": {"camera": {"fov_degrees": 1e999}}}', "scene.camera.fov_degrees"),
+        ('{"scene": {"camera": {"fov_degrees": 1000}}}', "scene.camera.fov_degrees"),
+        ('{"scene": {"camera": {"zoom": 2}}}', "scene.camera.zoom"),
+        ('{"scene": {"stones": [{"mesh": "/etc/passwd"}]}}', "scene.stones.0.mesh"),
+        ('{"scene": {}, "width": 0}', "width"),
+        ('{"scene": {}, "height": 100000}', "height"),
+        ('{"scene": {}, "width": 8192, "height": 8192}', "width"),
+        ('{"scene": {}, "format": "gif"}', "format"),
+        ('{"scene": {}', None),
+        ("[]", None),
+    ],
+)
+async def test_a_scene_that_cannot_be_used_is_refused_by_field(gateway: Gateway, body: str, field: str | None) -> None:
+    assert_problem(await gateway.http.post("/api/render", content=body, headers=JSON), 422, field)
+
+
+@pytest.mark.parametrize(
+    ("query", "status", "field"),
+    [
+        ("width=0", 422, "width"),
+        ("height=100000", 422, "height"),
+        ("width=nan", 422, "width"),
+        ("widht=640", 422, "widht"),
+        ("preset=ruby", 404, None),
+    ],
+)
+async def test_a_query_that_cannot_be_used_is_refused_by_field(
+    gateway: Gateway, query: str, status: int, field: str | None
+) -> None:
+    assert_problem(await gateway.http.get(f"/api/render.tga?{query}"), status, field)
+
+
+async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -> None:
+    made = await gateway.http.post("/api/sessions", json={"preset": "matte"})
+    assert made.status_code == 201
+    path = made.headers["Location"]
+    assert path == f"/api/sessions/{made.json()['id']}"
+    assert made.json()["scene"]["floor"]["kind"] == "matte"
+
+    changed = await gateway.http.patch(path, json={"floor": {"kind": "none"}, "lights": []})
+    assert changed.status_code == 200
+    scene: dict[str, Any] = (await gateway.http.get(path)).json()["scene"]
+    assert (scene["floor"]["kind"], scene["lights"]) == ("none", [])
+
+    assert (await gateway.http.delete(path)).status_code == 204
+    for method, body in (("GET", None), ("PATCH", {}), ("DELETE", None)):
+        assert_problem(await gateway.http.request(method, path, json=body), 404)
+    assert_problem(await gateway.http.get(f"{path}/frame.tga"), 404)
+
+
+async def test_a_session_without_a_body_shows_the_default_scene(gateway: Gateway) -> None:
+    made = await gateway.http.post("/api/sessions")
+    assert made.status_code == 201
+    assert made.json()["scene"]["floor"]["kind"] == "mirror"
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "field"),
+    [
+        ({"preset": "ruby"}, 404, None),
+        ({"preset": "matte", "scene": {}}, 422, None),
+        ({"scene": {"lights": 7}}, 422, "scene.lights"),
+    ],
+)
+async def test_a_session_that_cannot_be_made_is_refused(
+    gateway: Gateway, body: dict[str, Any], status: int, field: str | None
+) -> None:
+    assert_problem(await gateway.http.post("/api/sessions", json=body), status, field)
+
+
+@pytest.mark.parametrize(
+    ("patch", "field"),
+    [
+        ('{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
+        ('{"camera": {"fov_degrees": -1}}', "camera.fov_degrees"),
+        ('{"flor": {"kind": "matte"}}', "flor"),
+    ],
+)
+async def test_a_patch_that_cannot_be_used_leaves_the_session_as_it_was(
+    gateway: Gateway, patch: str, field: str
+) -> None:
+    path = f"/api/sessions/{await gateway.session()}"
+    before = (await gateway.http.get(path)).json()
+    assert_problem(await gateway.http.patch(path, content=patch, headers=JSON), 422, field)
+    assert (await gateway.http.get(path)).json() == before
+
+
+async def test_the_frame_of_a_step_is_the_picture_that_was_shown_then(gateway: Gateway) -> None:
+    session = await gateway.session({"sampling": {"samples_per_pixel": 1}})
+    path = f"/api/sessions/{session}/frame.tga"
+    async with gateway.viewer(session) as viewer:
+        shown = await viewer.final()
+        assert (await gateway.http.get(path)).status_code == 200
+        before = (await gateway.http.get(path, params={"step": shown.step})).content
+        await gateway.http.patch(f"/api/sessions/{session}", json={"camera": {"position": [3, 2, 3]}})
+        await viewer.until(lambda: viewer.frames[-1].step > shown.step)
+        again = await gateway.http.get(path, params={"step": shown.step})
+        now = await gateway.http.get(path)
+    assert again.content == before
+    assert now.content != before
+    assert "attachment" in again.headers["content-disposition"]
+    assert Image.open(io.BytesIO(before)).size == (64, 36), "the size that the viewers see"
+    assert_problem(await gateway.http.get(path, params={"step": 10**9}), 404)
+
+
+async def test_sessions_are_capped(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, max_sessions=2) as gateway:
+        sessions = [await gateway.session() for _ in range(2)]
+        refused = await gateway.http.post("/api/sessions")
+        assert_problem(refused, 429)
+        assert refused.headers["retry-after"]
+        await gateway.http.delete(f"/api/sessions/{sessions[0]}")
+        await gateway.session()
+
+
+async def test_sessions_that_nobody_uses_expire(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, session_idle_seconds=0.3) as gateway:
+        watched, idle = await gateway.session(), await gateway.session()
+        async with gateway.viewer(watched) as viewer:
+            await viewer.frame()
+
+            async def one_left() -> bool:
+                return len(gateway.parts.sessions) == 1
+
+            await eventually(one_left)
+            assert_problem(await gateway.http.get(f"/api/sessions/{idle}"), 404)
+            assert (await gateway.http.get(f"/api/sessions/{watched}")).status_code == 200
+
+
+async def test_too_many_stills_at_once_are_refused(gateway: Gateway) -> None:
+    body = {"scene": {"sampling": {"samples_per_pixel": 64}}, "width": 320, "height": 180}
+    answers = await asyncio.gather(*(gateway.http.post("/api/render", json=body) for _ in range(24)))
+    statuses = [answer.status_code for answer in answers]
+    assert set(statuses) == {200, 429}
+    assert_problem(answers[statuses.index(429)], 429)
+
+
+async def test_a_body_over_the_limit_is_refused_whether_it_says_its_length_or_not(
+    engine: Endpoints, tmp_path: Path
+) -> None:
+    async def chunks() -> Any:  # noqa: ANN401
+        for _ in range(4):
+            yield b" " * 1000
+
+    async with gateway_before(engine, web=tmp_path, max_body_bytes=2000) as gateway:
+        assert_problem(await gateway.http.post("/api/render", content=b" " * 4000, headers=JSON), 413)
+        assert_problem(await gateway.http.post("/api/render", content=chunks(), headers=JSON), 413)
+
+
+async def test_other_pages_may_read_but_not_change(gateway: Gateway) -> None:
+    headers = {"Origin": FOREIGN}
+    assert (await gateway.http.get("/api/cuts", headers=headers)).status_code == 200
+    assert_problem(await gateway.http.post("/api/sessions", headers=headers), 403)
+
+
+async def test_an_unknown_path_is_a_problem_too(gateway: Gateway) -> None:
+    assert_problem(await gateway.http.get("/api/nothing"), 404)

@@ -1,0 +1,231 @@
+"""Streams over a real WebSocket: who gets which frame, what is refused, and that one viewer never harms another."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.typing import Subprotocol
+
+from culet.gateway.credit import WINDOW
+from culet.gateway.stream import MAX_CONTROL_BYTES
+from culet_protocol.frame import Flags
+from culet_protocol.messages import Orbit, Ping, ResetStone, Resize, ToggleFall, Visibility
+from gateway.running import FOREIGN, PATIENCE, Gateway, eventually
+
+
+async def test_a_viewer_is_greeted_and_gets_frames_of_its_size_up_to_the_final_one(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as viewer:
+        assert await viewer.notice("hello") == {"type": "hello", "protocol": 1, "session": session, "viewer": 1}
+        assert (await viewer.notice("state"))["scene"]["camera"]["fov_degrees"] == 45
+        assert (await viewer.notice("viewers"))["count"] == 1
+        final = await viewer.final()
+    assert final.session.hex() == session
+    assert (final.width, final.height) == (64, 36)
+    assert final.payload[:2] == b"\xff\xd8", "JPEG begins with its start-of-image marker"
+
+
+async def test_frames_come_in_order_and_none_twice(gateway: Gateway) -> None:
+    async with gateway.viewer(await gateway.session()) as viewer:
+        await viewer.say(ToggleFall())
+        await viewer.until(lambda: len(viewer.frames) >= 20)
+    sequences = [frame.sequence for frame in viewer.frames]
+    assert sequences == sorted(set(sequences))
+
+
+async def test_two_viewers_see_the_same_and_are_told_of_each_other(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as first, gateway.viewer(session) as second:
+        assert (await second.notice("viewers"))["count"] == 2
+        one, two = await first.final(), await second.final()
+        assert one.payload == two.payload
+        await first.say(Orbit(yaw=0.3, pitch=0))
+        moved = await second.notice("state")
+        while moved["scene"]["camera"]["position"][0] == 0:
+            moved = await second.notice("state")
+
+    async def nobody() -> bool:
+        return gateway.parts.sessions.viewers == 0
+
+    await eventually(nobody)
+
+
+async def test_a_late_viewer_gets_the_latest_picture_without_a_new_one_being_rendered(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as early:
+        final = await early.final()
+        rendered = (await gateway.engine_status())["frames_rendered"]
+        async with gateway.viewer(session) as late:
+            assert (await late.frame()).sequence == final.sequence
+            assert (await gateway.engine_status())["frames_rendered"] == rendered
+
+
+async def test_a_viewer_that_never_acknowledges_gets_its_window_and_delays_nobody(gateway: Gateway) -> None:
+    session = await gateway.session({"simulation": {"restitution": 1, "tangential_damping": 1, "angular_damping": 1}})
+    async with gateway.viewer(session) as stuck, gateway.viewer(session) as lively:
+        stuck.acknowledges = False
+        began = time.monotonic()
+        await lively.say(ToggleFall())
+        await lively.until(lambda: len(lively.frames) >= 30)
+        took = time.monotonic() - began
+        await stuck.say(Ping(time=1))
+        await stuck.notice("pong")
+    returned = WINDOW * int(took / 2.0)  # a credit comes back after 2 s without an acknowledgement
+    assert WINDOW <= len(stuck.frames) <= WINDOW + returned
+    assert len(lively.frames) >= 30
+
+
+async def test_nobody_watching_means_nothing_rendered(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as viewer:
+        await viewer.frame()
+
+    async def unwatched() -> bool:
+        return (await gateway.engine_status())["sessions_watched"] == 0
+
+    await eventually(unwatched)
+    rendered = (await gateway.engine_status())["frames_rendered"]
+    for x in range(3):
+        patched = await gateway.http.patch(f"/api/sessions/{session}", json={"camera": {"position": [x, 2, 6]}})
+        assert patched.status_code == 200
+    still = await gateway.http.get("/api/render.tga", params={"width": 32, "height": 18})
+    assert still.status_code == 200, "the render thread had its turn after the edits"
+    assert (await gateway.engine_status())["frames_rendered"] == rendered
+
+
+async def test_a_hidden_viewer_gets_nothing_until_it_is_shown_again(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as viewer:
+        await viewer.final()
+        await viewer.say(Visibility(visible=False))
+
+        async def unwatched() -> bool:
+            return (await gateway.engine_status())["sessions_watched"] == 0
+
+        await eventually(unwatched)
+        seen = len(viewer.frames)
+        await viewer.say(Orbit(yaw=0.2, pitch=0))
+        await viewer.say(Ping(time=2))
+        await viewer.notice("pong")
+        assert len(viewer.frames) == seen
+        await viewer.say(Visibility(visible=True))
+        assert (await viewer.frame()).step > viewer.frames[seen - 1].step
+
+
+async def test_the_latest_resize_decides_the_size(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as viewer:
+        await viewer.final()
+        await viewer.say(Resize(width=48, height=48))
+        await viewer.until(lambda: (viewer.frames[-1].width, viewer.frames[-1].height) == (48, 48))
+
+
+async def test_falling_frames_are_marked_and_a_reset_ends_them(gateway: Gateway) -> None:
+    async with gateway.viewer(await gateway.session()) as viewer:
+        await viewer.say(ToggleFall())
+        await viewer.until(lambda: bool(viewer.frames and Flags.MOVING in viewer.frames[-1].flags))
+        assert (await viewer.notice("state"))["falling"] is False
+        assert (await viewer.notice("state"))["falling"] is True
+        await viewer.say(ResetStone())
+        assert (await viewer.notice("state"))["falling"] is False
+        assert (await viewer.final()).simulation_time == 0
+
+
+@pytest.mark.parametrize(
+    ("message", "code", "field"),
+    [
+        ("not json", "malformed", None),
+        ('{"type": "fly"}', "malformed", None),
+        ('{"type": "orbit", "yaw": "far", "pitch": 0}', "malformed", "orbit.yaw"),
+        ('{"type": "orbit", "yaw": NaN, "pitch": 0}', "malformed", "orbit.yaw"),
+        ('{"type": "patch_scene", "patch": {"film": {"exposure": NaN}}}', "unusable_input", "film.exposure"),
+        ('{"type": "patch_scene", "patch": {"film": {"exposure": 1e999}}}', "unusable_input", "film.exposure"),
+        ('{"type": "patch_scene", "patch": {"film": {"exposure": -1}}}', "unusable_input", "film.exposure"),
+        ('{"type": "set_scene", "scene": {"stones": [{"mesh": "../etc/passwd"}]}}', "unusable_input", "stones.0.mesh"),
+        (json.dumps({"type": "set_scene", "scene": {"x": "y" * MAX_CONTROL_BYTES}}), "too_large", None),
+        (b"\x00\x01\x02", "binary_message", None),
+    ],
+    ids=["no json", "unknown type", "wrong type", "nan", "nan in patch", "infinity in patch", "out of range", "path",
+         "oversized", "binary"],
+)  # fmt: skip
+async def test_bad_control_messages_are_answered_and_the_session_lives_on(
+    gateway: Gateway, message: str | bytes, code: str, field: str | None
+) -> None:
+    async with gateway.viewer(await gateway.session()) as viewer:
+        first = await viewer.frame()
+        await viewer.websocket.send(message)
+        problem = await viewer.notice("problem")
+        assert (problem["code"], problem["field"]) == (code, field)
+        assert problem["message"]
+        await viewer.say(Orbit(yaw=0.1, pitch=0.1))
+        await viewer.until(lambda: viewer.frames[-1].step > first.step)
+
+
+async def test_a_message_beyond_any_use_closes_that_viewer_only(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as rude, gateway.viewer(session) as other:
+        await rude.websocket.send("x" * (2 << 20))
+        with pytest.raises(ConnectionClosed) as closed:
+            await rude.until(lambda: False)
+        assert closed.value.rcvd
+        assert closed.value.rcvd.code == 1009
+        await other.final()
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "reason"),
+    [
+        ({"origin": FOREIGN}, 4403, "pages of http://elsewhere.example may not open streams here"),
+        ({"subprotocols": [Subprotocol("culet.v99")]}, 1002, "this server speaks culet.v1; reload the page"),
+    ],
+    ids=["foreign page", "other protocol"],
+)
+async def test_a_refused_viewer_is_told_why(
+    gateway: Gateway, options: dict[str, object], code: int, reason: str
+) -> None:
+    with pytest.raises(ConnectionClosed) as closed:
+        async with gateway.viewer(await gateway.session(), size=None, **options) as viewer:
+            await viewer.until(lambda: False)
+    assert closed.value.rcvd
+    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (code, reason)
+
+
+async def test_an_unknown_session_is_closed_with_4404(gateway: Gateway) -> None:
+    with pytest.raises(ConnectionClosed) as closed:
+        async with gateway.viewer("0" * 32, size=None) as viewer:
+            await viewer.until(lambda: False)
+    assert closed.value.rcvd
+    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (4404, "no such session; it may have expired")
+
+
+async def test_a_page_of_the_same_host_may_open_a_stream(gateway: Gateway) -> None:
+    async with gateway.viewer(await gateway.session(), origin=gateway.url.rstrip("/")) as viewer:
+        await viewer.notice("hello")
+
+
+async def test_a_viewer_that_vanishes_in_mid_frame_leaves_the_others_alone(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as stays:
+        async with gateway.viewer(session) as vanishes:
+            await stays.say(ToggleFall())
+            await vanishes.frame()
+            vanishes.websocket.transport.abort()  # no closing handshake, frames on their way
+        seen = len(stays.frames)
+        await stays.until(lambda: len(stays.frames) >= seen + 5)
+        await stays.until(lambda: {"type": "viewers", "count": 1} in stays.notices[2:])
+
+
+async def test_deleting_a_session_ends_its_streams(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as viewer:
+        await viewer.frame()
+        assert (await gateway.http.delete(f"/api/sessions/{session}")).status_code == 204
+        assert (await viewer.notice("problem"))["code"] == "session_closed"
+        async with asyncio.timeout(PATIENCE):
+            await viewer.websocket.wait_closed()
+        assert viewer.websocket.close_code == 4404
+    assert (await gateway.http.get(f"/api/sessions/{session}")).status_code == 404

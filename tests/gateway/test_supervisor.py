@@ -1,0 +1,190 @@
+"""`culet serve` as a whole: the engine killed, the parent killed, both told to stop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import httpx
+import pytest
+from websockets.asyncio.client import connect
+
+from culet.errors import EngineUnavailableError, InputError
+from culet.gateway.listener import Listener
+from culet.gateway.settings import GatewaySettings
+from culet.gateway.supervisor import STARTS_BEFORE_GIVING_UP, Supervisor
+from culet_protocol.messages import Orbit
+from gateway.running import PATIENCE, SIZE, Viewer, eventually
+
+
+class Served(NamedTuple):
+    """A running `culet serve`."""
+
+    process: subprocess.Popen[str]
+    http: httpx.AsyncClient
+
+    def engine(self) -> int | None:
+        """Process id of the engine."""
+        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        return int(children[0]) if children else None
+
+    @contextlib.asynccontextmanager
+    async def viewer(self, session: str) -> AsyncIterator[Viewer]:
+        """A viewer that has said its size."""
+        url = str(self.http.base_url).replace("http", "ws", 1) + f"api/sessions/{session}/stream"
+        async with connect(url, max_size=None) as websocket:
+            viewer = Viewer(websocket)
+            await viewer.say(SIZE)
+            yield viewer
+
+
+@pytest.fixture
+async def served(tmp_path: Path) -> AsyncIterator[Served]:
+    with _serve(tmp_path) as (process, url):
+        async with httpx.AsyncClient(base_url=url, timeout=PATIENCE) as http:
+            yield Served(process, http)
+
+
+@contextlib.contextmanager
+def _serve(web: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    command = [sys.executable, "-m", "culet", "serve", "--port", "0", "--web", str(web)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout
+        line = process.stdout.readline()
+        assert line.startswith("culet is ready: http://127.0.0.1:"), line
+        yield process, line.split()[-1]
+    finally:
+        process.terminate()
+        process.communicate(timeout=PATIENCE)
+
+
+def alive(pid: int) -> bool:
+    """Whether the process runs; one that has ended and waits for its parent does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def ignores(pid: int, number: signal.Signals) -> bool:
+    """Whether the process ignores a signal: bit number - 1 of a mask in proc(5)."""
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    mask = next(line.split()[1] for line in lines if line.startswith("SigIgn"))
+    return bool(int(mask, 16) >> (number - 1) & 1)
+
+
+async def ended(pid: int) -> None:
+    async def gone() -> bool:
+        return not alive(pid)
+
+    await eventually(gone)
+
+
+async def test_a_killed_engine_comes_back_with_the_same_sessions(served: Served) -> None:
+    made = await served.http.post("/api/sessions", json={"preset": "matte"})
+    session = made.json()["id"]
+    async with served.viewer(session) as viewer:
+        await viewer.say(Orbit(yaw=0.4, pitch=0.1))
+        await viewer.until(lambda: bool(viewer.frames) and viewer.frames[-1].step > 1)
+        before = (await served.http.get(f"/api/sessions/{session}")).json()
+        last = viewer.frames[-1]
+        engine = served.engine()
+        assert engine
+        os.kill(engine, signal.SIGKILL)
+        assert (await viewer.notice("engine"))["status"] == "down"
+        assert (await viewer.notice("engine"))["status"] == "up"
+        frame = await viewer.frame()
+        assert frame.sequence > last.sequence, "frame numbers go on, so that none is taken for an old one"
+        assert (await served.http.get(f"/api/sessions/{session}")).json() == before
+        assert served.engine() not in (None, engine)
+        assert (await served.http.get("/metrics")).text.count("culet_engine_processes_total 2") == 1
+
+
+async def test_without_its_engine_the_gateway_says_so(served: Served) -> None:
+    engine = served.engine()
+    assert engine
+    os.kill(engine, signal.SIGSTOP)  # it hangs, and does not end
+    try:
+
+        async def unready() -> bool:
+            return (await served.http.get("/readyz")).status_code == 503
+
+        await eventually(unready)
+        assert (await served.http.get("/healthz")).status_code == 200
+        refused = await served.http.get("/api/render.tga")
+        assert (refused.status_code, refused.json()["title"]) == (503, "engine unavailable")
+    finally:
+        os.kill(engine, signal.SIGCONT)
+
+    async def ready() -> bool:
+        return (await served.http.get("/readyz")).status_code == 200
+
+    await eventually(ready)
+    assert served.engine() == engine, "an engine that only paused is not replaced"
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches(
+    served: Served, number: signal.Signals
+) -> None:
+    session = (await served.http.post("/api/sessions")).json()["id"]
+    engine = served.engine()
+    assert engine
+    async with served.viewer(session) as viewer:
+        await viewer.frame()
+        began = time.monotonic()
+        served.process.send_signal(number)
+        assert await asyncio.to_thread(served.process.wait, PATIENCE) == 0
+        assert time.monotonic() - began < 8, "measured: 0.5 s"
+        await viewer.websocket.wait_closed()
+        assert viewer.websocket.close_code == 1012, "service restart"
+    assert not alive(engine)
+
+
+async def test_an_engine_does_not_outlive_a_killed_parent(served: Served) -> None:
+    engine = served.engine()
+    assert engine
+    served.process.kill()
+    await ended(engine)
+
+
+async def test_an_engine_that_never_starts_is_given_up() -> None:
+    supervisor = Supervisor("ipc://unused", "ipc://unused", command=["false"])
+    with pytest.raises(EngineUnavailableError, match=r"ended 4 times in a row, last with code 1"):
+        await supervisor.run()
+    assert supervisor.starts == STARTS_BEFORE_GIVING_UP
+
+
+async def test_an_engine_that_does_not_listen_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("culet.gateway.supervisor.STOP_SECONDS", 0.2)
+    deaf = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"
+    supervisor = Supervisor("ipc://unused", "ipc://unused", command=[sys.executable, "-c", deaf])
+    running = asyncio.create_task(supervisor.run())
+
+    async def started() -> bool:
+        return supervisor.pid is not None and ignores(supervisor.pid, signal.SIGTERM)
+
+    await eventually(started)
+    pid = supervisor.pid
+    assert pid
+    await supervisor.stop()
+    await running
+    assert not alive(pid)
+    assert supervisor.starts == 1
+
+
+def test_a_taken_port_is_refused_before_anything_starts() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(InputError, match=rf"cannot listen on 127.0.0.1 port {port}: .*in use"):
+            Listener(GatewaySettings("ipc://unused", "ipc://unused"), "127.0.0.1", port)

@@ -1,0 +1,89 @@
+"""POST /api/meshes: what is accepted can be rendered, what is not is named, and nothing is left on disk."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from gateway.running import TETRAHEDRON, Endpoints, Gateway, gateway_before
+
+
+def form(name: str, data: bytes) -> dict[str, tuple[str, bytes]]:
+    return {"file": (name, data)}
+
+
+async def test_an_uploaded_mesh_is_described_and_can_be_rendered(gateway: Gateway) -> None:
+    answer = await gateway.http.post("/api/meshes", files=form("stone.obj", TETRAHEDRON))
+    assert answer.status_code == 201, answer.text
+    mesh = answer.json()
+    assert mesh["description"]["convex"] is True
+    assert mesh["description"]["facets"] == 4
+    again = await gateway.http.post("/api/meshes", files=form("same.obj", TETRAHEDRON))
+    assert again.json()["id"] == mesh["id"], "the same file has the same id"
+    scene = {"stones": [{"mesh": mesh["id"]}]}
+    picture = await gateway.http.post("/api/render", json={"scene": scene, "width": 32, "height": 18})
+    assert picture.status_code == 200, picture.text
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "defect"),
+    [
+        ("empty.obj", b"", "empty"),
+        ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "boundary edges"),
+        ("open.obj", TETRAHEDRON.rsplit(b"f ", 1)[0], "open"),
+        ("text.stl", b"this is no mesh", "no triangles"),
+        ("stone.exe", TETRAHEDRON, "stone.exe"),
+        ("stone", TETRAHEDRON, ".obj, .off, .stl, .ply, .glb"),
+        ("../../stone.obj/..", TETRAHEDRON, "expected a name that ends with"),
+    ],
+)
+async def test_what_is_not_a_stone_is_refused_by_its_defect(
+    gateway: Gateway, name: str, data: bytes, defect: str
+) -> None:
+    answer = await gateway.http.post("/api/meshes", files=form(name, data))
+    assert answer.status_code == 422, answer.text
+    assert defect in answer.json()["detail"]
+
+
+async def test_an_upload_needs_the_field_file(gateway: Gateway) -> None:
+    for answer in (
+        await gateway.http.post("/api/meshes", files={"mesh": ("stone.obj", TETRAHEDRON)}),
+        await gateway.http.post("/api/meshes", json={}),
+        await gateway.http.post("/api/meshes"),
+    ):
+        assert (answer.status_code, answer.json()["field"]) == (422, "file"), answer.text
+
+
+async def test_a_mesh_over_the_limit_is_refused_and_nothing_stays_on_disk(
+    engine: Endpoints, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
+
+    async def without_length() -> AsyncIterator[bytes]:
+        yield b'--b\r\nContent-Disposition: form-data; name="file"; filename="x.obj"\r\n\r\n'
+        for _ in range(64):
+            yield b"v 0 0 0\n" * (1 << 13)
+        yield b"\r\n--b--\r\n"
+
+    async with gateway_before(engine, web=tmp_path, max_mesh_bytes=1 << 21) as gateway:
+        over = await gateway.http.post("/api/meshes", files=form("big.obj", b"#" * (1 << 21) + TETRAHEDRON))
+        assert (over.status_code, over.json()["field"]) == (413, "file")
+        headers = {"Content-Type": "multipart/form-data; boundary=b"}
+        undeclared = await gateway.http.post("/api/meshes", content=without_length(), headers=headers)
+        assert (undeclared.status_code, undeclared.json()["field"]) == (413, "file")
+        kept = await gateway.http.post("/api/meshes", files=form("ok.obj", b"#" * (1 << 20) + b"\n" + TETRAHEDRON))
+        assert kept.status_code == 201, kept.text
+    assert list(scratch.iterdir()) == []
+
+
+async def test_of_uploads_kept_for_a_new_engine_the_oldest_go_first(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, max_kept_mesh_bytes=2 * len(TETRAHEDRON) + 10) as gateway:
+        for comment in (b"#1\n", b"#2\n", b"#3\n"):
+            answer = await gateway.http.post("/api/meshes", files=form("stone.obj", comment + TETRAHEDRON))
+            assert answer.status_code == 201, answer.text
+        assert gateway.parts.meshes.kept_bytes == 2 * (len(TETRAHEDRON) + 3)
