@@ -134,6 +134,11 @@ class Picture:
                     self.samples += 1
                 yield (sample + (band + 1) / bands) / samples
 
+    @property
+    def program(self) -> Any:  # noqa: ANN401 - pyopencl has no types
+        """The built program that renders this picture."""
+        return self._kernel.program
+
     def linear(self) -> NDArray[np.floating[Any]]:
         """(height, width, 3) mean linear radiance."""
         return self._mean()[..., :3]

@@ -1,0 +1,68 @@
+"""Scenes that benchmarks measure: one list, so that every figure names what it is of."""
+
+from __future__ import annotations
+
+from culet.scene.model import (
+    Camera,
+    GradientEnvironment,
+    IndexMaterial,
+    Optics,
+    Plane,
+    Scene,
+    StoneSettings,
+)
+
+_STONE = StoneSettings(
+    material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0)
+)
+
+CHECKER = Scene(
+    stones=(_STONE,),
+    floor=Plane(kind="matte"),
+    lights=(),
+    environment=GradientEnvironment(kind="gradient", bottom=(0.9, 0.9, 1), top=(0.2, 0.3, 0.6)),
+    camera=Camera(position=(0, 2.2, 3.2), target=(0, 0, 0), fov_degrees=45),
+    optics=Optics(max_bounces=64),
+)
+"""The main job at its plainest: a brilliant of three indices over a checker without lights, 64 bounces, cut-off 0.01."""
+
+_LIGHTS = Scene().lights
+
+CASES: dict[str, Scene] = {
+    "checker": CHECKER,
+    "checker, 256 bounces": CHECKER.model_copy(update={"optics": Optics()}),
+    "checker, both lights": CHECKER.model_copy(update={"lights": _LIGHTS}),
+    "mirror, both lights": CHECKER.model_copy(update={"lights": _LIGHTS, "floor": Plane(kind="mirror")}),
+    "default": Scene(),
+}
+"""Name -> scene; the first is what the others are compared with."""
+
+BARE = CHECKER.model_copy(
+    update={
+        "stones": (_STONE.model_copy(update={"material": IndexMaterial(ior=(2.43, 2.43, 2.43))}),),
+        "floor": Plane(kind="none"),
+        "optics": Optics(),
+    }
+)
+"""A stone under a sky, with nothing that could be left out."""
+
+FEATURE_CASES: dict[str, tuple[Scene, Scene]] = {
+    "floor": (BARE, BARE.model_copy(update={"floor": Plane(kind="matte")})),
+    "walls": (BARE, BARE.model_copy(update={"walls": Plane(kind="matte")})),
+    "lights": (
+        BARE.model_copy(update={"floor": Plane(kind="matte")}),
+        BARE.model_copy(update={"floor": Plane(kind="matte"), "lights": _LIGHTS}),
+    ),
+    "sky": (BARE, BARE.model_copy(update={"environment": Scene().environment})),
+    "dispersion": (BARE, BARE.model_copy(update={"stones": CHECKER.stones})),
+    "absorption": (
+        BARE,
+        BARE.model_copy(update={"stones": (BARE.stones[0].model_copy(update={"absorption": (0.1, 0.2, 0.3)}),)}),
+    ),
+    "fresnel": (
+        BARE.model_copy(update={"optics": Optics(fresnel="schlick")}),
+        BARE,
+    ),
+    "camera_inside": (BARE, BARE.model_copy(update={"camera": Camera(position=(0, 0.1, 0), target=(0, 0.1, -1))})),
+}
+"""Feature -> a scene without it, and the same with it."""
