@@ -18,14 +18,14 @@ class CloseCode(IntEnum):
     """The gateway failed."""
     SERVICE_RESTART = 1012
     """The gateway restarts."""
-    TRY_AGAIN_LATER = 1013
-    """At a limit, such as the number of viewers."""
     FORBIDDEN_ORIGIN = 4403
     """A page of another origin may not watch."""
     UNKNOWN_SESSION = 4404
-    """There is no such session."""
-    SESSION_ENDED = 4410
-    """The session was closed, or expired, while it was watched."""
+    """There is no such session, or it ended while it was watched."""
+    TOO_SLOW = 4408
+    """The viewer does not read what it is sent."""
+    BUSY = 4429
+    """The session has as many viewers as it may."""
 
 
 FINAL = frozenset(
@@ -34,7 +34,6 @@ FINAL = frozenset(
         CloseCode.PROTOCOL_ERROR,
         CloseCode.FORBIDDEN_ORIGIN,
         CloseCode.UNKNOWN_SESSION,
-        CloseCode.SESSION_ENDED,
     }
 )
 """After these a client does not try again by itself; after all others it does, with growing pauses."""

@@ -8,15 +8,15 @@ export const CloseCode = {
   PROTOCOL_ERROR: 1002,
   INTERNAL_ERROR: 1011,
   SERVICE_RESTART: 1012,
-  TRY_AGAIN_LATER: 1013,
   FORBIDDEN_ORIGIN: 4403,
   UNKNOWN_SESSION: 4404,
-  SESSION_ENDED: 4410,
+  TOO_SLOW: 4408,
+  BUSY: 4429,
 } as const;
 export type CloseCode = (typeof CloseCode)[keyof typeof CloseCode];
 
 /** After these a client does not try again by itself. */
-export const FINAL_CLOSE_CODES: readonly number[] = [1000, 1002, 4403, 4404, 4410];
+export const FINAL_CLOSE_CODES: readonly number[] = [1000, 1002, 4403, 4404];
 
 export type JsonObject = Record<string, unknown>;
 

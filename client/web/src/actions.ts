@@ -63,3 +63,22 @@ export const ACTIONS: readonly Action[] = [
   plain("walls", "W", "Walls", "toggle_walls"),
   letter("download", "S", "Save the picture (.tga)", { kind: "download" }),
 ];
+
+const KEY_NAMES: Record<string, string> = {
+  arrowleft: "\u2190",
+  arrowright: "\u2192",
+  arrowup: "\u2191",
+  arrowdown: "\u2193",
+};
+
+/** "Reset the camera  [F]" */
+export function labelWithKey(action: Pick<Action, "label" | "key">): string {
+  return `${action.label}  [${KEY_NAMES[action.key] ?? action.key.toUpperCase()}]`;
+}
+
+/** The action of that name; throws if there is none. */
+export function actionNamed(name: string): Action {
+  const action = ACTIONS.find((candidate) => candidate.name === name);
+  if (!action) throw new Error(`expected one of ${ACTIONS.map((known) => known.name).join(", ")}, got ${name}`);
+  return action;
+}

@@ -3,7 +3,7 @@
 import { type Controller, GUI } from "lil-gui";
 // By its path, since the package does not export it: a style sheet of our own origin instead of one that a script writes.
 import "../node_modules/lil-gui/dist/lil-gui.css";
-import { ACTIONS, type Action } from "./actions";
+import { type Action, actionNamed, labelWithKey } from "./actions";
 import type { Target } from "./events";
 import type { Preset } from "./rest";
 import { TARGET_NAMES, type ViewState } from "./view-state";
@@ -15,24 +15,6 @@ export interface PanelActions {
   openScene: () => void;
   openMesh: () => void;
   newSession: () => void;
-}
-
-const KEY_NAMES: Record<string, string> = {
-  arrowleft: "\u2190",
-  arrowright: "\u2192",
-  arrowup: "\u2191",
-  arrowdown: "\u2193",
-};
-
-/** "Reset the camera  [F]" */
-export function labelWithKey(action: Pick<Action, "label" | "key">): string {
-  return `${action.label}  [${KEY_NAMES[action.key] ?? action.key.toUpperCase()}]`;
-}
-
-function actionNamed(name: string): Action {
-  const action = ACTIONS.find((candidate) => candidate.name === name);
-  if (!action) throw new Error(`expected one of ${ACTIONS.map((known) => known.name).join(", ")}, got ${name}`);
-  return action;
 }
 
 const MOVES = ["left", "right", "up", "down", "in", "out"];

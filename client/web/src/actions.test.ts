@@ -1,0 +1,18 @@
+import { expect, test } from "vitest";
+import { ACTIONS, actionNamed, labelWithKey } from "./actions";
+
+test("a label names its key as it is printed", () => {
+  expect(labelWithKey(actionNamed("reset_camera"))).toBe("Reset the camera  [F]");
+  expect(labelWithKey(actionNamed("left"))).toBe("Left  [\u2190]");
+  expect(labelWithKey(actionNamed("light_1"))).toBe("Move the red light  [1]");
+});
+
+test("names are unique, and an unknown one is an error that lists them", () => {
+  expect(new Set(ACTIONS.map(({ name }) => name)).size).toBe(ACTIONS.length);
+  expect(() => actionNamed("jump")).toThrow(/expected one of camera, .*, got jump/);
+});
+
+test("only moves repeat while a key is held", () => {
+  const repeating = ACTIONS.filter(({ repeats }) => repeats).map(({ name }) => name);
+  expect(repeating).toEqual(["left", "right", "up", "down", "in", "out"]);
+});
