@@ -11,6 +11,7 @@ import httpx
 import pytest
 from PIL import Image
 
+from culet.scene import Scene
 from gateway.running import FOREIGN, Endpoints, Gateway, eventually, gateway_before
 
 SMALL = {"width": 64, "height": 36}
@@ -136,7 +137,7 @@ async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -
 async def test_a_session_without_a_body_shows_the_default_scene(gateway: Gateway) -> None:
     made = await gateway.http.post("/api/sessions")
     assert made.status_code == 201
-    assert made.json()["scene"]["floor"]["kind"] == "mirror"
+    assert made.json()["scene"] == Scene().model_dump(mode="json")
 
 
 @pytest.mark.parametrize(
@@ -213,7 +214,7 @@ async def test_sessions_that_nobody_uses_expire(engine: Endpoints, tmp_path: Pat
 
 
 async def test_too_many_stills_at_once_are_refused(gateway: Gateway) -> None:
-    body = {"scene": {"sampling": {"samples_per_pixel": 64}}, "width": 320, "height": 180}
+    body = {"scene": {"sampling": {"samples_per_pixel": 12}}, "width": 320, "height": 180}
     answers = await asyncio.gather(*(gateway.http.post("/api/render", json=body) for _ in range(24)))
     statuses = [answer.status_code for answer in answers]
     assert set(statuses) == {200, 429}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
+from pathlib import Path
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -12,16 +13,18 @@ from websockets.typing import Subprotocol
 
 from culet.gateway.credit import WINDOW
 from culet.gateway.stream import MAX_CONTROL_BYTES
+from culet.scene import Scene
+from culet_protocol.close import CloseCode
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Orbit, Ping, ResetStone, Resize, ToggleFall, Visibility
-from gateway.running import FOREIGN, PATIENCE, Gateway, eventually
+from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
 
 async def test_a_viewer_is_greeted_and_gets_frames_of_its_size_up_to_the_final_one(gateway: Gateway) -> None:
     session = await gateway.session()
     async with gateway.viewer(session) as viewer:
         assert await viewer.notice("hello") == {"type": "hello", "protocol": 1, "session": session, "viewer": 1}
-        assert (await viewer.notice("state"))["scene"]["camera"]["fov_degrees"] == 45
+        assert (await viewer.notice("state"))["scene"] == Scene().model_dump(mode="json")
         assert (await viewer.notice("viewers"))["count"] == 1
         final = await viewer.final()
     assert final.session.hex() == session
@@ -179,8 +182,16 @@ async def test_a_message_beyond_any_use_closes_that_viewer_only(gateway: Gateway
 @pytest.mark.parametrize(
     ("options", "code", "reason"),
     [
-        ({"origin": FOREIGN}, 4403, "pages of http://elsewhere.example may not open streams here"),
-        ({"subprotocols": [Subprotocol("culet.v99")]}, 1002, "this server speaks culet.v1; reload the page"),
+        (
+            {"origin": FOREIGN},
+            CloseCode.FORBIDDEN_ORIGIN,
+            "pages of http://elsewhere.example may not open streams here",
+        ),
+        (
+            {"subprotocols": [Subprotocol("culet.v99")]},
+            CloseCode.PROTOCOL_ERROR,
+            "this server speaks culet.v1; reload the page",
+        ),
     ],
     ids=["foreign page", "other protocol"],
 )
@@ -199,7 +210,23 @@ async def test_an_unknown_session_is_closed_with_4404(gateway: Gateway) -> None:
         async with gateway.viewer("0" * 32, size=None) as viewer:
             await viewer.until(lambda: False)
     assert closed.value.rcvd
-    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (4404, "no such session; it may have expired")
+    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (
+        CloseCode.UNKNOWN_SESSION,
+        "no such session; it may have expired",
+    )
+
+
+async def test_a_session_takes_so_many_viewers_and_no_more(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, max_viewers=1) as gateway:
+        session = await gateway.session()
+        async with gateway.viewer(session) as first:
+            await first.notice("hello")
+            with pytest.raises(ConnectionClosed) as closed:
+                async with gateway.viewer(session, size=None) as second:
+                    await second.until(lambda: False)
+            assert closed.value.rcvd
+            assert closed.value.rcvd.code == CloseCode.BUSY
+            await first.final()
 
 
 async def test_a_page_of_the_same_host_may_open_a_stream(gateway: Gateway) -> None:
@@ -227,5 +254,5 @@ async def test_deleting_a_session_ends_its_streams(gateway: Gateway) -> None:
         assert (await viewer.notice("problem"))["code"] == "session_closed"
         async with asyncio.timeout(PATIENCE):
             await viewer.websocket.wait_closed()
-        assert viewer.websocket.close_code == 4404
+        assert viewer.websocket.close_code == CloseCode.UNKNOWN_SESSION
     assert (await gateway.http.get(f"/api/sessions/{session}")).status_code == 404

@@ -34,7 +34,7 @@ async def test_an_uploaded_mesh_is_described_and_can_be_rendered(gateway: Gatewa
         ("empty.obj", b"", "empty"),
         ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "boundary edges"),
         ("open.obj", TETRAHEDRON.rsplit(b"f ", 1)[0], "open"),
-        ("text.stl", b"this is no mesh", "no triangles"),
+        ("text.stl", b"this is no mesh", "expected"),
         ("stone.exe", TETRAHEDRON, "stone.exe"),
         ("stone", TETRAHEDRON, ".obj, .off, .stl, .ply, .glb"),
         ("../../stone.obj/..", TETRAHEDRON, "expected a name that ends with"),

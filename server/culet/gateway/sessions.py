@@ -129,8 +129,8 @@ class Sessions:
 
     def join(self, session: Session) -> Viewer:
         """A new viewer, told who it is and what it sees; BusyError at the limit."""
-        if self.viewers >= self._settings.max_viewers:
-            raise BusyError(f"there are {self.viewers} viewers, which is the limit")
+        if len(session.viewers) >= self._settings.max_viewers:
+            raise BusyError(f"{len(session.viewers)} viewers watch this session, which is the limit")
         viewer = Viewer(next(self._viewer_numbers), time.monotonic())
         session.viewers.append(viewer)
         viewer.tell(session.state())

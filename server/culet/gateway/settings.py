@@ -26,8 +26,8 @@ class GatewaySettings:
     max_sessions: int = 64
     session_idle_seconds: float = 900
     """A session that nobody watched or asked about for so long is forgotten."""
-    max_viewers: int = 128
-    """Of all sessions together."""
+    max_viewers: int = 32
+    """Of one session."""
     max_body_bytes: int = MEBIBYTE
     """Of a request body that is not a mesh."""
     max_mesh_bytes: int = 64 * MEBIBYTE

@@ -33,7 +33,7 @@ class StillQuery(Model):
     material: Literal["diamond", "classic"] | None = None
     floor: Kind | None = None
     walls: Kind | None = None
-    environment: Literal["dark", "light"] | None = None
+    environment: Literal["dark", "light", "studio"] | None = None
 
     def scene(self) -> Scene:
         """The preset's scene with the changes."""

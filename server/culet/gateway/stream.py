@@ -23,6 +23,7 @@ from culet.gateway.state import Gateway
 from culet.gateway.viewer import Viewer
 from culet.scene.model import scene_error
 from culet_protocol import SUBPROTOCOL, VERSION
+from culet_protocol.close import CloseCode
 from culet_protocol.messages import (
     Ack,
     Hello,
@@ -45,28 +46,27 @@ SEND_SECONDS = 5.0
 EVENTS_UNDER_WAY = 32
 """Events of one viewer that the engine has not answered; more wait in the socket."""
 
-PROTOCOL_ERROR = 1002
-FORBIDDEN, NOT_FOUND, TOO_SLOW, BUSY = 4403, 4404, 4408, 4429
-
 
 async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> None:
     """Serve one viewer until it leaves."""
     offered: list[str] = websocket.scope["subprotocols"]
     await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in offered else None)
     if not may_enter(websocket.headers, gateway.settings.allowed_origins):
-        await websocket.close(FORBIDDEN, f"pages of {websocket.headers['origin'][:60]} may not open streams here")
+        await websocket.close(
+            CloseCode.FORBIDDEN_ORIGIN, f"pages of {websocket.headers['origin'][:60]} may not open streams here"
+        )
         return
     if offered and SUBPROTOCOL not in offered:
-        await websocket.close(PROTOCOL_ERROR, f"this server speaks {SUBPROTOCOL}; reload the page")
+        await websocket.close(CloseCode.PROTOCOL_ERROR, f"this server speaks {SUBPROTOCOL}; reload the page")
         return
     try:
         session = gateway.sessions.get(session_id)
         viewer = gateway.sessions.join(session)
     except NotFoundError:
-        await websocket.close(NOT_FOUND, "no such session; it may have expired")
+        await websocket.close(CloseCode.UNKNOWN_SESSION, "no such session; it may have expired")
         return
     except BusyError as error:
-        await websocket.close(BUSY, str(error))
+        await websocket.close(CloseCode.BUSY, str(error))
         return
     try:
         hello = Hello(protocol=VERSION, session=session.id, viewer=viewer.number)
@@ -109,8 +109,8 @@ class _Stream:
 
     def _reason(self) -> tuple[int, str]:
         if self._viewer.dismissed:
-            return NOT_FOUND, "the session has ended"
-        return TOO_SLOW, "this viewer does not read what it is sent"
+            return CloseCode.UNKNOWN_SESSION, "the session has ended"
+        return CloseCode.TOO_SLOW, "this viewer does not read what it is sent"
 
     async def _send(self) -> None:
         viewer = self._viewer
