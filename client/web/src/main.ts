@@ -28,6 +28,7 @@ const obstacle = new Obstacle(
 const toasts = new Toasts(element("toasts", HTMLElement));
 const announcement = element("announcement", HTMLElement);
 const statusLine = element("status", HTMLElement);
+const PROBLEMS_KEPT = 100;
 const problems: string[] = [];
 let session: string | null = null;
 let viewer: Viewer | null = null;
@@ -61,7 +62,7 @@ function attempt(work: () => Promise<void>): void {
 }
 
 function problem(text: string): void {
-  problems.push(text);
+  if (problems.push(text) > PROBLEMS_KEPT) problems.shift();
   toasts.problem(text);
 }
 
