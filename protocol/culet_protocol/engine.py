@@ -2,8 +2,8 @@
 
 A message has two or three parts: an 8-byte request number (little-endian, 0 for what nobody asked for), JSON, and bytes
 where a request or reply carries some (an uploaded mesh, an encoded picture). Every request gets exactly one `Reply`.
-An empty message, such as ZMQ_PROBE_ROUTER sends at every (re)connection, only makes the peer known: it gets what is told
-unasked from then on, a Heartbeat first.
+An empty message, such as ZMQ_PROBE_ROUTER sends at every (re)connection, only makes the peer known: it gets what is
+told unasked from then on, a Heartbeat first.
 """
 
 from __future__ import annotations
@@ -53,7 +53,10 @@ class Control(Message):
 
 
 class Demand(Message):
-    """What the session's viewers can take: frames per second (0: none), and the size in pixels."""
+    """What the session's viewers can take: frames per second (0: none), and the size in pixels.
+
+    Frames are made for who subscribes to the session's 16 bytes at the frames' socket; this says how many, how large.
+    """
 
     type: Literal["demand"] = "demand"
     session: SessionId

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from culet.errors import CuletError, MeshError, SceneError
+from culet.errors import CuletError, InputError, MeshError, SceneError
 from culet_client.errors import ClientError
 
 if TYPE_CHECKING:
@@ -25,6 +25,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+
+BAND_ROWS = 64
+"""Of a picture, between two looks at the progress bar."""
 
 Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")]
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
@@ -70,15 +73,22 @@ def render(
     mesh: MeshFile = None,
 ) -> None:
     """Render a still picture into a file."""
-    from culet.still_file import render_to_file, still_format
+    from culet.rendering.files import ENCODERS, write
+    from culet.rendering.renderer import Renderer
 
     with errors_in_one_line():
-        still_format(out)
+        if out.suffix.lower().lstrip(".") not in ENCODERS:  # before the work, not after it
+            raise InputError(f"out: expected a name that ends in .{', .'.join(ENCODERS)}; got {out.name!r}", "out")
         settings, stone = _subject(scene, preset, mesh)
-        wanted = samples or settings.sampling.samples_per_pixel
+        picture = Renderer().picture(settings, stone, width, height)
         with _progress(f"rendering {out.name}") as advance:
-            report = render_to_file(settings, stone, out, width, height, wanted, advance)
-        typer.echo(report)
+            for part in picture.refine_in_bands(samples or settings.sampling.samples_per_pixel, BAND_ROWS):
+                advance(part)
+        try:
+            write(picture, out)
+        except OSError as error:
+            raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
+        typer.echo(f"{out}: {width} x {height}, {picture.samples} samples per pixel, cut {picture.cut():.2g}")
 
 
 @app.command()

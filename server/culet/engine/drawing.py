@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from culet.geometry.stone import Stone
 from culet.scene import Scene
 
-BAND_SAMPLES = 2**18
-"""Pixels times samples rendered before other work gets its turn: some 20 ms on two cores."""
-BAND_ROWS = 16
-"""Rows of the thinnest band: a thinner one leaves lanes of the packets empty."""
+BAND_PIXELS = 2**17
+"""Pixels that get one more sample before other work gets its turn: some 20 ms of the default scene on two cores."""
+BAND_ROWS = 32
+"""Rows of the thinnest band: a row of the renderer's tiles."""
 
 
 class Picture(Protocol):
@@ -35,13 +35,10 @@ class Picture(Protocol):
         """Add samples to every pixel."""
 
     def refine_in_bands(self, samples: int, rows: int) -> Iterator[Any]:
-        """Add samples to every pixel, some rows at a time, yielding between them."""
+        """Add samples to every pixel, some rows at a time for each sample, yielding between them."""
 
     def rgb(self) -> NDArray[np.uint8]:
         """(height, width, 3), tone-mapped."""
-
-    def linear(self) -> NDArray[np.float32]:
-        """(height, width, 3), mean radiance."""
 
     def cut(self) -> float:
         """Mean weight of what the cut-off dropped."""
@@ -57,6 +54,6 @@ class Renderer(Protocol):
         """Device, driver and lanes."""
 
 
-def band_rows(width: int, height: int, samples: int) -> int:
-    """Rows of a band of BAND_SAMPLES."""
-    return min(height, max(BAND_ROWS, BAND_SAMPLES // (width * samples)))
+def band_rows(width: int) -> int:
+    """Rows of a band of BAND_PIXELS."""
+    return max(BAND_ROWS, BAND_PIXELS // width)

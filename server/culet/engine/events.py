@@ -102,7 +102,7 @@ def _with_mirror_toggled(scene: Scene) -> Scene:
 
 def _with_environment_toggled(scene: Scene) -> Scene:
     dark = scene.environment.kind == "dark"
-    environment: Environment = LightEnvironment(kind="light") if dark else DarkEnvironment()
+    environment: Environment = LightEnvironment(kind="light") if dark else DarkEnvironment(kind="dark")
     return scene.model_copy(update={"environment": environment})
 
 

@@ -27,10 +27,11 @@ class LivePicture:
     """Mutable; belongs to the painter."""
 
     session: Session
-    subscribed: bool = False
-    """Somebody subscribed to the session's frames by its 16 bytes."""
-    rate: float | None = None
-    """Frames per second that the gateway asks for; None before it has said anything."""
+    watched: bool = False
+    """Somebody subscribes to the session's frames. That, and not what a gateway demanded, is why frames are made: a
+    subscription ends with its subscriber, however that ends."""
+    rate: float = 0.0
+    """Frames per second that the gateway's viewers can take; 0 if it has none."""
     size: tuple[int, int] = NATIVE_SIZE
     picture: Picture | None = None
     painted: Shown | None = None
@@ -43,7 +44,7 @@ class LivePicture:
     message: bytes | None = None
     """The frame sent last."""
     final: bool = False
-    """That frame has all its samples."""
+    """The picture has all its samples."""
     sent_at: float = 0.0
     """s, steady clock."""
     begun_at: float = -1e9
@@ -54,23 +55,18 @@ class LivePicture:
     simulate_seconds: float = field(default=0.0)
 
     @property
-    def watched(self) -> bool:
-        """Whether frames have a taker."""
-        return self.subscribed or bool(self.rate)
-
-    @property
     def frames_per_second(self) -> float:
-        """The rate wanted; a native viewer takes what the gateway's viewers take, if there are any."""
+        """The rate to keep to; a native viewer takes what the gateway's viewers take, if there are any."""
         return self.rate or NATIVE_RATE
 
     @property
     def current(self) -> bool:
-        """Whether the frame sent last still is what is shown."""
-        return self.message is not None and self.painted is self.session.shown and self.painted_size == self.size
+        """Whether the picture, and the frame made of it, still are what is shown."""
+        return self.painted is self.session.shown and self.painted_size == self.size
 
     @property
     def at_rest(self) -> bool:
-        """Whether the frame sent last is right until somebody changes something."""
+        """Whether the picture is right until somebody changes something."""
         return self.current and not self.session.moving
 
     def due_at(self) -> float | None:
@@ -94,4 +90,4 @@ class LivePicture:
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
-        return self.sent_at + REPEAT_SECONDS if self.watched and self.current else None
+        return self.sent_at + REPEAT_SECONDS if self.watched and self.current and self.message else None

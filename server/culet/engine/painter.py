@@ -151,8 +151,7 @@ class Painter:
         live.served_at = time.monotonic()
         if live.refinement is None:
             samples = min(picture.samples, REST_SAMPLES - picture.samples)
-            rows = band_rows(*live.painted_size, samples)
-            live.refinement = iter(picture.refine_in_bands(samples, rows))
+            live.refinement = picture.refine_in_bands(samples, band_rows(live.painted_size[0]))
         try:
             if await self._in_render_thread(_proceed, live.refinement):
                 return

@@ -87,7 +87,7 @@ class Requests:
         live = self._painter.pictures.get(key.hex())
         if live is None:
             return
-        live.subscribed = subscribed
+        live.watched = subscribed
         self._touched[live.session.name] = time.monotonic()
         if subscribed:
             self._painter.show_again(live)
@@ -129,7 +129,7 @@ class Requests:
             session = Session(request.session, scene, stone, history=history)
         else:
             session = Session.restored(request.session, scene, stone, snapshot, history=history)
-        pictures[request.session] = LivePicture(session, subscribed=session.key in self._subscriptions)
+        pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
         self._painter.wake()
         return described(self._live(request.session))
 
@@ -167,11 +167,8 @@ class Requests:
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
         live = self._live(request.session)
-        was_watched = live.watched
         live.rate = request.frames_per_second
         live.size = live_size(request.width, request.height, self._limits)
-        if live.watched and not was_watched:
-            self._painter.show_again(live)
         self._painter.wake()
         return {"width": live.size[0], "height": live.size[1]}
 

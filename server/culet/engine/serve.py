@@ -33,16 +33,21 @@ def run(control: str, frames: str, limits: Limits | None = None) -> None:
 
 
 def open_renderer() -> Renderer:
-    """The OpenCL renderer, imported here so that whatever only speaks to an engine never loads it."""
+    """The OpenCL renderer, its special programs compiled while the general one serves.
+
+    It is imported here, so that whatever only speaks to an engine never loads it.
+    """
     from culet.rendering.renderer import Renderer as OpenClRenderer
 
-    return OpenClRenderer()
+    return OpenClRenderer(background_compile=True)
 
 
 def encode_still(picture: Picture, file_format: str) -> bytes:
     """A still in its file format."""
     from culet.rendering.files import encode
+    from culet.rendering.renderer import Picture as OpenClPicture
 
+    assert isinstance(picture, OpenClPicture)  # noqa: S101 - made by `open_renderer`
     return encode(picture, file_format)
 
 

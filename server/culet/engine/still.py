@@ -36,8 +36,7 @@ class Still:
     def paint(self, renderer: Renderer) -> Iterator[None]:
         """Render, yielding between bands. Runs in the render thread."""
         self.picture = renderer.picture(self.scene, self.stone, self.width, self.height)
-        rows = band_rows(self.width, self.height, self.samples)
-        for _ in self.picture.refine_in_bands(self.samples, rows):
+        for _ in self.picture.refine_in_bands(self.samples, band_rows(self.width)):
             yield
 
 

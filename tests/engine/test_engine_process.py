@@ -1,0 +1,297 @@
+"""The real engine process, spoken to over its sockets."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import itertools
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from culet_protocol.engine import REQUEST_NUMBER
+from culet_protocol.frame import Codec, Flags, Frame
+from engine.peer import SIZE, EngineProcess, connected, running_engine
+
+UNKNOWN = "f" * 32
+PLAIN: dict[str, Any] = {
+    "environment": {"kind": "dark"},
+    "floor": {"kind": "none"},
+    "lights": [],
+    "optics": {"max_bounces": 4},
+}
+"""A scene that takes next to no time."""
+
+
+def pixels(data: bytes) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), float)
+
+
+def difference(one: bytes, other: bytes) -> float:
+    """Mean over the pixels, of 255."""
+    return float(np.abs(pixels(one) - pixels(other)).mean())
+
+
+async def test_a_picture_at_rest_is_refined_to_its_end_and_then_costs_nothing(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN))
+        await peer.demand()
+        frames = [await watcher.until(lambda frame: frame.width == SIZE["width"])]
+        while Flags.FINAL not in frames[-1].flags:
+            frames.append(await watcher.next())
+        assert [frame.samples for frame in frames] == [1, 2, 4, 8, 16]
+        assert len({frame.step for frame in frames}) == 1
+        assert len({frame.sequence for frame in frames}) == 5
+        before = await peer.status()
+        repeated = await watcher.next()  # a second later, since it could have been lost
+        assert (repeated.sequence, repeated.payload) == (frames[-1].sequence, frames[-1].payload)
+        after = await peer.status()
+        assert (after["frames_rendered"], after["refinements"]) == (before["frames_rendered"], before["refinements"])
+        await peer.result(type="close_session", session=peer.session)
+
+
+async def test_a_frame_says_what_it_shows(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN))
+        await peer.demand()
+        frame = await watcher.until(lambda frame: frame.width == SIZE["width"])
+        assert frame.session.hex() == peer.session
+        assert frame.codec is Codec.JPEG
+        assert pixels(frame.payload).shape == (SIZE["height"], SIZE["width"], 3)
+        assert abs(frame.timestamp - time.time()) < 60
+        assert min(frame.render_ms, frame.encode_ms) > 0
+        assert 0 <= frame.cut < 1
+
+
+async def test_nobody_watching_nothing_is_rendered(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN))
+        await peer.demand()
+        await peer.control("toggle_fall")
+        await watcher.until(lambda frame: Flags.MOVING in frame.flags)
+        watcher.leave()
+        await peer.demand(frames_per_second=0)
+        while (await peer.status())["sessions_watched"]:
+            pass  # the status request itself waits for the engine
+        before = (await peer.status())["frames_rendered"]
+        beats = len(peer.unasked)
+        while len(peer.unasked) < beats + 2:  # two heartbeats: at least a second, 60 frames if it went on
+            await peer.status()
+        after = await peer.status()
+        assert after["sessions_moving"] >= 1
+        assert after["frames_rendered"] - before <= 1  # the one under way
+
+
+async def test_who_subscribes_late_gets_the_latest_frame_at_once(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        first = watch(await peer.open(PLAIN))
+        await peer.demand()
+        final = await first.until(lambda frame: Flags.FINAL in frame.flags)
+        assert (await watch(peer.session).next()).sequence == final.sequence
+
+
+async def test_a_native_viewer_needs_no_gateway_to_be_shown_frames(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        frame = await watch(await peer.open(PLAIN)).next()
+        assert (frame.width, frame.height) == (960, 540)
+
+
+async def test_a_falling_stone_moves_from_frame_to_frame_in_order(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN | {"stones": [{"position": [0, 500, 0]}]}))
+        await peer.demand()
+        await peer.control("toggle_fall")
+        frames = [await watcher.until(lambda frame: Flags.MOVING in frame.flags)]
+        while len(frames) < 10:
+            frames.append(await watcher.next())
+        for before, after in itertools.pairwise(frames):
+            assert after.sequence > before.sequence
+            assert after.step > before.step
+            assert after.simulation_time > before.simulation_time
+        state = await peer.told(
+            lambda told: told["type"] == "session_state" and told["session"] == peer.session and not told["edited"]
+        )
+        assert state["falling"]
+        assert state["snapshot"]["simulation"]["state"]["time"] > 0
+
+
+async def test_no_more_frames_are_made_than_are_asked_for(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN))
+        await peer.demand(frames_per_second=5)
+        await peer.control("toggle_fall")
+        first = await watcher.until(lambda frame: Flags.MOVING in frame.flags)
+        last = first
+        for _ in range(5):
+            last = await watcher.next()
+        assert last.timestamp - first.timestamp > 0.8  # five intervals of 0.2 s
+
+
+async def test_a_frame_can_be_had_again_as_a_still_of_its_step(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open({"floor": {"kind": "matte"}}))
+        await peer.demand()
+        final = await watcher.until(lambda frame: Flags.FINAL in frame.flags)
+        await peer.control("orbit", yaw=0.5, pitch=0.2)
+        now = await watcher.until(lambda frame: Flags.FINAL in frame.flags and frame.step > final.step)
+        for shown, other, step in ((final, now, final.step), (now, final, now.step), (now, final, None)):
+            reply, data = await peer.ask_later(type="render", session=peer.session, step=step, format="png", **SIZE)
+            assert reply["result"] == SIZE | {"samples": 16, "step": shown.step, "format": "png"}
+            assert data is not None
+            assert difference(data, shown.payload) < 4  # measured 2.8: what JPEG loses
+            assert difference(data, other.payload) > 12  # measured 25.7
+
+
+async def test_a_step_that_was_never_shown_is_not_found(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        await peer.open(PLAIN)
+        reply = await peer.ask(type="render", session=peer.session, step=10**9)
+        assert reply["status"] == 404
+        assert "never shown or is forgotten" in reply["detail"]
+
+
+async def test_a_still_of_a_scene_is_what_was_asked_for(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        reply, data = await peer.ask_later(type="render", scene=PLAIN, width=33, height=17, format="tga")
+        assert reply["result"] == {"width": 33, "height": 17, "samples": 1, "step": None, "format": "tga"}
+        assert data is not None
+        assert pixels(data).shape == (17, 33, 3)
+
+
+@pytest.mark.parametrize(
+    ("request_", "status", "field"),
+    [
+        ({"type": "get_session", "session": UNKNOWN}, 404, None),
+        ({"type": "close_session", "session": UNKNOWN}, 404, None),
+        ({"type": "control", "session": UNKNOWN, "event": {"type": "reset_stone"}}, 404, None),
+        ({"type": "render", "session": UNKNOWN}, 404, None),
+        ({"type": "get_session", "session": "../x"}, 422, "get_session.session"),
+        ({"type": "dance"}, 422, None),
+        ({"type": "render"}, 422, "scene"),
+        ({"type": "render", "scene": {}, "width": 0}, 422, "width"),
+        ({"type": "render", "scene": {}, "height": 100_000}, 422, "height"),
+        ({"type": "render", "scene": {}, "width": 8192, "height": 8192}, 422, "width"),
+        ({"type": "render", "scene": {"camera": {"fov_degrees": float("nan")}}}, 422, "camera.fov_degrees"),
+        ({"type": "render", "scene": {"stones": [{"mesh": "/etc/passwd"}]}}, 422, "stones.0.mesh"),
+        ({"type": "open_session", "session": UNKNOWN, "scene": {"lamp": 1}}, 422, "lamp"),
+        ({"type": "put_mesh", "file_type": "obj", "mesh": "a"}, 422, None),
+    ],
+)
+async def test_bad_requests_get_a_reply_that_says_why(
+    engine: EngineProcess, request_: dict[str, Any], status: int, field: str | None
+) -> None:
+    async with connected(engine) as (peer, _):
+        reply = await peer.ask(**request_)
+        assert reply["status"] == status, reply
+        assert reply["detail"]
+        if field:
+            assert reply["field"] == field
+
+
+async def test_what_is_no_request_at_all_is_answered_and_survived(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        await peer.told(lambda told: told["type"] == "heartbeat")
+        number = REQUEST_NUMBER.pack(2**63)
+        for parts in ([b"x"], [number, b"{", b"", b""], [number, b"{"], [number, b"\xff\xfe"], [number, b"[1]"]):
+            peer.unasked.clear()
+            await peer.raw(*parts)
+            reply = await peer.told(lambda told: told["type"] == "reply")
+            assert reply["status"] == 422
+        assert (await peer.status())["instance"]
+
+
+async def test_a_bad_event_leaves_the_session_as_it_was(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        await peer.open(PLAIN)
+        before = await peer.result(type="get_session", session=peer.session)
+        reply = await peer.control("patch_scene", patch={"floor": {"kind": "lava"}})
+        assert (reply["status"], reply["field"]) == (422, "floor.kind")
+        reply = await peer.control("orbit", yaw="much", pitch=0)
+        assert (reply["status"], reply["field"]) == (422, "control.event.orbit.yaw")
+        assert await peer.result(type="get_session", session=peer.session) == before
+
+
+async def test_an_edit_is_told_to_every_gateway(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _), connected(engine) as (other, _):
+        await other.told(lambda told: told["type"] == "heartbeat")
+        await peer.open(PLAIN)
+        await peer.control("toggle_environment")
+        state = await other.told(lambda told: told["type"] == "session_state" and told["session"] == peer.session)
+        assert state["edited"]
+        assert state["scene"]["environment"]["kind"] == "light"
+
+
+async def test_a_session_goes_on_in_another_engine(engine: EngineProcess, tmp_path: Path) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open({"stones": [{"position": [0, 400, 0]}]} | PLAIN))
+        await peer.demand()
+        await peer.control("toggle_fall")
+        await watcher.until(lambda frame: frame.simulation_time > 0.1)
+        await peer.control("toggle_fall")
+        state = await peer.result(type="get_session", session=peer.session)
+    with running_engine(tmp_path) as another:
+        async with connected(another) as (peer, _):
+            session: dict[str, Any] = {
+                "session": state["session"],
+                "scene": state["scene"],
+                "snapshot": state["snapshot"],
+            }
+            restored = await peer.result(type="open_session", **session)
+            assert restored["pose"] == state["pose"]
+            assert restored["simulation_time"] == state["simulation_time"]
+            assert restored["step"] > state["step"]
+            again = await peer.result(type="open_session", **session)  # idempotent
+            assert again["step"] == restored["step"]
+
+
+async def test_stills_beyond_the_limit_are_refused_and_the_others_done(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        still: dict[str, Any] = {
+            "type": "render",
+            "scene": {"sampling": {"samples_per_pixel": 16}},
+            "width": 256,
+            "height": 144,
+        }
+        replies = await asyncio.gather(*(peer.ask_later(**still) for _ in range(12)))
+        statuses = sorted(reply["status"] for reply, _ in replies)
+        assert statuses == [200] * 8 + [429] * 4
+        assert all((data is not None) == (reply["status"] == 200) for reply, data in replies)
+
+
+async def test_live_frames_go_on_while_a_still_is_rendered(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN | {"stones": [{"position": [0, 400, 0]}]}))
+        await peer.demand()
+        await peer.control("toggle_fall")
+        await watcher.until(lambda frame: Flags.MOVING in frame.flags)
+        still = peer.ask_later(type="render", scene={"sampling": {"samples_per_pixel": 64}}, width=960, height=540)
+        frames: list[Frame] = []
+        while not still.done():
+            frames.append(await watcher.next())
+        assert (await still)[0]["status"] == 200
+        assert len(frames) >= 10  # measured 130: one after every band
+
+
+async def test_sessions_beyond_the_limit_are_refused(tmp_path: Path) -> None:
+    with running_engine(tmp_path) as process:
+        async with connected(process) as (peer, _):
+            for _ in range(64):
+                await peer.open(PLAIN)
+            reply = await peer.ask(type="open_session", session=UNKNOWN, scene={})
+            assert reply["status"] == 429
+            await peer.result(type="close_session", session=peer.session)
+            await peer.result(type="open_session", session=UNKNOWN, scene={})
+
+
+async def test_sigterm_ends_the_engine_in_order_while_it_renders(tmp_path: Path) -> None:
+    with running_engine(tmp_path) as process:
+        async with connected(process) as (peer, watch):
+            watcher = watch(await peer.open(PLAIN))
+            await peer.control("toggle_fall")
+            await watcher.next()
+            process.process.terminate()
+            assert await asyncio.to_thread(process.process.wait, 5) == 0

@@ -1,0 +1,181 @@
+import math
+from typing import Any
+
+import pytest
+
+from culet.engine import events
+from culet.engine.session import Session
+from culet.errors import InputError, SceneError
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.scene import Scene, StoneSettings
+from culet_protocol import messages
+from culet_protocol.messages import SessionEvent
+
+
+def make_stone(settings: StoneSettings) -> Stone:
+    return stone_of(settings, {})
+
+
+def session(**scene: Any) -> Session:  # noqa: ANN401
+    settings = Scene.read(scene)
+    return Session("0" * 32, settings, events.stone_for(settings, None, make_stone))
+
+
+def after(subject: Session, *happened: SessionEvent) -> Scene:
+    for event in happened:
+        events.apply(subject, event, make_stone)
+    return subject.scene
+
+
+def falling(subject: Session, seconds: float = 0.2) -> Session:
+    after(subject, messages.ToggleFall())
+    subject.advance(0)
+    subject.advance(seconds)
+    return subject
+
+
+def test_the_camera_orbits_moves_and_goes_home() -> None:
+    subject = session()
+    start = subject.scene.camera
+    moved = after(
+        subject, messages.Orbit(yaw=1, pitch=0.1), messages.Translate(right=1, up=0), messages.Dolly(forward=1)
+    )
+    assert moved.camera != start
+    assert after(subject, messages.ResetCamera()).camera == start
+
+
+@pytest.mark.parametrize(("target", "number"), [("light_1", 0), ("light_2", 1)])
+def test_each_light_moves_alone(target: Any, number: int) -> None:  # noqa: ANN401
+    subject = session()
+    before = subject.scene
+    moved = after(subject, messages.Translate(target=target, right=0.5, up=0))
+    assert math.dist(moved.lights[number].position, before.lights[number].position) == pytest.approx(0.5)
+    assert moved.lights[1 - number] == before.lights[1 - number]
+    assert moved.lights[number].colour == before.lights[number].colour
+    assert moved.camera == before.camera
+
+
+def test_a_light_that_is_not_there_cannot_be_moved() -> None:
+    subject = session(lights=[])
+    with pytest.raises(InputError, match="0 lights, no light_2") as caught:
+        after(subject, messages.Orbit(target="light_2", yaw=1, pitch=0))
+    assert caught.value.field == "target"
+
+
+def test_nothing_can_be_moved_out_of_the_world() -> None:
+    subject = session(camera={"position": [0, 0, 9.999e8], "target": [0, 0, 0]})
+    before = subject.shown
+    with pytest.raises(InputError, match="out of the world"):
+        after(subject, messages.Dolly(forward=-1e6))
+    assert subject.shown is before
+
+
+def test_mirror_switches_floor_and_those_walls_that_are_shown() -> None:
+    assert kinds(after(session(), messages.ToggleMirror())) == ("matte", "none")
+    walled = session(walls={"kind": "mirror"})
+    assert kinds(after(walled, messages.ToggleMirror())) == ("matte", "matte")
+    assert kinds(after(walled, messages.ToggleMirror())) == ("mirror", "mirror")
+
+
+def test_walls_come_in_the_floors_kind_and_go() -> None:
+    subject = session(floor={"kind": "mirror"})
+    assert kinds(after(subject, messages.ToggleWalls())) == ("mirror", "mirror")
+    assert kinds(after(subject, messages.ToggleWalls())) == ("mirror", "none")
+    assert kinds(after(session(floor={"kind": "none"}), messages.ToggleWalls())) == ("none", "matte")
+
+
+def kinds(scene: Scene) -> tuple[str, str]:
+    return scene.floor.kind, scene.walls.kind
+
+
+def test_the_sky_switches_between_dark_and_light() -> None:
+    subject = session(environment={"kind": "constant"})
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
+
+
+def test_the_stone_falls_pauses_and_goes_back() -> None:
+    subject = session()
+    start = subject.pose()
+    falling(subject)
+    fallen = subject.pose()
+    assert fallen is not None
+    assert start is not None
+    assert fallen["position"][1] < start["position"][1] - 0.1
+    after(subject, messages.ToggleFall())
+    subject.advance(10)
+    assert subject.pose() == fallen
+    after(subject, messages.ResetStone())
+    assert subject.pose() == start
+    assert not subject.falling
+
+
+def test_nothing_falls_in_a_scene_without_a_stone() -> None:
+    with pytest.raises(InputError, match="nothing can fall"):
+        after(session(stones=[]), messages.ToggleFall())
+
+
+def test_a_patch_of_what_is_not_about_motion_leaves_the_stone_in_the_air() -> None:
+    subject = falling(session())
+    pose = subject.pose()
+    material: dict[str, Any] = subject.scene.model_dump(mode="json")["stones"][0] | {"material": "classic"}
+    after(subject, messages.PatchScene(patch={"stones": [material], "floor": {"kind": "matte"}}))
+    assert subject.pose() == pose
+    assert subject.falling
+    assert subject.shown.scene.stones[0].material == "classic"
+
+
+@pytest.mark.parametrize(
+    "patch",
+    [
+        {"simulation": {"gravity": 1}},
+        {"stones": [{"position": [0, 3, 0]}]},
+        {"stones": [{"cut": {"table_percent": 60}}]},
+    ],
+)
+def test_a_patch_of_the_motion_or_shape_puts_the_stone_at_its_start(patch: dict[str, Any]) -> None:
+    subject = falling(session())
+    scene = after(subject, messages.PatchScene(patch=patch))
+    assert subject.shown.scene.stones[0].position == scene.stones[0].position
+    assert not subject.falling
+
+
+def test_a_patched_camera_is_shown_and_becomes_home() -> None:
+    subject = session()
+    after(subject, messages.Orbit(yaw=1, pitch=0))
+    orbited = subject.scene.camera
+    after(subject, messages.PatchScene(patch={"camera": {"fov_degrees": 30}}))
+    assert subject.scene.camera == orbited.model_copy(update={"fov_degrees": 30})
+    home = after(subject, messages.ResetCamera()).camera
+    assert home == Scene().camera.model_copy(update={"fov_degrees": 30})
+
+
+def test_a_new_scene_replaces_camera_and_stone() -> None:
+    subject = falling(session())
+    after(subject, messages.Orbit(yaw=1, pitch=0))
+    scene = after(subject, messages.SetScene(scene={"stones": [{"position": [0, 2, 0]}]}))
+    assert scene == Scene.read({"stones": [{"position": [0, 2, 0]}]})
+    assert subject.shown.scene == scene
+    assert not subject.falling
+
+
+@pytest.mark.parametrize(
+    ("event", "field"),
+    [
+        (messages.PatchScene(patch={"camera": {"fov_degrees": 500}}), "camera.fov_degrees"),
+        (messages.PatchScene(patch={"camera": {"fov_degrees": math.nan}}), "camera.fov_degrees"),
+        (messages.PatchScene(patch={"colour": 1}), "colour"),
+        (messages.SetScene(scene={"floor": {"kind": "lava"}}), "floor.kind"),
+        (messages.SetScene(scene={"stones": [{"mesh": "nowhere"}]}), "stones.0.mesh"),
+        (messages.SetScene(scene={"stones": [{"mesh": "../etc/passwd"}]}), "stones.0.mesh"),
+    ],
+)
+def test_a_bad_scene_is_refused_by_field_and_changes_nothing(event: SessionEvent, field: str) -> None:
+    subject = falling(session())
+    shown, scene = subject.shown, subject.scene
+    with pytest.raises(SceneError) as caught:
+        after(subject, event)
+    assert caught.value.field == field
+    assert (subject.shown, subject.scene, subject.falling) == (shown, scene, True)
