@@ -1,0 +1,45 @@
+"""The device and its renderers, shared by all tests, so that each program is compiled once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from culet.rendering.device import Device, open_device
+from culet.rendering.renderer import Renderer
+
+RendererOf = Callable[[int, type[np.floating[Any]]], Renderer]
+
+
+@pytest.fixture(scope="session")
+def device() -> Device:
+    return open_device()
+
+
+@pytest.fixture(scope="session")
+def renderer_of(device: Device) -> RendererOf:
+    """The renderer with that many lanes, in that precision."""
+
+    made: dict[tuple[int, type[np.floating[Any]]], Renderer] = {}
+
+    def of(lanes: int, real: type[np.floating[Any]]) -> Renderer:
+        if (lanes, real) not in made:
+            made[lanes, real] = Renderer(device, lanes=lanes, real=real)
+        return made[lanes, real]
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def renderer(renderer_of: RendererOf, device: Device) -> Renderer:
+    """As the server uses it: single precision, packets as wide as the device likes them."""
+    return renderer_of(device.lanes, np.float32)
+
+
+@pytest.fixture(scope="session")
+def exact(renderer_of: RendererOf) -> Renderer:
+    """Double precision, by which single precision is judged."""
+    return renderer_of(4, np.float64)
