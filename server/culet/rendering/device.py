@@ -11,6 +11,9 @@ import pyopencl as cl
 
 from culet.errors import DeviceError
 
+Real = type[np.float32] | type[np.float64]
+"""The precision of a program."""
+
 _PROBE = """
 __kernel void probe(__global float4 *a) {
   const size_t i = get_global_id(0);
@@ -32,7 +35,7 @@ class Device:
     units: int
     lock: Any = field(repr=False)
 
-    def lanes_for(self, real: type[np.floating[Any]]) -> int:
+    def lanes_for(self, real: Real) -> int:
         """Lanes of a packet in that precision."""
         return self.lanes if real is np.float32 else max(1, self.lanes // 2)
 
@@ -50,7 +53,9 @@ def open_device() -> Device:
     try:
         platforms = cl.get_platforms()
     except cl.Error as error:
-        raise DeviceError(f"no OpenCL platform is installed ({error}); on Debian: apt-get install pocl-opencl-icd") from error
+        raise DeviceError(
+            f"no OpenCL platform is installed ({error}); on Debian: apt-get install pocl-opencl-icd"
+        ) from error
     candidates = [device for platform in platforms for device in platform.get_devices()]
     candidates.sort(key=lambda device: not device.type & cl.device_type.CPU)
     for candidate in candidates:
@@ -61,7 +66,7 @@ def open_device() -> Device:
             context = cl.Context([candidate])
             queue = cl.CommandQueue(context)
             _probe(context, queue)
-        except Exception as error:  # noqa: BLE001 - drivers fail in every way; the next one may work
+        except Exception as error:  # drivers fail in every way; the next one may work
             tried.append(f"{name}: {str(error).splitlines()[0]}")
             continue
         width = candidate.native_vector_width_float

@@ -6,8 +6,8 @@ from dataclasses import astuple, dataclass, fields, replace
 from enum import IntEnum
 
 from culet.geometry.stone import Stone
-from culet.rendering.projection import camera_is_inside
 from culet.optics.dispersion import channel_indices
+from culet.rendering.projection import camera_is_inside
 from culet.scene.model import Environment, Plane, Scene
 
 RUNTIME = -1
@@ -23,8 +23,8 @@ class Geometry(IntEnum):
 
 
 MOST_HALF_SPACES = 600
-"""Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. With the
-brilliant's 73 the tree takes some 8 times as long."""
+"""Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. With
+the brilliant's 73 the tree takes some 8 times as long."""
 SURFACE = {"none": 0, "matte": 1, "mirror": 2}
 SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3}
 FRESNEL = {"exact": 0, "schlick": 1}

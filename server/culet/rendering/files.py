@@ -60,7 +60,8 @@ ENCODERS: dict[str, Callable[[Picture], bytes]] = {
 """By format, which is also the file's ending."""
 
 MEDIA_TYPES = {
-    "tga": "image/x-tga", "png": "image/png", "jpeg": "image/jpeg", "exr": "image/x-exr", "npy": "application/octet-stream",
+    "tga": "image/x-tga", "png": "image/png", "jpeg": "image/jpeg", "exr": "image/x-exr",
+    "npy": "application/octet-stream",
 }  # fmt: skip
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
 from culet.optics.dispersion import channel_indices
+from culet.rendering.device import Real
 from culet.rendering.features import FRESNEL, SKY, SURFACE
 from culet.rendering.projection import camera_is_inside, placement, project
 from culet.scene.model import (
@@ -33,8 +31,7 @@ WALL_NORMALS = ((0, 0, 1), (np.sqrt(0.75), 0, 0.5), (-np.sqrt(0.75), 0, 0.5))
 """Inward: a hexagon's three far sides."""
 
 
-@cache
-def layout(real: type[np.floating[Any]]) -> np.dtype[np.void]:
+def layout(real: Real) -> np.dtype[np.void]:
     """The struct for kernels of that precision, aligned as C does."""
     r, d, i = np.dtype(real), np.float64, np.int32
     return np.dtype(
@@ -89,7 +86,7 @@ def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def parameters(
-    scene: Scene, stone: Stone | None, width: int, height: int, shadow_start: NDArray[np.int32], real: type[np.floating[Any]]
+    scene: Scene, stone: Stone | None, width: int, height: int, shadow_start: NDArray[np.int32], real: Real
 ) -> NDArray[np.void]:
     """One struct; every position is relative to the stone's centre, subtracted in double precision."""
     p = np.zeros((), layout(real))

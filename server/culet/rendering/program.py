@@ -1,4 +1,4 @@
-"""Programs by features: built once, ready when they have been launched, made in the background while others serve."""
+"""Programs by features: built once, ready when they have been launched, made in the background meanwhile."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import threading
 from dataclasses import dataclass
 from typing import Any
 
-import culet_kernels
 import numpy as np
 import pyopencl as cl
 
+import culet_kernels
 from culet.errors import DeviceError
-from culet.rendering.device import Device
+from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
 
 FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
@@ -23,13 +23,17 @@ class Variant:
 
     source: str = "render.cl"
     lanes: int = 16
-    real: type[np.floating[Any]] = np.float32
+    real: Real = np.float32
     tile: int = 32
 
     @property
     def options(self) -> list[str]:
         """For the compiler."""
-        return [f"-DLANES={self.lanes}", f"-DREAL={'double' if self.real is np.float64 else 'float'}", f"-DTILE={self.tile}"]
+        return [
+            f"-DLANES={self.lanes}",
+            f"-DREAL={'double' if self.real is np.float64 else 'float'}",
+            f"-DTILE={self.tile}",
+        ]
 
 
 def build(device: Device, name: str, options: list[str]) -> Any:  # noqa: ANN401 - pyopencl has no types
@@ -51,36 +55,38 @@ class Programs:
         self._device = device
         self._ready: dict[tuple[Features, Variant], Any] = {}
         self._making: set[tuple[Features, Variant]] = set()
-        self._lock = threading.Lock()
-        self._build_lock = threading.Lock()
+        self._compiler = threading.Lock()
 
     def exact(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
         """The kernel for just these features; waits for the compiler if need be."""
         key = features, variant
-        with self._build_lock:
-            if key not in self._ready:
-                kernel = self._make(features, variant)
-                with self._lock:
-                    self._ready[key] = kernel
-        return self._ready[key]
+        kernel = self._ready.get(key)
+        if kernel is None:
+            with self._compiler:
+                kernel = self._ready.get(key) or self._make(features, variant)
+                self._ready[key] = kernel
+        return kernel
 
     def best(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
         """The kernel for these features if it is ready; else the general one, while the special one is made."""
         key = features, variant
-        with self._lock:
-            if key in self._ready:
-                return self._ready[key]
-            if key not in self._making:
-                self._making.add(key)
-                threading.Thread(target=self._make_ready, args=key, name="culet-compile", daemon=True).start()
-        return self.exact(features.general, variant)
+        kernel = self._ready.get(key)
+        if kernel is not None:
+            return kernel
+        general = self.exact(features.general, variant)
+        if key not in self._making:
+            self._making.add(key)
+            threading.Thread(target=self._make_ready, args=key, name="culet-compile", daemon=True).start()
+        return general
 
     def _make_ready(self, features: Features, variant: Variant) -> None:
+        from culet.rendering.precompile import precompile  # which imports this module
+
         try:
+            precompile(features, variant)
             self.exact(features, variant)
         finally:
-            with self._lock:
-                self._making.discard((features, variant))
+            self._making.discard((features, variant))
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
         program = build(self._device, variant.source, [*variant.options, *features.options])

@@ -50,8 +50,8 @@ def camera_is_inside(scene: Scene, stone: Stone) -> bool:
 
 
 def _winding_number(stone: Stone, point: Array) -> float:
-    """How often the surface encloses a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom & Strackee,
-    IEEE Trans. Biomed. Eng. 30, 125 (1983), eq. 8)."""
+    """How often the surface encloses a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom &
+    Strackee, IEEE Trans. Biomed. Eng. 30, 125 (1983), eq. 8)."""
     a, b, c = (stone.vertices[stone.triangles[:, k]] - point for k in range(3))
     la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
     triple = np.einsum("ij,ij->i", a, np.cross(b, c))
@@ -61,7 +61,7 @@ def _winding_number(stone: Stone, point: Array) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """Rays of a pinhole as affine functions of the pixel: foot + x column + y row, x and y in pixels from the corner."""
+    """Rays of a pinhole as affine functions of the pixel: foot + x column + y row, x and y in pixels."""
 
     foot: Array
     """(3, 3): the point of pixel (0, 0)'s ray abreast of the stone, relative to it; its change by column; by row."""

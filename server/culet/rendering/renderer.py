@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.polygons import edges_of_facets
 from culet.geometry.stone import Stone
-from culet.rendering.device import Device, open_device
+from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, features_of
 from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.program import Programs, Variant, build
@@ -35,7 +35,7 @@ class Renderer:
         self,
         device: Device | None = None,
         *,
-        real: type[np.floating[Any]] = np.float32,
+        real: Real = np.float32,
         lanes: int | None = None,
         tile: int = 32,
         background_compile: bool = False,
@@ -104,7 +104,9 @@ class Picture:
         self._mesh = [None, None, None]
         if stone is not None and features.geometry == Geometry.MESH:
             tree = tree_of(stone)
-            self._mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
+            self._mesh = [
+                self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))
+            ]
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
@@ -144,7 +146,7 @@ class Picture:
         return self._mean()[..., :3]
 
     def cut_map(self) -> NDArray[np.floating[Any]]:
-        """(height, width) mean weight that was dropped; times the largest radiance outside it bounds a pixel's error."""
+        """(height, width) mean weight that was dropped; times the largest radiance it bounds a pixel's error."""
         return self._mean()[..., 3]
 
     def cut(self) -> float:
@@ -188,6 +190,8 @@ def _shadow_volumes(
     """Where each light's planes begin, and all of them."""
     centre, rotation = placement(scene)
     surfaces, vertices, edges = shown_surfaces(scene, centre), stone.vertices @ rotation.T, edges_of_facets(stone)
-    volumes = [shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights]
+    volumes = [
+        shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights
+    ]
     starts = np.cumsum([0, *map(len, volumes)]).astype(np.int32)
     return starts, np.vstack([*volumes, np.zeros((1, 4))])

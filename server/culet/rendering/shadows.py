@@ -1,8 +1,8 @@
 """Shadow volumes of a convex stone: for each light, the half-spaces that a shaded point of the room lies in.
 
-A point outside a convex body is hidden from a light exactly when it lies inside the cone that the light spans over the
-body's silhouette, and behind the body. The cone's sides are the planes through the light and each edge between a lit and
-an unlit facet. Behind means inside all lit facets' half-spaces; that holds by itself for floor and walls that have both
+A point outside a convex body is hidden from a light exactly when it lies inside the cone that the light spans over
+the body's silhouette, and behind the body. The cone's sides are the planes through the light and each edge between a
+lit and an unlit facet. Behind means inside all lit facets' half-spaces; that holds by itself for floor and walls that have both
 the light and the whole stone in front of them, and is left out then.
 """
 
@@ -31,5 +31,7 @@ def shadow_planes(planes: Array, vertices: Array, edges: NDArray[np.integer], li
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     normals *= np.where(normals @ light > 0, 1, -1)[:, None]  # the stone's centre, the origin, is inside
     sides = np.column_stack([normals, normals @ light])
-    in_front = (vertices @ surfaces[:, :3].T >= surfaces[:, 3]).all() and (light @ surfaces[:, :3].T > surfaces[:, 3]).all()
+    in_front = (vertices @ surfaces[:, :3].T >= surfaces[:, 3]).all() and (
+        light @ surfaces[:, :3].T > surfaces[:, 3]
+    ).all()
     return sides if in_front else np.vstack([sides, planes[lit]])

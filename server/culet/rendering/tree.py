@@ -1,7 +1,7 @@
 """The tree of boxes over a stone's triangles, as mesh.cl reads it.
 
-A binary tree by the surface area heuristic (MacDonald & Booth, Visual Computer 6, 153 (1990)), binned, down to leaves of
-WIDTH triangles; then each node adopts its largest grandchildren until it has WIDTH children (Wald, Benthin & Boulos,
+A binary tree by the surface area heuristic (MacDonald & Booth, Visual Computer 6, 153 (1990)), binned, down to leaves
+of WIDTH triangles; then each node adopts its largest grandchildren until it has WIDTH children (Wald, Benthin & Boulos,
 Getting Rid of Packets, 2008).
 """
 
@@ -36,7 +36,7 @@ class Tree:
     links: NDArray[np.int32]
     """(N, WIDTH): the child's node, or ~leaf."""
     corners: Array
-    """(L, 12, WIDTH): a corner, two edges, the facet's normal; zeros where a leaf is not full. The first leaf is empty."""
+    """(L, 12, WIDTH): a corner, two edges, the facet's normal; zeros where a leaf is not full. The first is empty."""
 
 
 @dataclass(eq=False)
@@ -101,15 +101,17 @@ def _split(centres: Array, lower: Array, upper: Array, *, by_median: bool) -> ND
             _areas(np.minimum.accumulate(low[::-1]), np.maximum.accumulate(high[::-1]))[::-1][1:],
         )
         cost = from_left[0] * from_left[1] + from_right[0] * from_right[1]
-        return number <= int(cost.argmin())  # the outermost bins are never empty
-    left = np.zeros(count, bool)
+        left: NDArray[np.bool_] = number <= int(cost.argmin())
+        return left  # the outermost bins are never empty
+    left = np.zeros(count, np.bool_)
     left[np.argpartition(centres[:, axis], count // 2)[: count // 2]] = True
     return left
 
 
 def _areas(lower: Array, upper: Array) -> Array:
     x, y, z = np.maximum(upper - lower, 0).T
-    return x * y + y * z + z * x
+    areas: Array = x * y + y * z + z * x
+    return areas
 
 
 def _collapse(root: _Branch, stone: Stone, corners: Array) -> tuple[Tree, int]:
@@ -150,6 +152,5 @@ def _adopt(node: _Branch) -> list[_Branch]:
             break
         largest = max(inner, key=lambda child: child.area)
         children.remove(largest)
-        assert largest.children is not None
-        children += largest.children
+        children += largest.children or ()
     return children

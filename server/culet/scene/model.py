@@ -1,7 +1,7 @@
 """The scene: JSON in, JSON out, every field with a default, so that `{}` is the default scene.
 
 y is up. The unit of length is the stone's circumradius R, the unit of time the second; colours and radiance are linear.
-The floor is the plane y = -1. Anything unknown, out of range, infinite or not a number is refused with the field's name.
+The floor is the plane y = -1. Anything unknown, out of range or not finite is refused with the field's name.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from culet.errors import SceneError
 
@@ -84,7 +84,7 @@ class StoneSettings(Model):
     @classmethod
     def _normalise(cls, q: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
         length = math.sqrt(sum(c * c for c in q))
-        if not 1e-6 < length:
+        if not length > 1e-6:
             raise ValueError("a quaternion of length 0 is no orientation")
         if abs(length - 1) < 1e-12:  # normalising again would change the last bit, and the scene with it
             return q
@@ -145,7 +145,9 @@ class Lamp(Model):
     direction: Vector
     half_angle_degrees: Annotated[float, Field(ge=0.1, le=90)]
     radiance: Colour
-    softness: Annotated[float, Field(ge=0.02, le=1)] = Field(0.25, description="Part of the radius over which it fades.")
+    softness: Annotated[float, Field(ge=0.02, le=1)] = Field(
+        0.25, description="Part of the radius over which it fades."
+    )
 
     @field_validator("direction")
     @classmethod
@@ -229,7 +231,7 @@ class Film(Model):
 
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
     tone_map: Literal["srgb", "classic", "none"] = Field(
-        "srgb", description="srgb: IEC 61966-2-1, clipped; classic: (1.2 L)^1.2 as in the report; none: linear, clipped."
+        "srgb", description="srgb: IEC 61966-2-1; classic: (1.2 L)^1.2 as in the report; none: linear. All are clipped."
     )
 
 

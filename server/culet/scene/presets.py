@@ -68,7 +68,10 @@ PRESETS: dict[str, tuple[str, Scene]] = {
         "The report's Fig. 1: a falling diamond and its reflection.",
         _classic(position=(0, 2, 0), camera=Camera(position=(0, 1.6, 8), target=(0, 0.6, 0), fov_degrees=45)),
     ),
-    "light-walls": ("The report's Fig. 2: light sky, walls, checker.", _classic(floor="matte", walls="matte", light=True)),
+    "light-walls": (
+        "The report's Fig. 2: light sky, walls, checker.",
+        _classic(floor="matte", walls="matte", light=True),
+    ),
     "dark-checker": ("The report's Fig. 3: dark sky, checker, no walls.", _classic(floor="matte")),
     "tinted-blue": ("The report's Fig. 11, final values: absorbs red and green.", _tinted((2, 1, 0.1))),
     "tinted-red": ("After the report's Fig. 11: absorbs green and blue.", _tinted((0.1, 2, 1))),

@@ -81,8 +81,14 @@ def measure_features(renderer: Renderer, width: int, height: int, repeats: int) 
             _picture(renderer, on, width, height),
         ]
         milliseconds = [1e3 * statistics.median(times) for times in _take_turns(pictures, repeats)]
-        sizes = [_program_size(picture) for picture in pictures[:2]]
-        yield FeatureCost(name, *milliseconds, *sizes)
+        yield FeatureCost(
+            name,
+            milliseconds[0],
+            milliseconds[1],
+            milliseconds[2],
+            _program_size(pictures[0]),
+            _program_size(pictures[1]),
+        )
 
 
 def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -> str:
@@ -121,7 +127,7 @@ def _program_size(picture: Picture) -> int:
 
 def _commit() -> str:
     try:
-        result = subprocess.run(  # noqa: S603
+        result = subprocess.run(
             ["git", "describe", "--always", "--dirty"],  # noqa: S607
             cwd=Path(__file__).parent, capture_output=True, text=True, check=True,
         )  # fmt: skip

@@ -12,9 +12,7 @@ from culet.scene.model import (
     StoneSettings,
 )
 
-_STONE = StoneSettings(
-    material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0)
-)
+_STONE = StoneSettings(material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0))
 
 CHECKER = Scene(
     stones=(_STONE,),
@@ -24,7 +22,7 @@ CHECKER = Scene(
     camera=Camera(position=(0, 2.2, 3.2), target=(0, 0, 0), fov_degrees=45),
     optics=Optics(max_bounces=64),
 )
-"""The main job at its plainest: a brilliant of three indices over a checker without lights, 64 bounces, cut-off 0.01."""
+"""The main job at its plainest: a brilliant of three indices over a checker without lights, 64 bounces."""
 
 _LIGHTS = Scene().lights
 

@@ -1,0 +1,38 @@
+"""Makes one program in a process of its own, so that the driver's cache has it when this process asks.
+
+A driver compiles under a lock that launches need too: in the same process, frames would wait for the compiler.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import asdict
+
+import numpy as np
+
+from culet.rendering.device import open_device
+from culet.rendering.features import Features
+from culet.rendering.program import Programs, Variant
+
+NICENESS = 10
+"""Of the compiling process: frames come first."""
+
+
+def precompile(features: Features, variant: Variant) -> None:
+    """Start a process that makes the program, and wait for it. If it fails, the caller's own build will say why."""
+    order = {"features": asdict(features), "variant": {**asdict(variant), "real": np.dtype(variant.real).name}}
+    command = ["nice", "-n", str(NICENESS), sys.executable, "-m", __name__, json.dumps(order)]
+    subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)  # noqa: S603
+
+
+def main() -> None:
+    """Entry of that process."""
+    order = json.loads(sys.argv[1])
+    variant = Variant(**{**order["variant"], "real": np.dtype(order["variant"]["real"]).type})
+    Programs(open_device()).exact(Features(**order["features"]), variant)
+
+
+if __name__ == "__main__":
+    main()
