@@ -86,7 +86,7 @@ export function parseMesh(answer: JsonObject): Mesh {
   const { id, facets, convex, findings }: JsonObject = { ...(answer.description as JsonObject | undefined), ...answer };
   if (typeof id !== "string") throw new ProblemError(201, "expected the id of a mesh, got none");
   const said = Array.isArray(findings) ? findings.map(String) : [];
-  return { id, findings: [`${facets} facets, ${convex ? "convex" : "not convex"}.`, ...said] };
+  return { id, findings: said.length > 0 ? said : [`${facets} facets, ${convex ? "convex" : "not convex"}.`] };
 }
 
 /** The state of that number, rendered at full quality. */
