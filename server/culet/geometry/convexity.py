@@ -14,7 +14,7 @@ from culet.geometry.mass import surface_area
 from culet.geometry.polygons import fan, loops
 from culet.geometry.surface import Points, Triangles
 
-DENT = 1e-4
+DENT = 2e-4
 """A surface that stays within this of its hull, in units of its mean thickness 3 V / A, is convex and the hull is
 taken: coordinates of four digits leave such dents in every quad. Larger fills what was carved; smaller sends rounded
 files of convex stones to the slower triangles, with creases in their facets."""

@@ -39,7 +39,10 @@ def retriangulated(vertices: Points, triangles: Triangles) -> tuple[Triangles, i
     if not bad.any():
         return triangles, 0
     count = len(triangles)
-    linked = pair[flat]
+    # An empty triangle is flat with everything about it; it belongs to the polygon across its longest side.
+    side = np.sqrt(((vertices[corners[:, 0]] - vertices[corners[:, 1]]) ** 2).sum(axis=1))
+    own = side[:, None] >= longest[pair] * (1 - 1e-9)
+    linked = pair[flat & (own | ~empty[pair]).all(axis=1)]
     _, label = connected_components(coo_array((np.ones(len(linked)), linked.T), shape=(count, count)), directed=False)
     keep = np.ones(count, np.bool_)
     fresh: list[NDArray[np.int64]] = []

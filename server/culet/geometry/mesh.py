@@ -83,11 +83,11 @@ def _scaled(used: Points, vertices: Points) -> Points:
     half = float((high / 2 - low / 2).max())
     if half == 0:
         raise MeshError("the mesh is flat: all its vertices are one point")
+    if half < 1e-300:
+        raise MeshError(f"the mesh has an extent of {2 * half:.3g}; expected 1e-300 or more")
     middle = low / 2 + high / 2
     with np.errstate(all="ignore"):  # vertices that no face uses may be anything
         scaled: Points = (vertices - middle) / half
-    if not np.isfinite(scaled[np.isfinite(vertices).all(axis=1)]).all():
-        raise MeshError(f"the mesh has an extent of {2 * half:.3g}; expected between 1e-300 and 1e300")
     return scaled
 
 
@@ -201,7 +201,9 @@ def _finished(name: str, body: _Body, source: int, centre: Centre, findings: lis
     planes = planes_of(body.vertices, triangles, facet, int(facet.max()) + 1)
     if not planes[:, :3].any(axis=1).all():
         raise MeshError("the mesh has facets without area that no repair removed; clean it and export it again")
-    findings.append(f"Not convex: a dent of {form.depth:.1e} R; {source} triangles in the file, {len(planes)} facets.")
+    findings.append(
+        f"Not convex: dented by {form.depth:.1e} R or more; {source} triangles in the file, {len(planes)} facets."
+    )
     return assemble(
         name, body.vertices, triangles.astype(np.int32), facet.astype(np.int32), planes,
         convex=False, centre=origin, findings=findings,

@@ -14,7 +14,7 @@ def positions_and_faces(data: bytes, max_triangles: int) -> bytes:
     """
     positions: list[bytes] = []
     faces: list[bytes] = []
-    triangles = 0
+    triangles = highest = 0
     text = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\\\n", b" ")
     for number, line in enumerate(text.split(b"\n"), start=1):
         words = line.split(b"#", 1)[0].split()
@@ -30,11 +30,15 @@ def positions_and_faces(data: bytes, max_triangles: int) -> bytes:
             triangles += len(words) - 3
             if triangles > max_triangles:
                 raise TooLargeError(f"expected at most {max_triangles} triangles, got more")
-            faces.append(b"f " + b" ".join(_corner(word, len(positions), number) for word in words[1:]))
+            corners = [_corner(word, len(positions), number) for word in words[1:]]
+            highest = max(highest, *corners)
+            faces.append(b"f " + b" ".join(b"%d" % corner for corner in corners))
+    if highest > len(positions):
+        raise MeshError(f"a face names vertex {highest} of {len(positions)}")
     return b"\n".join([*positions, *faces, b""])
 
 
-def _corner(word: bytes, positions: int, line: int) -> bytes:
+def _corner(word: bytes, positions: int, line: int) -> int:
     """Of `position/texture/normal`, the position counted from 1."""
     try:
         index = int(word.split(b"/", 1)[0])
@@ -44,7 +48,7 @@ def _corner(word: bytes, positions: int, line: int) -> bytes:
         index += positions + 1
     if index < 1:
         raise MeshError(f"line {line}: vertex index {_shown(word)} is out of range, {positions} vertices so far")
-    return b"%d" % index
+    return index
 
 
 def _shown(text: bytes) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from culet.errors import MeshError, TooLargeError
@@ -90,30 +91,40 @@ def plain_polygons(data: bytes, max_triangles: int) -> bytes:
     if header.encoding == "ascii":
         return data
     order = "<" if header.encoding == "binary_little_endian" else ">"
+    lengths: set[tuple[str, tuple[int, ...]]] = set()
     rows: list[str] = []
-    lengths: set[tuple[int, ...]] = set()
-    position = len(header.text)
     try:
-        for element in header.elements:
-            fixed = None
-            if all(len(kinds) == 1 for kinds in element.properties):
-                fixed = struct.Struct(order + "".join(kinds[0] for kinds in element.properties))
-                if len(data) - position < fixed.size * element.count:
-                    raise MeshError(f"PLY ends within its {element.name} rows")
-            for _ in range(element.count if element.properties else 0):
-                if fixed is not None:
-                    values = fixed.unpack_from(data, position)
-                    position += fixed.size
-                else:
-                    values, position, seen = _row(data, position, order, element)
-                    lengths.add((len(element.name), *seen))
-                rows.append(" ".join(map(repr, values)))
+        for element, _, seen in _rows(data, header, order, lists_only=True):
+            lengths.add((element.name, seen))
+        if len(lengths) == len({name for name, _ in lengths}):
+            return data
+        rows += (" ".join(map(repr, values)) for _, values, _ in _rows(data, header, order, lists_only=False))
     except struct.error:
         raise MeshError("PLY ends within its rows") from None
-    if len(lengths) <= 1:
-        return data
     text = header.text.replace(header.encoding.encode(), b"ascii", 1)
     return text + "\n".join([*rows, ""]).encode()
+
+
+def _rows(
+    data: bytes, header: Header, order: str, *, lists_only: bool
+) -> Iterator[tuple[Element, tuple[float, ...], tuple[int, ...]]]:
+    """Each row's element, numbers and lengths of lists; with `lists_only`, elements without lists are passed over."""
+    position = len(header.text)
+    for element in header.elements:
+        if not element.properties:
+            continue
+        if all(len(kinds) == 1 for kinds in element.properties):
+            row = struct.Struct(order + "".join(kinds[0] for kinds in element.properties))
+            end = position + row.size * element.count
+            if end > len(data):
+                raise MeshError(f"PLY ends within its {element.name} rows")
+            if not lists_only:
+                yield from ((element, values, ()) for values in row.iter_unpack(data[position:end]))
+            position = end
+        else:
+            for _ in range(element.count):
+                values, position, seen = _row(data, position, order, element)
+                yield element, values, seen
 
 
 def _row(data: bytes, position: int, order: str, element: Element) -> tuple[tuple[float, ...], int, tuple[int, ...]]:

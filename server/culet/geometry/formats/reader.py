@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import io
-import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 import trimesh
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from trimesh.resolvers import Resolver
 
 from culet.errors import InputError, MeshError, TooLargeError
-from culet.geometry.formats import glb, obj, ply
+from culet.geometry.formats import glb, obj, off, ply
 
 FORMATS = ("obj", "off", "stl", "ply", "glb")
 
@@ -81,21 +80,20 @@ def _prepared(data: bytes, kind: str, max_triangles: int) -> bytes:
     """What trimesh may read: checked, counted where the format tells, and without what it would misread."""
     if kind == "obj":
         return obj.positions_and_faces(data, max_triangles)
+    if kind == "off":
+        return off.triangles_only(data, max_triangles)
     if kind == "ply":
         return ply.plain_polygons(data, max_triangles)
     if kind == "glb":
         glb.check(data, max_triangles)
     if kind == "stl":
         binary = len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
-        count = (len(data) - 84) // 50 if binary else data.lower().count(b"endfacet")
+        text = b"" if binary else data.lower()
+        if not binary and b"solid" not in text:
+            raise MeshError("expected text from 'solid' to 'endsolid', or binary of 84 bytes and 50 for each triangle")
+        count = (len(data) - 84) // 50 if binary else text.count(b"endfacet")
         if count > max_triangles:
             raise TooLargeError(f"expected at most {max_triangles} triangles, got {count}")
-    if kind == "off":
-        counts = re.search(rb"OFF\s*(?:#[^\n]*\n\s*)*(\d+)\s+(\d+)", data[:65536])
-        if counts is None:
-            raise MeshError("expected OFF and the numbers of vertices and faces")
-        if int(counts[2]) > max_triangles:
-            raise TooLargeError(f"expected at most {max_triangles} triangles, got {int(counts[2])} faces")
     return data
 
 
@@ -105,9 +103,10 @@ def _parts(data: bytes, kind: str) -> Iterator[tuple[NDArray[np.float64], NDArra
         warnings.simplefilter("ignore")
         # NumPy stops at the first word that is no number and only warns; what came before it is not the mesh.
         warnings.filterwarnings("error", message=".*could not be read to its end.*")
-        scene = trimesh.load_scene(
-            io.BytesIO(data), file_type=kind, resolver=_NoOtherFiles(), process=False, skip_materials=True
-        )
+        options: dict[str, Any] = {"process": False, "skip_materials": True}
+        if kind == "obj":
+            options["maintain_order"] = True  # keeps vertices that no face uses, to be counted
+        scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=_NoOtherFiles(), **options)
         for node in scene.graph.nodes_geometry:
             transform, name = scene.graph[node]
             mesh = scene.geometry[name]

@@ -1,0 +1,74 @@
+"""What decides that a surface is convex: each of three tests catches what the others let through."""
+
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+
+from culet.geometry.convexity import DENT, Dent, Polyhedron, convex_form
+from culet.geometry.facets import FLATNESS, bend, facets_of, neighbours
+from culet.geometry.mass import solid_integrals
+from culet.geometry.surface import Triangles
+from geometry.shapes import Points, cube, fans
+
+
+def decided(corners: Points, triangles: Triangles) -> Polyhedron | Dent:
+    return convex_form(corners, triangles, solid_integrals(corners, triangles).volume)
+
+
+def steepest(corners: Points, triangles: Triangles) -> float:
+    return float(bend(corners, neighbours(triangles)[1]).max())
+
+
+def test_a_fine_wide_dimple_hides_from_its_edges_but_not_from_the_hull() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=6)
+    corners, triangles = np.array(ball.vertices), np.array(ball.faces, np.int64)
+    corners *= (1 - 0.06 * np.exp(-2 * (1 - corners[:, 1]) / 0.09))[:, None]
+    assert 0 < steepest(corners, triangles) < DENT  # measured 7.2e-5
+    form = decided(corners, triangles)
+    assert isinstance(form, Dent)
+    assert form.depth > DENT
+
+
+def test_one_wrong_diagonal_is_a_dent_although_every_vertex_is_on_the_hull() -> None:
+    """A cube with one corner pulled in: the quad beside it folds along one diagonal outward, along the other inward."""
+    corners, faces = cube()
+    corners[7] *= 0.9
+    triangles = fans(faces)
+    outward = [tuple(t) for t in triangles.tolist()]
+    for quad in faces:
+        if 7 in quad:
+            k = quad.index(7)
+            a, b, c, d = (quad[(k + n) % 4] for n in range(4))
+            outward = [t for t in outward if not set(t) <= set(quad)] + [(b, c, d), (a, b, d)]
+    assert isinstance(decided(corners, np.array(outward, np.int64)), Polyhedron)
+    inward = [t for t in outward if not set(t) <= set(faces[1])]
+    k = faces[1].index(7)
+    a, b, c, d = (faces[1][(k + n) % 4] for n in range(4))
+    form = decided(corners, np.array([*inward, (a, b, c), (a, c, d)], np.int64))
+    assert isinstance(form, Dent)
+
+
+def test_the_bend_of_two_triangles_is_the_least_height_of_their_tetrahedron() -> None:
+    """A unit right corner seen from inside and outside: the least height of that tetrahedron is 1 / sqrt 3."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], np.float64)
+    hinge = np.array([(0, 1, 2, 3)])
+    assert abs(bend(corners, hinge)[0]) == np.float64(1 / np.sqrt(3)).round(16)
+    assert bend(corners, hinge)[0] == -bend(corners, hinge[:, [0, 1, 3, 2]])[0]
+
+
+def test_facets_that_bend_little_by_little_are_not_taken_for_one() -> None:
+    """A strip of 4000 quads rolled into a cylinder: every pair is flat to FLATNESS, the whole is not."""
+    n = 4000
+    angle = 2 * np.pi * np.arange(n) / n
+    ring = np.column_stack([np.cos(angle), np.zeros(n), -np.sin(angle)])
+    corners = np.vstack([ring, ring + np.array([0, 0.001, 0])])
+    quads = [[k, (k + 1) % n, n + (k + 1) % n, n + k] for k in range(n)]
+    triangles = fans(quads)
+    assert abs(bend(corners, neighbours(triangles)[1])).max() < 5 * FLATNESS
+    tolerance = 5 * FLATNESS
+    facet = facets_of(corners, triangles, tolerance)
+    assert 100 < facet.max() < n  # measured 1000
+    for k in range(0, int(facet.max()), 97):
+        own = corners[np.unique(triangles[facet == k])]
+        assert np.linalg.svd(own - own.mean(axis=0))[1][2] / np.sqrt(len(own)) < tolerance
