@@ -19,7 +19,7 @@ from websockets.typing import Subprotocol
 
 from culet_protocol import SUBPROTOCOL
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Resize, ToggleFall
+from culet_protocol.messages import Ack, Resize, ToggleFall
 
 PATIENCE = 60.0
 """Seconds for each answer: the first picture waits for the compiler."""
@@ -59,12 +59,14 @@ async def viewer(address: str, session: str) -> AsyncIterator[ClientConnection]:
 
 
 async def next_frame(socket: ClientConnection) -> Frame:
-    """The next binary message."""
+    """The next binary message, acknowledged, since a viewer gets no more than a few frames ahead of that."""
     async with asyncio.timeout(PATIENCE):
         while True:
             message = await socket.recv()
             if isinstance(message, bytes):
-                return Frame.unpack(message)
+                frame = Frame.unpack(message)
+                await socket.send(Ack(sequence=frame.sequence).model_dump_json())
+                return frame
 
 
 async def main() -> None:
