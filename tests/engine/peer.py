@@ -19,7 +19,7 @@ import zmq.asyncio
 from culet_protocol.engine import REQUEST_NUMBER
 from culet_protocol.frame import Frame
 
-PATIENCE = 10.0
+PATIENCE = 30.0
 """s; an upper limit for what takes a fraction of a second, or some seconds while kernels compile for the first time."""
 SIZE: dict[str, Any] = {"width": 64, "height": 36}
 

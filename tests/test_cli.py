@@ -1,0 +1,167 @@
+"""The command line as a user has it: a process, its output and its exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from engine.peer import TETRAHEDRON, connected, running_engine
+
+COMMANDS = ["render", "simulate", "serve", "gateway", "engine", "view", "record"]
+TINY = ("--width", "48", "--height", "27")
+
+
+def culet(*arguments: str | Path, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run([sys.executable, "-m", "culet", *arguments], input=stdin, capture_output=True, check=False)
+
+
+def refused(run: subprocess.CompletedProcess[bytes]) -> str:
+    """The one line that says why not."""
+    assert run.returncode == 1
+    assert b"Traceback" not in run.stderr
+    (line,) = run.stderr.decode().splitlines()
+    return line
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(command: str) -> None:
+    run = culet(command, "--help")
+    assert run.returncode == 0
+    assert f"culet {command}" in run.stdout.decode()
+
+
+def test_without_a_command_all_are_listed() -> None:
+    shown = culet("--help").stdout.decode()
+    assert all(command in shown for command in COMMANDS)
+
+
+@pytest.mark.parametrize(("ending", "format_"), [("tga", "TGA"), ("png", "PNG"), ("jpg", "JPEG")])
+def test_a_rendered_picture_can_be_opened(tmp_path: Path, ending: str, format_: str) -> None:
+    out = tmp_path / f"gem.{ending}"
+    run = culet("render", "-o", out, *TINY)
+    assert run.returncode == 0, run.stderr
+    with Image.open(out) as picture:
+        assert (picture.format, picture.size) == (format_, (48, 27))
+    assert [path.name for path in tmp_path.iterdir()] == [out.name]  # nothing else is left
+
+
+def test_a_linear_picture_holds_radiance_not_pixels(tmp_path: Path) -> None:
+    out = tmp_path / "gem.npy"
+    scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "constant", "radiance": [0.25, 2, 8]}}
+    run = culet("render", "-", "-o", out, *TINY, stdin=json.dumps(scene).encode())
+    assert run.returncode == 0, run.stderr
+    assert np.load(out).reshape(-1, 3) == pytest.approx(np.tile([0.25, 2, 8], (48 * 27, 1)))
+
+
+def test_more_samples_are_taken_when_asked_for(tmp_path: Path) -> None:
+    run = culet("render", "-o", tmp_path / "gem.png", "--samples", "3", "--preset", "matte", *TINY)
+    assert b"3 samples per pixel" in run.stdout
+
+
+def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
+    mesh = tmp_path / "gem.off"
+    mesh.write_bytes(TETRAHEDRON)
+    assert culet("render", "-o", tmp_path / "cut.npy", *TINY).returncode == 0
+    run = culet("render", "-o", tmp_path / "mesh.npy", "--mesh", mesh, *TINY)
+    assert run.returncode == 0, run.stderr
+    assert not np.array_equal(np.load(tmp_path / "cut.npy"), np.load(tmp_path / "mesh.npy"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "stdin", "said"),
+    [
+        (["-o", "a.gif"], b"", ".exr"),
+        (["-o", "missing/a.png"], b"", "cannot write"),
+        (["nowhere.json"], b"", "cannot read nowhere.json"),
+        (["-"], b"{", "not JSON"),
+        (["-"], b'{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
+        (["-"], b'{"colour": "red"}', "colour"),
+        (["--preset", "ruby"], b"", "classic"),
+        (["--mesh", "nowhere.obj"], b"", "nowhere.obj"),
+        (["-", "--preset", "classic"], b"{}", "both"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_1(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: bytes, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert said in refused(culet("render", *TINY, *arguments, stdin=stdin))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [["render", "--width", "0"], ["render", "--widht", "9"], ["view"], ["dance"]])
+def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
+    assert culet(*arguments).returncode == 2
+
+
+def test_a_path_is_written_step_by_step(tmp_path: Path) -> None:
+    out = tmp_path / "path.csv"
+    run = culet("simulate", "--seconds", "0.5", "-o", out)
+    assert run.returncode == 0, run.stderr
+    header, *rows = out.read_text().splitlines()
+    assert header.startswith("step,time,position_x")
+    assert len(rows) == 16  # the start, and 15 steps of 1/30 s
+
+
+def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:
+    run = culet("simulate", "-", "-o", tmp_path / "path.csv", stdin=b'{"stones": []}')
+    assert "needs a stone" in refused(run)
+
+
+async def test_frames_of_a_session_are_taken_without_a_gateway(tmp_path: Path) -> None:
+    with running_engine(tmp_path) as engine:
+        async with connected(engine) as (peer, _):
+            session = await peer.open({"floor": {"kind": "none"}, "lights": []})
+            await peer.demand()
+            run = culet("view", engine.frames, "--session", session, "--frames", "3", "-o", tmp_path / "out")
+            assert run.returncode == 0, run.stderr
+    files = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert files == ["frame-000001.jpg", "frame-000002.jpg", "frame-000003.jpg", "frames.jsonl"]
+
+
+def test_a_session_that_nobody_publishes_is_given_up(tmp_path: Path) -> None:
+    endpoint = f"ipc://{tmp_path}/nobody"
+    run = culet("view", endpoint, "--session", "0" * 32, "--timeout", "0.2", "-o", tmp_path / "out")
+    assert "no frame of session" in refused(run)
+    assert "32 hexadecimal digits" in refused(culet("view", endpoint, "--session", "x", "-o", tmp_path / "out"))
+
+
+def test_an_endpoint_that_cannot_be_bound_is_said_so(tmp_path: Path) -> None:
+    run = culet("engine", "--control", f"ipc://{tmp_path}/no/such/folder", "--frames", f"ipc://{tmp_path}/frames")
+    assert "cannot bind" in refused(run)
+
+
+def test_serve_runs_and_ends_with_its_engine(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "culet", "serve", "--port", "0"]
+    with (
+        (tmp_path / "log").open("wb") as log,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log) as server,
+    ):
+        assert server.stdout is not None
+        line = server.stdout.readline().decode()
+        assert line.startswith("culet is ready: http://127.0.0.1:"), (tmp_path / "log").read_text()
+        engines = children(server.pid)
+        assert len(engines) == 1
+        server.send_signal(signal.SIGTERM)
+        assert server.wait(15) == 0
+        assert not any(alive(engine) for engine in engines)
+
+
+def children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
