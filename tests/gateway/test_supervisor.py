@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -22,8 +23,9 @@ from culet.errors import EngineUnavailableError, InputError
 from culet.gateway.listener import Listener
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.supervisor import STARTS_BEFORE_GIVING_UP, Supervisor
-from culet_protocol.messages import Orbit
-from gateway.running import PATIENCE, SIZE, Viewer, eventually
+from culet_protocol.frame import Flags
+from culet_protocol.messages import Orbit, ToggleFall
+from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, eventually
 
 
 class Served(NamedTuple):
@@ -110,6 +112,24 @@ async def test_a_killed_engine_comes_back_with_the_same_sessions(served: Served)
         assert (await served.http.get("/metrics")).text.count("culet_engine_processes_total 2") == 1
 
 
+async def test_a_falling_stone_from_an_upload_goes_on_falling_in_the_next_engine(served: Served) -> None:
+    upload = await served.http.post("/api/meshes", files={"file": ("stone.obj", TETRAHEDRON)})
+    lively = {"restitution": 1, "tangential_damping": 1, "angular_damping": 1, "random_torque": 0}
+    scene = {"stones": [{"mesh": upload.json()["id"], "position": [0, 3, 0]}], "simulation": lively}
+    session = (await served.http.post("/api/sessions", json={"scene": scene})).json()["id"]
+    async with served.viewer(session) as viewer:
+        await viewer.say(ToggleFall())
+        await viewer.until(lambda: bool(viewer.frames) and viewer.frames[-1].simulation_time > 2.5)
+        engine = served.engine()
+        assert engine
+        os.kill(engine, signal.SIGKILL)
+        await viewer.notice("engine")
+        assert (await viewer.notice("engine"))["status"] == "up"
+        frame = await viewer.frame()
+    assert Flags.MOVING in frame.flags
+    assert frame.simulation_time > 1, "from the last snapshot, one a second, and not from the start"
+
+
 async def test_without_its_engine_the_gateway_says_so(served: Served) -> None:
     engine = served.engine()
     assert engine
@@ -154,8 +174,11 @@ async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches(
 async def test_an_engine_does_not_outlive_a_killed_parent(served: Served) -> None:
     engine = served.engine()
     assert engine
+    command = Path(f"/proc/{engine}/cmdline").read_text()  # noqa: ASYNC240 - procfs does not block
+    left_behind = Path(command.split("ipc://")[1].partition("\0")[0]).parent
     served.process.kill()
     await ended(engine)
+    shutil.rmtree(left_behind)  # a killed process cannot tidy up
 
 
 async def test_an_engine_that_never_starts_is_given_up() -> None:

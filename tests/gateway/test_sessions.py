@@ -1,0 +1,52 @@
+"""What the gateway remembers of a session, without an engine."""
+
+from __future__ import annotations
+
+import pytest
+
+from culet.gateway.link import EngineLink
+from culet.gateway.meshes import Meshes
+from culet.gateway.sessions import Session, Sessions, meshes_of
+from culet.gateway.settings import GatewaySettings
+from culet.gateway.viewer import DEFAULT_SIZE
+from culet_protocol.frame import Codec, Flags, Frame
+from culet_protocol.messages import Engine, State, Viewers
+
+SETTINGS = GatewaySettings("ipc://unused", "ipc://unused")
+
+
+@pytest.fixture
+def sessions() -> Sessions:
+    return Sessions(SETTINGS, EngineLink(SETTINGS), Meshes(0))
+
+
+def test_a_viewer_that_joins_has_the_latest_frame_at_once(sessions: Sessions) -> None:
+    session = Session("ab" * 16, {})
+    frame = Frame(session.topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, b"picture")
+    session.latest = (frame, frame.pack())
+    assert sessions.join(session).next_frame(0) == frame.pack()
+
+
+def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_is_down(sessions: Sessions) -> None:
+    session = Session("ab" * 16, {"floor": {}})
+    viewer = sessions.join(session)
+    notices = [viewer.next_notice() for _ in range(4)]
+    assert notices == [State(scene={"floor": {}}, falling=False), Viewers(count=1), Engine(status="down"), None]
+
+
+def test_the_demand_is_the_fastest_viewers_rate_at_the_size_last_asked_for(sessions: Sessions) -> None:
+    session = Session("ab" * 16, {})
+    assert session.wanted(0) == (0, *DEFAULT_SIZE)
+    small, large = sessions.join(session), sessions.join(session)
+    large.resize(1280, 720, 1)
+    small.resize(320, 180, 2)
+    assert session.wanted(3) == (60, 320, 180)
+    small.show(False)
+    assert session.wanted(3) == (60, 1280, 720), "a hidden viewer's size does not count"
+    large.show(False)
+    assert session.wanted(3) == (0, *DEFAULT_SIZE)
+
+
+def test_the_uploads_of_a_scene_are_those_that_its_stones_name() -> None:
+    assert meshes_of({"stones": [{"mesh": "a"}, {"mesh": None}, {}]}) == {"a"}
+    assert meshes_of({}) == set()
