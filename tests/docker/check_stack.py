@@ -37,7 +37,8 @@ async def until(claim: str, condition: Callable[[], Awaitable[bool]]) -> None:
     """Wait for the claim to come true, or end with it."""
     began = time.monotonic()
     while not await condition():
-        check(time.monotonic() - began < PATIENCE, claim)
+        if time.monotonic() - began > PATIENCE:
+            raise SystemExit(f"not true within {PATIENCE:g} s: {claim}")
         await asyncio.sleep(0.2)
     check(True, f"{claim} after {time.monotonic() - began:.1f} s")
 
