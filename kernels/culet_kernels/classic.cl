@@ -84,7 +84,7 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
 __kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
                      __global const real4 *shadows, __global const real *boxes, __global const int *links,
                      __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
-                     __global uint *segments) {
+                     __global float *tallies) {
   const world_t world = {scene, facets, shadows, {boxes, links, corners}};
   const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
   tile_t tile;
@@ -98,5 +98,5 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
                     tile.radiance[channel] + first);
       store_lanes(splat(0), tile.cut + first);
     }
-  write_tile(&tile, image, segments, scene, tile_column, tile_row, accumulate);
+  write_tile(&tile, image, tallies, scene, tile_column, tile_row, accumulate);
 }

@@ -41,7 +41,7 @@ static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, in
 __kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
                      __global const real4 *shadows, __global const real *boxes, __global const int *links,
                      __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
-                     __global uint *segments) {
+                     __global float *tallies) {
   const world_t world = {scene, facets, shadows, {boxes, links, corners}};
   const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
   tile_t tile;
@@ -57,5 +57,5 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
       trace(world, &tile, &pools, chain, &hits);
     }
   }
-  write_tile(&tile, image, segments, scene, tile_column, tile_row, accumulate);
+  write_tile(&tile, image, tallies, scene, tile_column, tile_row, accumulate);
 }

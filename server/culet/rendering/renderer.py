@@ -25,6 +25,8 @@ from culet.scene.model import Scene
 
 SOURCES = {"chain": "render.cl", "classic": "classic.cl"}
 """Of each estimator; both have a kernel `render` with the same arguments."""
+TALLIES = 2
+"""Numbers for each tile, as in tile.cl."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2}
 
 
@@ -99,7 +101,7 @@ class Picture:
                 struct["shadow_start"][: len(shadow_start)] = shadow_start
         self._tiles = math.ceil(width / renderer.variant.tile), math.ceil(height / renderer.variant.tile)
         self._image = self._allocate(width * height * 4 * np.dtype(real).itemsize)
-        self._segments = self._allocate(4 * self._tiles[0] * self._tiles[1])
+        self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
         self._inputs = [self._upload(struct), self._upload(facets.astype(real)), self._upload(shadows.astype(real))]
         self._mesh = [None, None, None]
         if stone is not None and features.geometry == Geometry.MESH:
@@ -128,7 +130,7 @@ class Picture:
                 event = self._kernel(
                     queue, (self._tiles[0], count), (1, 1), self._image, *self._inputs, *self._mesh,
                     np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(self.samples > 0),
-                    self._segments,
+                    self._tallies,
                 )  # fmt: skip
                 event.wait()
                 self.seconds += time.perf_counter() - start
@@ -150,14 +152,12 @@ class Picture:
         return self._mean()[..., 3]
 
     def cut(self) -> float:
-        """Mean of the whole picture's cut weight."""
-        return float(self.cut_map().mean())
+        """Mean of the whole picture's cut weight, of the last sample."""
+        return float(self._tally()[:, 1].sum(dtype=float)) / (self.width * self.height)
 
     def segments(self) -> int:
         """Interior segments of the last sample."""
-        counts = np.empty(self._tiles[0] * self._tiles[1], np.uint32)
-        cl.enqueue_copy(self._renderer.device.queue, counts, self._segments)
-        return int(counts.sum())
+        return int(self._tally()[:, 0].sum(dtype=float))
 
     def rgb(self) -> NDArray[np.uint8]:
         """(height, width, 3) tone-mapped, 8 bits."""
@@ -170,6 +170,12 @@ class Picture:
         )  # fmt: skip
         cl.enqueue_copy(self._renderer.device.queue, shown, target)
         return shown
+
+    def _tally(self) -> NDArray[np.float32]:
+        """By tile: segments, and the weight that was cut; of the last sample."""
+        tallies = np.empty((self._tiles[0] * self._tiles[1], TALLIES), np.float32)
+        cl.enqueue_copy(self._renderer.device.queue, tallies, self._tallies)
+        return tallies
 
     def _mean(self) -> NDArray[np.floating[Any]]:
         sums = np.empty((self.height, self.width, 4), self._renderer.variant.real)

@@ -2,8 +2,8 @@
 
 A point outside a convex body is hidden from a light exactly when it lies inside the cone that the light spans over
 the body's silhouette, and behind the body. The cone's sides are the planes through the light and each edge between a
-lit and an unlit facet. Behind means inside all lit facets' half-spaces; that holds by itself for floor and walls that have both
-the light and the whole stone in front of them, and is left out then.
+lit and an unlit facet. Behind means inside all lit facets' half-spaces; that holds by itself for floor and walls that
+have both the light and the whole stone in front of them, and is left out then.
 """
 
 from __future__ import annotations
