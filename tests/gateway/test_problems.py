@@ -19,6 +19,14 @@ def test_a_number_that_is_none_is_named_by_its_place(number: float) -> None:
     assert refused.value.field == "lights.1.position"
 
 
+def test_deep_nesting_is_refused_before_anything_recurses_into_it() -> None:
+    nested: list[object] = []
+    for _ in range(100_000):
+        nested = [nested]
+    with pytest.raises(InputError, match="levels of nesting"):
+        finite({"camera": nested})
+
+
 def test_finite_numbers_pass_at_any_depth() -> None:
     finite({"a": [1, 2.5, {"b": None, "c": "NaN", "d": True}]})
 

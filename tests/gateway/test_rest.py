@@ -160,6 +160,7 @@ async def test_a_session_that_cannot_be_made_is_refused(
         ('{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
         ('{"camera": {"fov_degrees": -1}}', "camera.fov_degrees"),
         ('{"flor": {"kind": "matte"}}', "flor"),
+        ('{"camera": ' + "[" * 900 + "]" * 900 + "}", ".".join(["camera", *["0"] * 32])),
     ],
 )
 async def test_a_patch_that_cannot_be_used_leaves_the_session_as_it_was(

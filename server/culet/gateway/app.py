@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -20,6 +21,8 @@ from culet.gateway.meshes import Meshes
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Counters, Gateway
+
+log = logging.getLogger(__name__)
 
 DOCS_PAGE = Path(__file__).with_name("docs.html")
 NOT_BUILT = """<!doctype html><meta charset="utf-8"><title>culet</title>
@@ -69,6 +72,8 @@ def create_app(settings: GatewaySettings) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     gateway: Gateway = app.state.gateway
     tasks = [asyncio.create_task(gateway.link.run()), asyncio.create_task(gateway.sessions.run())]
+    for task in tasks:
+        task.add_done_callback(_log_failure)
     try:
         yield
     finally:
@@ -78,6 +83,11 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         for result in results:
             if isinstance(result, Exception):
                 raise result
+
+
+def _log_failure(task: asyncio.Task[None]) -> None:
+    if not task.cancelled() and (error := task.exception()):
+        log.critical("a part of the gateway has failed; restart it", exc_info=error)
 
 
 def _gateway(settings: GatewaySettings) -> Gateway:

@@ -18,6 +18,9 @@ MEDIA_TYPE = "application/problem+json"
 RETRY_AFTER_SECONDS = "2"
 """For 429 and 503: a still takes about so long, and so does a restart of the engine."""
 
+MAX_DEPTH = 32
+"""Levels of nesting in JSON; a scene has 5."""
+
 PROBLEM_SCHEMA: dict[str, Any] = {
     "type": "object",
     "required": ["type", "title", "status", "detail"],
@@ -56,20 +59,24 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     }
 
 
-def finite(value: object, field: str = "") -> None:
-    """Raise InputError naming the first number in parsed JSON that is NaN or infinite.
+def finite(value: object) -> None:
+    """Raise InputError naming the first number in parsed JSON that is NaN or infinite, or what is nested too deeply.
 
     Python reads `NaN` and `1e999`, and pydantic lets them through where a field may hold any JSON; on the way to the
-    engine they would turn into null, which in a merge patch means: delete.
+    engine they would turn into null, which in a merge patch means: delete. Nor can it write what is nested deeply.
     """
-    if isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"{field or 'body'}: expected a finite number, got {value}", field or None)
-    if isinstance(value, dict):
-        for key, item in value.items():
-            finite(item, f"{field}.{key}" if field else str(key))
-    if isinstance(value, list):
-        for index, item in enumerate(value):
-            finite(item, f"{field}.{index}" if field else str(index))
+    waiting: list[tuple[object, tuple[str, ...]]] = [(value, ())]
+    while waiting:
+        item, path = waiting.pop()
+        field = ".".join(path) or None
+        if len(path) > MAX_DEPTH:
+            raise InputError(f"{field}: expected at most {MAX_DEPTH} levels of nesting, got more", field)
+        if isinstance(item, float) and not math.isfinite(item):
+            raise InputError(f"{field or 'body'}: expected a finite number, got {item}", field)
+        if isinstance(item, dict):
+            waiting += [(inner, (*path, str(key))) for key, inner in item.items()]
+        if isinstance(item, list):
+            waiting += [(inner, (*path, str(index))) for index, inner in enumerate(item)]
 
 
 def install(app: FastAPI) -> None:
