@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from types import TracebackType
 from typing import Self
 from urllib.parse import urlsplit, urlunsplit
@@ -26,14 +27,16 @@ class ControlStream:
     def __init__(self, server: str, session: str, *, timeout_seconds: float = 10) -> None:
         """Connect to a gateway, such as `http://127.0.0.1:8000`; ClientError if that fails."""
         self.url = stream_url(server, session)
+        self._open = ExitStack()
         try:
-            self._socket: ClientConnection = connect(
+            connection = connect(
                 self.url,
                 subprotocols=[Subprotocol(SUBPROTOCOL)],
                 compression=None,
                 max_size=LONGEST_MESSAGE,
                 open_timeout=timeout_seconds,
             )
+            self._socket: ClientConnection = self._open.enter_context(connection)
         except (OSError, InvalidHandshake, InvalidURI, TimeoutError) as error:
             raise ClientError(f"cannot open {self.url}: {error}") from error
 
@@ -62,7 +65,7 @@ class ControlStream:
 
     def close(self) -> None:
         """Leave."""
-        self._socket.close()
+        self._open.close()
 
     def __enter__(self) -> Self:
         return self

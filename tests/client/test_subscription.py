@@ -45,7 +45,12 @@ class Publisher:
 
     def greet(self) -> threading.Thread:
         """Send frame 1 as soon as somebody subscribes."""
-        thread = threading.Thread(target=lambda: (self.subscription(), self.send(1)))
+
+        def greet() -> None:
+            self.subscription()
+            self.send(1)
+
+        thread = threading.Thread(target=greet)
         thread.start()
         return thread
 
