@@ -13,7 +13,7 @@ WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
-.PHONY: setup serve test check format validate bench compose-test opencl chromium node
+.PHONY: setup serve test check format validate bench compose-test opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(WEB_BUILD)
@@ -22,7 +22,7 @@ setup: $(DONE)/dev opencl $(WEB_BUILD)
 serve: opencl $(WEB_BUILD)
 	@exec $(BIN)/culet serve $(ARGS)
 
-test: $(DONE)/dev opencl chromium $(WEB_BUILD)
+test: $(DONE)/dev opencl browser $(WEB_BUILD)
 	$(BIN)/pytest -m "not validation" $(ARGS)
 	cd $(WEB) && npm test
 
@@ -67,8 +67,8 @@ $(DONE)/dev: pyproject.toml | $(DONE)/base
 opencl: $(DONE)/base
 	@.ci/need opencl
 
-chromium:
-	@.ci/need chromium
+browser:
+	@.ci/need chromium curl
 
 node: | $(DONE)/venv
 	@.ci/node
