@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import trimesh
+from scipy.spatial import ConvexHull
 
 from culet.geometry.convexity import DENT, Dent, Polyhedron, convex_form
 from culet.geometry.facets import FLATNESS, bend, facets_of, neighbours
@@ -72,3 +74,37 @@ def test_facets_that_bend_little_by_little_are_not_taken_for_one() -> None:
     for k in range(0, int(facet.max()), 97):
         own = corners[np.unique(triangles[facet == k])]
         assert np.linalg.svd(own - own.mean(axis=0))[1][2] / np.sqrt(len(own)) < tolerance
+
+
+def test_a_pentagram_double_pyramid_is_not_convex_although_each_edge_is() -> None:
+    """Ten triangles that wind twice about the axis: only the volume tells."""
+    angle = 2 * np.pi * np.arange(5) / 5
+    ring = np.column_stack([np.cos(angle), np.zeros(5), -np.sin(angle)])
+    corners = np.vstack([ring, [(0, 1, 0), (0, -1, 0)]])
+    sides = [(k, (k + 2) % 5) for k in range(5)]
+    triangles = np.array([(a, b, 5) for a, b in sides] + [(b, a, 6) for a, b in sides], np.int64)
+    assert steepest(corners, triangles) < 0
+    assert isinstance(decided(corners, triangles), Dent)
+
+
+def test_a_dent_too_small_for_the_volume_is_seen_by_its_edge() -> None:
+    """A box whose top has four corners around its middle, two higher: the ridge joins those, or else it is a valley."""
+    h = 0.02
+    box = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    top = [(h, 1.02, 0), (-h, 1.02, 0), (0, 1.0195, h), (0, 1.0195, -h)]
+    corners = np.array([*box, *top], np.float64)
+    mesh = trimesh.Trimesh(corners, ConvexHull(corners).simplices, process=False)
+    mesh.fix_normals()
+    ridge = np.array(mesh.faces, np.int64)
+    assert isinstance(decided(corners, ridge), Polyhedron)
+    valley = np.array([t for t in ridge.tolist() if not {8, 9} <= set(t)] + [(8, 11, 10), (9, 10, 11)], np.int64)
+    form = decided(corners, valley)
+    assert isinstance(form, Dent)
+    assert form.depth == pytest.approx(1e-3, rel=1e-3)  # measured 9.997e-4
+
+
+def test_a_sliver_belongs_to_the_facet_around_it_whichever_way_it_points() -> None:
+    """Rounding put a corner 1e-9 beyond the side that it lay on: the sliver there faces down, all else up."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0.5, 1e-9, 0), (0.5, 1, 0), (0.5, -1, 0)])
+    triangles = np.array([(0, 1, 3), (1, 0, 2), (0, 4, 2), (4, 1, 2)], np.int64)
+    assert facets_of(corners, triangles, FLATNESS).tolist() == [0, 0, 0, 0]

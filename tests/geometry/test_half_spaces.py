@@ -38,6 +38,14 @@ def test_simple_polyhedra_have_2f_minus_4_corners(count: int, stretch: tuple[flo
     assert (height.max(axis=0) > -1e-11).all()  # every plane is touched
 
 
+@pytest.mark.parametrize("size", [1e-12, 1e12])
+def test_small_and_large_numbers_give_the_same_stone(size: float) -> None:
+    planes = random_planes(50, (1, 1, 1000))
+    wanted = stone_from_half_spaces("one", planes)
+    found = stone_from_half_spaces("other", planes * [1, 1, 1, size])
+    assert found.vertices == pytest.approx(wanted.vertices, abs=1e-11)
+
+
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
 def test_size_and_place_do_not_matter(size: float) -> None:
     planes = CUBE.copy()

@@ -129,6 +129,17 @@ def test_a_flat_mesh_is_refused(height: float) -> None:
         from_obj(*prism(star_outline(), height))
 
 
+def test_a_body_of_collinear_corners_is_refused() -> None:
+    with pytest.raises(MeshError, match=r"flat|no volume"):
+        from_obj(np.outer(np.arange(4.0), [1, 1, 1]), [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+
+
+@pytest.mark.parametrize(("far", "defect"), [(1e10, "too small to be read exactly"), (1e300, "degenerate")])
+def test_a_body_lost_beside_something_far_away_is_refused(far: float, defect: str) -> None:
+    with pytest.raises(MeshError, match=defect):
+        from_obj(np.vstack([CUBE, [(far, 0, 0)]]), [*FACES, [0, 1, 8]])
+
+
 def test_a_mesh_of_one_point_is_refused() -> None:
     with pytest.raises(MeshError, match="all its vertices are one point"):
         from_obj(np.ones((3, 3)), [[0, 1, 2]])

@@ -33,7 +33,7 @@ def crossing_triangles(vertices: Points, triangles: Triangles) -> tuple[int, int
     for pairs in _near_pairs(corners):
         for start in range(0, len(pairs), _CHUNK):
             some = pairs[start : start + _CHUNK]
-            hit = _cross(corners, triangles, some) | _overlap(corners, some)
+            hit = _cross(corners, some) | _overlap(corners, some)
             if hit.any():
                 a, b = some[int(hit.argmax())]
                 return int(a), int(b)
@@ -83,8 +83,8 @@ def _morton(points: Points) -> NDArray[np.int64]:
     return code
 
 
-def _cross(corners: Points, triangles: Triangles, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Whether a side of one triangle passes through the other. A side that shares a corner with it cannot."""
+def _cross(corners: Points, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether a side of one triangle passes through the other. One that ends there, as at a common corner, does not."""
     hit = np.zeros(len(pairs), np.bool_)
     for one, other in (pairs.T, pairs.T[::-1]):
         normal, length = _normal(corners[one])
@@ -96,8 +96,6 @@ def _cross(corners: Points, triangles: Triangles, pairs: NDArray[np.int64]) -> N
             p, q = height[straddling[:, None], ends].T
             through = (p * q < 0) & (np.minimum(abs(p), abs(q)) > deep[straddling])
             rows = straddling[through]
-            shared = triangles[one[rows]][:, :, None] == triangles[other[rows]][:, None, ends]
-            rows = rows[~shared.any(axis=(1, 2))]
             p, q = height[rows[:, None], ends].T
             start, end = (corners[other[rows], side] for side in ends)
             point = start + (p / (p - q))[:, None] * (end - start)

@@ -36,6 +36,9 @@ from culet.geometry.surface import (
 MAX_TRIANGLES = 200_000
 MAX_BYTES = 64 << 20
 
+SMALLEST = 1e-8
+"""A body smaller than this part of the mesh's extent is refused: double precision keeps less than 8 digits of it."""
+
 FLAT = 1e-5
 """Mean thickness 3 V / A below which a body is flat, in units of R: a wafer of 1000:1 has 1.5e-3, a sheet in single
 precision 1e-7."""
@@ -171,8 +174,14 @@ def _cut_out(points: Points, bodies: Bodies, taken: int, findings: list[str]) ->
     vertices = points[used]
     vertices = vertices - (vertices.max(axis=0) + vertices.min(axis=0)) / 2
     radius = float(np.linalg.norm(vertices, axis=1).max())
+    if not radius > SMALLEST:
+        raise MeshError(
+            f"the largest closed body is {radius:.1e} of the mesh's extent, too small to be read exactly; "
+            f"expected {SMALLEST:g} or more: remove what lies far away"
+        )
     body = _Body(vertices / radius, compact.reshape(-1, 3), float(bodies.volume[taken]) / radius**3)
-    thickness = 3 * body.volume / surface_area(body.vertices, body.triangles)
+    area = surface_area(body.vertices, body.triangles)
+    thickness = 3 * body.volume / area if area > 0 else 0.0
     if not thickness > FLAT:
         raise MeshError(f"the mesh is flat: it encloses no volume (mean thickness {thickness:.1e} R)")
     return body

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,6 +16,9 @@ from trimesh.resolvers import Resolver
 
 from culet.errors import InputError, MeshError, TooLargeError
 from culet.geometry.formats import glb, obj, off, ply
+
+# What trimesh logs about the files of strangers is no news of this program; what matters becomes an error or a finding.
+logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
 FORMATS = ("obj", "off", "stl", "ply", "glb")
 
