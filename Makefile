@@ -13,7 +13,7 @@ WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
-.PHONY: setup serve test check format validate bench compose-test opencl browser node
+.PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate bench compose-test opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(WEB_BUILD)
@@ -26,13 +26,22 @@ test: $(DONE)/dev opencl browser $(WEB_BUILD)
 	$(BIN)/pytest -m "not validation" $(ARGS)
 	cd $(WEB) && npm test
 
-check: $(DONE)/dev opencl $(WEB_PACKAGES)
+# Each in its own target, so that `make -k check` finds all there is to find.
+check: check-python check-kernels check-protocol check-web
+
+check-python: $(DONE)/dev
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+
+check-kernels: $(DONE)/dev opencl
 	$(BIN)/clang-format --dry-run --Werror kernels/culet_kernels/*.cl
 	$(BIN)/python .ci/compile_kernels.py
+
+check-protocol: $(DONE)/dev
 	$(BIN)/pytest -q tests/protocol/test_generate.py
+
+check-web: $(WEB_PACKAGES)
 	cd $(WEB) && npm run check
 
 format: $(DONE)/dev $(WEB_PACKAGES)
