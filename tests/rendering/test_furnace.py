@@ -1,4 +1,4 @@
-"""Under a uniform sky of radiance 1 a clear stone cannot be seen: what is missing is what was cut, and it is counted."""
+"""Under a uniform sky of radiance 1 a clear stone cannot be seen: what is missing was cut, and is counted."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ ROOMS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("room", ROOMS.values(), ids=ROOMS.keys())
 def test_a_stone_of_index_one_cannot_be_seen(exact: Renderer, room: dict[str, Any]) -> None:
-    """Without lights, for it would still cast its shadow. A checker's edge may fall to either side: pixels are counted."""
+    """Without lights, for it would still cast its shadow."""
     scene = Scene.read({"stones": [INDEX_ONE], "lights": [], "environment": {"kind": "gradient"}, **room})
     difference = abs(radiance(take(exact, scene)) - radiance(take(exact, without_stone(scene)))).max(axis=-1)
     assert (difference > 1e-12).sum() == 0

@@ -7,9 +7,18 @@ The floor is the plane y = -1. Anything unknown, out of range or not finite is r
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from culet.errors import SceneError
 
@@ -56,14 +65,49 @@ class SellmeierMaterial(Model):
     sellmeier: Annotated[tuple[tuple[float, float], ...], Field(min_length=1, max_length=8)]
 
 
+def _form_of_cut(value: object) -> str | None:
+    if isinstance(value, str):
+        return "<name>"
+    return "<proportions>" if isinstance(value, dict | BrilliantCut) else None
+
+
+Cut = Annotated[
+    Annotated[Literal["brilliant"], Tag("<name>")] | Annotated[BrilliantCut, Tag("<proportions>")],
+    Discriminator(
+        _form_of_cut, custom_error_type="cut", custom_error_message="Input should be 'brilliant' or its proportions"
+    ),
+]
+"""Of the two forms only the one that was meant is judged. The tags are told from fields by their brackets."""
+
+
+def _form_of_material(value: object) -> str | None:
+    if isinstance(value, str):
+        return "<name>"
+    if isinstance(value, SellmeierMaterial) or (isinstance(value, dict) and "sellmeier" in value):
+        return "<sellmeier>"
+    return "<ior>" if isinstance(value, IndexMaterial) or (isinstance(value, dict) and "ior" in value) else None
+
+
+Material = Annotated[
+    Annotated[Literal["diamond", "classic"], Tag("<name>")]
+    | Annotated[IndexMaterial, Tag("<ior>")]
+    | Annotated[SellmeierMaterial, Tag("<sellmeier>")],
+    Discriminator(
+        _form_of_material,
+        custom_error_type="material",
+        custom_error_message="Input should be 'diamond', 'classic', an object with `ior` or one with `sellmeier`",
+    ),
+]
+
+
 class StoneSettings(Model):
     """One stone: its shape, what it is made of, and where it is when nothing has moved yet."""
 
-    cut: Literal["brilliant"] | BrilliantCut = "brilliant"
+    cut: Cut = "brilliant"
     mesh: Annotated[str, Field(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] | None = Field(
         None, description="Id of an uploaded mesh; takes the place of the cut."
     )
-    material: Literal["diamond", "classic"] | IndexMaterial | SellmeierMaterial = "diamond"
+    material: Material = "diamond"
     absorption: tuple[
         Annotated[float, Field(ge=0, le=1e9)],
         Annotated[float, Field(ge=0, le=1e9)],
@@ -302,11 +346,27 @@ class Scene(Model):
         return self.model_copy(update={"stones": (stone,)})
 
 
+_ENVIRONMENT_KINDS = frozenset(
+    get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(get_args(Environment)[0])
+)
+
+
+def _field(location: tuple[int | str, ...]) -> str:
+    """The place in the JSON: without the names that pydantic gives to the alternatives of a union."""
+    parts: list[str] = []
+    for part in map(str, location):
+        alternative = part.startswith("<") or (part in _ENVIRONMENT_KINDS and parts[-1:] == ["environment"])
+        if not alternative:
+            parts.append(part)
+    return ".".join(parts)
+
+
 def scene_error(error: ValidationError) -> SceneError:
     """The first finding of pydantic as one line: the field, what was expected, what came."""
     first = error.errors(include_url=False, include_context=False)[0]
-    field = ".".join(str(part) for part in first["loc"])
+    field = _field(first["loc"])
     came = repr(first["input"])
     shown = came if len(came) <= 80 else came[:77] + "..."
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
-    return SceneError(f"{field or 'scene'}: {first['msg']}; got {shown}{more}", field or None)
+    expected = first["msg"].removeprefix("Value error, ")
+    return SceneError(f"{field or 'scene'}: {expected}; got {shown}{more}", field or None)

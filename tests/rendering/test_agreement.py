@@ -1,0 +1,99 @@
+"""One kernel text in eight shapes: packets of 1, 4, 8 and 16 lanes, in single and in double precision.
+
+They agree to rounding but where rounding is decisive: a ray meets an edge of the stone or of the checker and takes the
+other side, or leaves the stone at the critical angle, where the reflectance's slope is infinite. Those pixels are counted, and bounded by number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from conftest import RendererOf
+from culet.rendering.features import Features
+from culet.rendering.renderer import Picture, Renderer
+from culet.scene import Scene
+from rendering.views import BARE, radiance, take
+
+
+@dataclass(frozen=True)
+class Case:
+    scene: dict[str, Any]
+    decided: float
+    """Largest part of the pixels where rounding may decide, some three times what was measured."""
+
+
+CASES = {
+    "default": Case({}, decided=0.008),  # measured 0.0026
+    "checker with shadows": Case({"floor": {"kind": "matte"}}, decided=0.006),  # 0.0022
+    "sky only": Case({**BARE, "environment": {"kind": "gradient"}, "optics": {"cutoff": 1e-3}}, decided=5e-4),  # 1.4e-4
+    "mirrors and absorption": Case(  # 0.0090; the classic stone shows more lamps in fewer pixels
+        {"walls": {"kind": "mirror"}, "stones": [{"material": "classic", "absorption": [0.02, 0.3, 1]}]}, decided=0.025
+    ),
+    "one index, inside": Case(  # 0.0065
+        {
+            "stones": [{"material": {"ior": [2.4, 2.4, 2.4]}, "position": [0, 0, 0]}],
+            "camera": {"position": [0.1, 0, 0.1], "target": [0, 0, -1], "fov_degrees": 90},
+        },
+        decided=0.02,
+    ),
+}
+CASE = pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+SIZE = 160, 90
+GENERAL = Features()
+"""One program for all cases, which holds every kind of scene."""
+ROUNDING = 1e-4
+"""Radiance; lamps have up to 11, and their soft edges make ten of an error of one."""
+
+
+def general(renderer: Renderer, case: Case) -> Picture:
+    return take(renderer, Scene.read(case.scene), size=SIZE, features=GENERAL)
+
+
+@CASE
+@pytest.mark.parametrize("lanes", [1, 4, 8])
+def test_every_width_of_packet_gives_the_same_picture_in_double_precision(
+    renderer_of: RendererOf, case: Case, lanes: int
+) -> None:
+    """The same operations on the same numbers; only the order in which a pixel's light is summed differs."""
+    wide, narrow = (radiance(general(renderer_of(n, np.float64), case)) for n in (16, lanes))
+    assert narrow == pytest.approx(wide, abs=4e-15)  # measured 8.9e-16
+
+
+@CASE
+@pytest.mark.parametrize("lanes", [1, 4, 8])
+def test_every_width_of_packet_gives_the_same_picture_in_single_precision(
+    renderer_of: RendererOf, case: Case, lanes: int
+) -> None:
+    """The compiler may round one width otherwise than another: an edge was decided differently in 2 pixels of 14,400."""
+    wide, narrow = (radiance(general(renderer_of(n, np.float32), case)) for n in (16, lanes))
+    difference = abs(narrow - wide).max(axis=-1)
+    assert (difference > 1e-6).sum() <= 6
+    assert np.median(difference) < 1e-7  # measured 1.5e-8
+
+
+@CASE
+def test_single_precision_agrees_with_double_but_where_rounding_decides(
+    renderer: Renderer, exact: Renderer, case: Case
+) -> None:
+    single, double = (general(r, case) for r in (renderer, exact))
+    difference = radiance(single) - radiance(double)
+    decided = abs(difference).max(axis=-1) > ROUNDING
+    assert decided.mean() < case.decided
+    assert np.median(abs(difference)) < 1e-7  # measured 4.6e-8
+    assert abs(difference[~decided].mean()) < 5e-7  # measured 1.5e-7
+    assert abs(difference.mean()) < 2e-4  # measured 6.2e-5: one pixel that a lamp lights or not
+    assert single.segments() == pytest.approx(double.segments(), rel=5e-4)  # measured 1.4e-4
+
+
+def test_where_rounding_decides_it_is_as_likely_brighter_as_darker(renderer: Renderer, exact: Renderer) -> None:
+    """64 samples of a small picture: enough rays near edges to see a bias, if there were one."""
+    scene = Scene.read(CASES["sky only"].scene)
+    difference = radiance(take(renderer, scene, samples=64)) - radiance(take(exact, scene, samples=64))
+    brighter, darker = (difference > 2e-6).sum(), (difference < -2e-6).sum()
+    assert brighter + darker > 50  # measured 37 + 43 = 80
+    assert abs(int(brighter) - int(darker)) < 4 * np.sqrt(brighter + darker)  # standard deviations of a fair coin
+    assert abs(difference.mean()) < 1e-6  # measured 1.8e-7

@@ -1,0 +1,143 @@
+"""Programs hold what their scene needs and nothing else, and show the same."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pytest
+
+from conftest import RendererOf
+from culet.geometry.load import stone_of
+from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
+from culet.rendering.renderer import Picture, Renderer
+from culet.scene import PRESETS, Scene
+from rendering.views import BARE, radiance, take
+
+LANES = 4
+"""Narrow packets compile faster, and the claims are about the source."""
+DECIDED: dict[str, tuple[str, int, dict[str, Any]]] = {
+    "no floor": ("floor", SURFACE["none"], {"floor": {"kind": "none"}}),
+    "matte floor": ("floor", SURFACE["matte"], {"floor": {"kind": "matte"}}),
+    "mirror floor": ("floor", SURFACE["mirror"], {}),
+    "no walls": ("walls", SURFACE["none"], {}),
+    "matte walls": ("walls", SURFACE["matte"], {"walls": {"kind": "matte"}}),
+    "mirror walls": ("walls", SURFACE["mirror"], {"walls": {"kind": "mirror"}}),
+    "no lights": ("lights", 0, {"lights": [], "floor": {"kind": "matte"}}),
+    "constant sky": ("sky", SKY["constant"], {"environment": {"kind": "constant"}}),
+    "gradient sky": ("sky", SKY["gradient"], {"environment": {"kind": "gradient"}}),
+    "half sky": ("sky", SKY["half"], {"environment": {"kind": "half"}}),
+    "studio sky": ("sky", SKY["studio"], {}),
+    "no dispersion": ("dispersion", 0, {"stones": [{"material": {"ior": [2.4, 2.4, 2.4]}}]}),
+    "no absorption": ("absorption", 0, {}),
+    "exact Fresnel": ("fresnel", FRESNEL["exact"], {}),
+    "Schlick": ("fresnel", FRESNEL["schlick"], {"optics": {"fresnel": "schlick"}}),
+    "camera outside": ("camera_inside", 0, {}),
+}
+"""What is decided, how, and a scene in which it is so."""
+OFF = ("no floor", "no walls", "no lights", "no absorption", "exact Fresnel", "camera outside", "constant sky")
+
+
+def machine_code(picture: Picture) -> int:
+    """Bytes of machine code in the program: the text sections of the objects that PoCL has made of it.
+
+    The container around them also holds the bitcode and names that vary in length; the text is what the processor runs.
+    """
+    (binary,) = picture.program.get_info(cl.program_info.BINARIES)
+    total, start = 0, binary.find(b"\x7fELF")
+    while start >= 0:
+        elf = binary[start:]
+        (table,) = struct.unpack_from("<Q", elf, 0x28)
+        size, count, names = struct.unpack_from("<HHH", elf, 0x3A)
+        sections = [struct.unpack_from("<IIQQQQ", elf, table + size * i) for i in range(count)]
+        strings = sections[names][4]
+        total += sum(length for name, *_, length in sections if elf[strings + name :].startswith(b".text\0"))
+        start = binary.find(b"\x7fELF", start + 4)
+    assert total > 0
+    return total
+
+
+@pytest.fixture(scope="module")
+def narrow(renderer_of: RendererOf) -> Renderer:
+    return renderer_of(LANES, np.float32)
+
+
+@pytest.fixture(scope="module")
+def size_of_general(narrow: Renderer) -> int:
+    return machine_code(take(narrow, Scene(), features=Features()))
+
+
+@pytest.mark.parametrize(("feature", "kind", "scene"), DECIDED.values(), ids=DECIDED.keys())
+def test_a_decided_feature_shows_what_the_general_program_shows(
+    narrow: Renderer, size_of_general: int, feature: str, kind: int, scene: dict[str, Any]
+) -> None:
+    """The general program with the feature idle, and the same program without the other kinds' code."""
+    general = take(narrow, Scene.read(scene), features=Features())
+    decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
+    assert machine_code(general) == size_of_general
+    # measured 7.5e-9 without dispersion, where three channels are one chain; otherwise every bit is the same
+    assert radiance(decided) == pytest.approx(radiance(general), abs=3e-8)
+
+
+@pytest.mark.parametrize("name", OFF)
+def test_a_feature_that_is_off_is_not_in_the_program(narrow: Renderer, size_of_general: int, name: str) -> None:
+    """Measured: from 0.2 % (the floor, whose code the walls share) to 3.8 % (the camera outside) of 87 kB."""
+    feature, kind, scene = DECIDED[name]
+    decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
+    assert machine_code(decided) < size_of_general
+
+
+def test_without_dispersion_a_third_of_the_segments_is_followed(narrow: Renderer) -> None:
+    """This feature saves work, not code: one chain carries three channels, and its arithmetic is written out for each."""
+    feature, kind, scene = DECIDED["no dispersion"]
+    general = take(narrow, Scene.read(scene), features=Features())
+    decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
+    assert general.segments() == 3 * decided.segments() > 0
+
+
+def test_without_a_stone_the_program_is_less_than_half(narrow: Renderer, size_of_general: int) -> None:
+    scene = Scene.read({"stones": []})
+    assert machine_code(take(narrow, scene, features=Features(Geometry.EMPTY))) < size_of_general / 2  # measured 0.39
+
+
+OWN: dict[str, dict[str, Any]] = {
+    "default": {},
+    "bare": {**BARE, "environment": {"kind": "constant"}, "stones": [{"material": {"ior": [2, 2, 2]}}]},
+    "report's room": {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}, "environment": {"kind": "dark"}},
+    "tinted mirror": {"stones": [{"absorption": [2, 1, 0.1]}], "optics": {"fresnel": "schlick"}, "lights": []},
+}
+
+
+@pytest.mark.parametrize("scene", OWN.values(), ids=OWN.keys())
+def test_a_scenes_own_program_is_smaller_and_shows_the_same(
+    narrow: Renderer, size_of_general: int, scene: dict[str, Any]
+) -> None:
+    """Every feature decided, against every feature left to run time."""
+    own, general = take(narrow, Scene.read(scene)), take(narrow, Scene.read(scene), features=Features())
+    assert radiance(own) == pytest.approx(radiance(general), abs=3e-8)
+    assert machine_code(own) < size_of_general
+
+
+def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> None:
+    """Lights and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
+    stone = stone_of(Scene().stones[0], {})
+    left = {
+        name: {field.name for field in fields(Features) if getattr(features_of(scene, stone), field.name) == RUNTIME}
+        for name, (_, scene) in PRESETS.items()
+    }
+    assert left["default"] == {"lights"}
+    assert left["tinted-blue"] == {"lights", "absorption"}
+    assert features_of(Scene.read(OWN["bare"]), stone) == Features(
+        Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], dispersion=0, absorption=0, fresnel=0,
+        camera_inside=0,
+    )  # fmt: skip
+
+
+def test_options_name_what_is_decided_and_nothing_else() -> None:
+    assert Features().options == ["-DGEOMETRY=1"]
+    assert Features(floor=2, lights=0).options == ["-DGEOMETRY=1", "-DFLOOR=2", "-DLIGHTS=0"]
+    assert Features(floor=2, lights=0).without("floor").options == ["-DGEOMETRY=1", "-DLIGHTS=0"]
+    assert Features(Geometry.MESH, floor=2).general == Features(Geometry.MESH)
