@@ -82,6 +82,7 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
         (["-o", "missing/a.png"], b"", "cannot write"),
         (["nowhere.json"], b"", "cannot read nowhere.json"),
         (["-"], b"{", "not JSON"),
+        (["-"], b"[" * 100_000, "not JSON"),
         (["-"], b'{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
         (["-"], b'{"colour": "red"}', "colour"),
         (["--preset", "ruby"], b"", "classic"),

@@ -240,7 +240,7 @@ def _json(file: Path | None) -> object:
         return json.loads(sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes())
     except OSError as error:
         raise SceneError(f"cannot read {file}: {error.strerror}") from error
-    except ValueError as error:  # JSONDecodeError, UnicodeDecodeError
+    except (ValueError, RecursionError) as error:  # JSONDecodeError, UnicodeDecodeError; nested beyond all reason
         raise SceneError(f"{file} is not JSON: {error}") from error
 
 
