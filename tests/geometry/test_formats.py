@@ -101,6 +101,20 @@ def test_obj_indices_may_be_negative_slashed_and_continued() -> None:
     assert abs(stone.vertices) == pytest.approx(np.full((8, 3), 3**-0.5))
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_names_and_comments_may_be_in_any_encoding(encoding: str) -> None:
+    name = "Brillant für Zoë".encode(encoding)
+    mesh = as_trimesh(BRILLIANT)
+    files = {
+        "obj": b"# " + name + b"\no " + name + b"\n" + exported(mesh, "obj"),
+        "off": exported(mesh, "off").replace(b"OFF\n", b"OFF\n# " + name + b"\n", 1),
+        "stl": b"solid " + name + exported(mesh, "stl_ascii").split(b"solid", 1)[1],
+        "ply": exported(mesh, "ply").replace(b"element", b"comment " + name + b"\nelement", 1),
+    }
+    for file_type, data in files.items():
+        assert len(stone_from_mesh(data, file_type).planes) == 73
+
+
 def test_duplicate_vertices_are_joined_and_said() -> None:
     corners, faces = cube()
     loose = np.vstack([corners[face] for face in faces])

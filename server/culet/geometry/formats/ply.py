@@ -88,6 +88,7 @@ def plain_polygons(data: bytes, max_triangles: int) -> bytes:
     header = read_header(data)
     if header.count("face") > max_triangles:
         raise TooLargeError(f"expected at most {max_triangles} triangles, got {header.count('face')} faces")
+    data = ascii_only(header.text) + data[len(header.text) :]
     if header.encoding == "ascii":
         return data
     order = "<" if header.encoding == "binary_little_endian" else ">"
@@ -101,8 +102,13 @@ def plain_polygons(data: bytes, max_triangles: int) -> bytes:
         rows += (" ".join(map(repr, values)) for _, values, _ in _rows(data, header, order, lists_only=False))
     except struct.error:
         raise MeshError("PLY ends within its rows") from None
-    text = header.text.replace(header.encoding.encode(), b"ascii", 1)
+    text = ascii_only(header.text).replace(header.encoding.encode(), b"ascii", 1)
     return text + "\n".join([*rows, ""]).encode()
+
+
+def ascii_only(text: bytes) -> bytes:
+    """The same with a question mark for every other byte: names and comments come in any encoding, numbers do not."""
+    return text.translate(bytes([*range(128), *b"?" * 128]))
 
 
 def _rows(

@@ -16,6 +16,7 @@ from trimesh.resolvers import Resolver
 
 from culet.errors import InputError, MeshError, TooLargeError
 from culet.geometry.formats import glb, obj, off, ply
+from culet.geometry.formats.ply import ascii_only
 
 # What trimesh logs about the files of strangers is no news of this program; what matters becomes an error or a finding.
 logging.getLogger("trimesh").addHandler(logging.NullHandler())
@@ -98,6 +99,7 @@ def _prepared(data: bytes, kind: str, max_triangles: int) -> bytes:
         count = (len(data) - 84) // 50 if binary else text.count(b"endfacet")
         if count > max_triangles:
             raise TooLargeError(f"expected at most {max_triangles} triangles, got {count}")
+        return data if binary else ascii_only(data)
     return data
 
 
