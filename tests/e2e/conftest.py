@@ -1,0 +1,95 @@
+"""A real browser before the real server: for each module a Chromium and a `culet serve`, for each test new pages.
+
+Per module, and not once for all: the browser's event loop occupies the main thread while it is open, where the
+asynchronous tests of other folders need theirs.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+
+from e2e.server import Server
+from e2e.view import View
+
+REPOSITORY = Path(__file__).parents[2]
+WEB = REPOSITORY / "client" / "web"
+SMALL = {"width": 384, "height": 216}
+"""Pixels of most pages here: enough to see every change, finished in a fraction of a second."""
+
+ARGUMENTS = (
+    "--no-sandbox",  # which containers do not allow it to set up
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+)
+
+ViewOf = Callable[..., View]
+
+
+@pytest.fixture(scope="session")
+def built_client() -> None:
+    """The web client's build, made if there is none or a source is newer."""
+    folders = (WEB / "src", REPOSITORY / "protocol" / "typescript")
+    sources = [file for folder in folders for file in folder.rglob("*") if file.is_file()]
+    sources += [WEB / name for name in ("index.html", "package-lock.json", "tsconfig.json", "vite.config.ts")]
+    built = WEB / "dist" / "index.html"
+    if built.exists() and built.stat().st_mtime >= max(source.stat().st_mtime for source in sources):
+        return
+    node = REPOSITORY / ".venv" / "node" / "bin"  # there if the system's Node.js is too old
+    environment = os.environ | {"PATH": f"{node}{os.pathsep}{os.environ['PATH']}"}
+    if not (WEB / "node_modules").exists():
+        subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=WEB, env=environment, check=True)
+    subprocess.run(["npm", "run", "build"], cwd=WEB, env=environment, check=True)
+
+
+@pytest.fixture(scope="module")
+def server(built_client: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """`culet serve`, ready."""
+    with Server(tmp_path_factory.mktemp("serve")) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Chromium without a network: it can resolve no name, and reach nothing but this machine."""
+    executable = os.environ.get("CULET_CHROMIUM") or shutil.which("chromium")
+    assert executable, "there is no chromium on the PATH; name one by CULET_CHROMIUM"
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=executable, args=ARGUMENTS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def view_of(browser: Browser, server: Server) -> Iterator[ViewOf]:
+    """Makes pages as of separate visitors. None may complain in its console, or ask another host for anything."""
+    views: list[View] = []
+
+    def new_view(**options: Any) -> View:  # noqa: ANN401 - those of Browser.new_context
+        context = browser.new_context(**({"viewport": SMALL} | options))
+        views.append(View(context.new_page(), server))
+        return views[-1]
+
+    yield new_view
+    for view in views:
+        view.page.context.close()
+    for view in views:
+        assert view.complaints == []
+        assert view.foreign == []
+
+
+@pytest.fixture
+def view(view_of: ViewOf) -> View:
+    """A page on a new session of the matte scene, whose picture shows every edit."""
+    return view_of().open()

@@ -1,0 +1,114 @@
+"""A real `culet serve` process, and what can be seen of it from outside."""
+
+from __future__ import annotations
+
+import os
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+PATIENCE = 60.0
+"""Seconds until a condition that should come true counts as failed; machines can be slow, kernels must be built."""
+STOPPING = 20.0
+"""Seconds that the server may take to end when told to."""
+
+
+class Server:
+    """Engine and gateway on a free port of loopback, for as long as the `with` lasts."""
+
+    def __init__(self, folder: Path) -> None:
+        self._messages = folder / "serve.log"
+        self.url = ""
+
+    def __enter__(self) -> Server:
+        with self._messages.open("wb") as messages:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "culet", "serve", "--port", "0"], stdout=subprocess.PIPE, stderr=messages
+            )
+        self.url = self._announced()
+        self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)
+        assert self.http.get("/readyz").status_code == 200, "it says that it is ready, and is not"
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.http.close()
+        self._process.terminate()
+        assert self._process.stdout is not None
+        self._process.stdout.close()
+        try:
+            self._process.wait(STOPPING)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+            raise
+
+    def session(self, session: str) -> dict[str, Any]:
+        """What the REST interface says of a session."""
+        answer = self.http.get(f"/api/sessions/{session}")
+        assert answer.status_code == 200, answer.text
+        description: dict[str, Any] = answer.json()
+        return description
+
+    def metrics(self) -> dict[str, float]:
+        """/metrics, by name; without the `culet_` that all of them have."""
+        lines = [line.split() for line in self.http.get("/metrics").text.splitlines() if not line.startswith("#")]
+        return {name.removeprefix("culet_"): float(value) for name, value in lines}
+
+    def until(self, name: str, value: float) -> None:
+        """Wait until that metric is at least so large."""
+        for metrics in self._looks():
+            if metrics.get(name, -1) >= value:
+                return
+
+    def until_equal(self, name: str, value: float) -> None:
+        """Wait until that metric has that value."""
+        for metrics in self._looks():
+            if metrics.get(name) == value:
+                return
+
+    def live_for(self, seconds: float) -> None:
+        """Wait until the engine is so much older."""
+        self.until("engine_uptime_seconds", self.metrics()["engine_uptime_seconds"] + seconds)
+
+    def engine_pid(self) -> int:
+        """Process id of the engine, a child of the server that was started here."""
+        for pid in _children(self._process.pid):
+            if b"engine" in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
+                return pid
+        raise AssertionError("the server has no engine")
+
+    def cpu_seconds(self) -> float:
+        """Processor time of the server and its engine so far."""
+        return sum(_cpu_seconds(pid) for pid in (self._process.pid, self.engine_pid()))
+
+    def _announced(self) -> str:
+        """The URL that it prints once it is ready."""
+        assert self._process.stdout is not None
+        readable, _, _ = select.select([self._process.stdout], [], [], PATIENCE)
+        line = self._process.stdout.readline().decode() if readable else ""
+        assert line.startswith("culet is ready: http://"), f"{line!r}\n{self._messages.read_text()}"
+        return line.removeprefix("culet is ready: ").strip().rstrip("/")
+
+    def _looks(self) -> Iterator[dict[str, float]]:
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            metrics = self.metrics()
+            yield metrics
+            time.sleep(0.02)  # between two looks at another process
+        raise AssertionError(f"waited {PATIENCE:g} s in vain; now {metrics}\n{self._messages.read_text()}")
+
+
+def _children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def _cpu_seconds(pid: int) -> float:
+    """proc(5): user and system time are fields 14 and 15, those of ended children 16 and 17; a name may hold spaces."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return sum(int(ticks) for ticks in fields[11:15]) / os.sysconf("SC_CLK_TCK")

@@ -1,0 +1,242 @@
+"""Every key of the report's section 2, by place and by letter: what is sent, what the scene becomes, what is seen.
+
+Expected places follow from the camera of the scene alone: the report's half R a key press, along the picture's axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from e2e.conftest import ViewOf
+from e2e.server import Server
+from e2e.view import View, difference
+
+STEP = 0.5
+CTRL, META, ALT = 2, 4, 1
+"""Bits of the DevTools protocol's Input.dispatchKeyEvent."""
+
+WITH_PANEL = {"width": 800, "height": 640}
+"""Pixels of a page on which the panel is open."""
+
+Vector = NDArray[np.float64]
+Scene = dict[str, Any]
+
+KEYS: dict[str, tuple[str, dict[str, Any] | str]] = {
+    "c": ("KeyC", "camera"),
+    "1": ("Digit1", "light_1"),
+    "2": ("Digit2", "light_2"),
+    "ArrowLeft": ("ArrowLeft", {"type": "translate", "target": "camera", "right": -STEP, "up": 0}),
+    "ArrowRight": ("ArrowRight", {"type": "translate", "target": "camera", "right": STEP, "up": 0}),
+    "ArrowUp": ("ArrowUp", {"type": "translate", "target": "camera", "right": 0, "up": STEP}),
+    "ArrowDown": ("ArrowDown", {"type": "translate", "target": "camera", "right": 0, "up": -STEP}),
+    "i": ("KeyI", {"type": "dolly", "target": "camera", "forward": STEP}),
+    "o": ("KeyO", {"type": "dolly", "target": "camera", "forward": -STEP}),
+    "f": ("KeyF", {"type": "reset_camera"}),
+    "p": ("KeyP", {"type": "toggle_fall"}),
+    "r": ("KeyR", {"type": "reset_stone"}),
+    "m": ("KeyM", {"type": "toggle_mirror"}),
+    "l": ("KeyL", {"type": "toggle_environment"}),
+    "w": ("KeyW", {"type": "toggle_walls"}),
+}
+"""Printed letter -> its place on a QWERTY keyboard, and the message, or the target that is moved from then on.
+S, which sends no message, has its own tests."""
+
+NO_LETTER_OF_OURS = "\u0436"
+"""What a key prints on a layout (here Cyrillic) of which no key is ours by its letter."""
+
+
+def meaning_of(key: str) -> tuple[list[dict[str, Any]], str]:
+    """The messages of a key, and the target after it."""
+    meaning = KEYS[key][1]
+    return ([], meaning) if isinstance(meaning, str) else ([meaning], "camera")
+
+
+@pytest.mark.parametrize(
+    "place_and_letter",
+    [
+        pytest.param(lambda key, code: (code, key), id="qwerty"),
+        pytest.param(lambda key, code: (code, key.upper() if len(key) == 1 else key), id="caps-lock"),
+        pytest.param(lambda key, code: (code, NO_LETTER_OF_OURS), id="by-place-alone"),
+        pytest.param(lambda key, code: ("Unidentified", key), id="by-letter-alone"),
+    ],
+)
+def test_every_key_acts_once_by_its_place_or_by_its_letter(
+    view: View, place_and_letter: Callable[[str, str], tuple[str, str]]
+) -> None:
+    for key, (code, _) in KEYS.items():
+        messages, target = meaning_of(key)
+        if key == "c":
+            view.press("Digit2", "2")  # another target, so that the choice is seen
+        view.press(*place_and_letter(key, code))
+        assert view.sent == messages, key
+        assert view.state["target"] == target, key
+        view.sent.clear()
+        view.press("KeyC", "c")
+    assert view.problems == []
+
+
+@pytest.mark.parametrize(
+    ("code", "key", "meant"),
+    [
+        pytest.param("KeyM", ",", "m", id="azerty-place-of-m"),
+        pytest.param("Semicolon", "m", "m", id="azerty-letter-m"),
+        pytest.param("KeyW", "z", "w", id="azerty-place-of-w"),
+        pytest.param("KeyZ", "w", "w", id="azerty-letter-w"),
+        pytest.param("Digit1", "&", "1", id="azerty-place-of-1"),
+        pytest.param("KeyR", "p", "p", id="dvorak-letter-p-at-the-place-of-r"),
+        pytest.param("KeyL", "\u0434", "l", id="russian-place-of-l"),
+        pytest.param("Numpad2", "2", "2", id="number-pad"),
+    ],
+)
+def test_another_layout_means_what_is_printed_or_else_the_place(view: View, code: str, key: str, meant: str) -> None:
+    messages, target = meaning_of(meant)
+    view.press(code, key)
+    assert view.sent == messages
+    assert view.state["target"] == target
+
+
+def test_a_key_held_down_moves_again_but_does_not_switch_again(view: View) -> None:
+    view.press("ArrowUp", "ArrowUp", repeat=True)
+    assert len(view.sent) == 1
+    view.sent.clear()
+    for key in "fprmlw12c":
+        view.press(KEYS[key][0], key, repeat=True)
+    assert view.sent == []
+    assert view.state["target"] == "camera"
+
+
+def test_keys_with_a_modifier_or_in_a_field_are_not_ours(view_of: ViewOf) -> None:
+    view = view_of(viewport=WITH_PANEL).open()
+    for modifier in (CTRL, META, ALT):
+        for key, (code, _) in KEYS.items():
+            view.press(code, key, modifiers=modifier)
+    presets = view.page.get_by_label("Preset")
+    presets.focus()
+    view.press("KeyM", "m")
+    view.page.evaluate("() => document.body.append(document.createElement('input'))")
+    field = view.page.locator("body > input")
+    field.focus()
+    view.page.keyboard.type("crime")
+    view.settle_messages()
+    assert field.input_value() == "crime"
+    assert view.sent == []
+    assert view.state["target"] == "camera"
+
+
+def test_a_button_that_was_clicked_does_not_take_the_next_key_twice(view_of: ViewOf) -> None:
+    view = view_of(viewport=WITH_PANEL).open()
+    view.page.get_by_role("button", name="Left [\u2190]").click()
+    view.settle_messages()
+    assert [message["right"] for message in view.sent] == [-STEP]
+    view.page.keyboard.press("m")
+    view.page.get_by_role("checkbox", name="Walls").click()
+    view.page.keyboard.press("l")
+    view.settle_messages()
+    assert [message["type"] for message in view.sent[1:]] == ["toggle_mirror", "toggle_walls", "toggle_environment"]
+
+
+def axes(scene: Scene) -> dict[str, Vector]:
+    """Right, up and forward of the picture."""
+    camera = scene["camera"]
+    forward = np.subtract(camera["target"], camera["position"])
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, camera["up"])
+    right /= np.linalg.norm(right)
+    return {"right": right, "up": np.cross(right, forward), "forward": forward}
+
+
+MOVES = {
+    "ArrowLeft": ("right", -STEP),
+    "ArrowRight": ("right", STEP),
+    "ArrowUp": ("up", STEP),
+    "ArrowDown": ("up", -STEP),
+    "i": ("forward", STEP),
+    "o": ("forward", -STEP),
+}
+
+SEEN = 0.4
+"""Mean difference, of 255, that an edit must make. Measured: a light moved by half an R 1.1 to 2.3, the rest 10 to 81;
+two finished pictures of one scene differ by 0."""
+
+PLACES: dict[str, Callable[[Scene], Any]] = {
+    "camera": lambda scene: scene["camera"]["position"],
+    "light_1": lambda scene: scene["lights"][0]["position"],
+    "light_2": lambda scene: scene["lights"][1]["position"],
+}
+
+
+@pytest.mark.parametrize(("target", "chosen_by"), [("camera", "c"), ("light_1", "1"), ("light_2", "2")])
+def test_moves_go_half_r_along_the_axes_of_the_picture(view: View, server: Server, target: str, chosen_by: str) -> None:
+    view.page.keyboard.press(chosen_by)
+    for key, (axis, length) in MOVES.items():
+        start = view.scene
+        before, after = view.change_by(key)
+        scene = server.session(view.session)["scene"]
+        assert scene == view.scene, "the page knows what the engine has"
+        for name, place in PLACES.items():
+            shift = length * axes(start)[axis] if name == target else np.zeros(3)
+            np.testing.assert_allclose(place(scene), place(start) + shift, atol=1e-9, err_msg=f"{name} by {key}")
+        assert difference(before.pixels, after.pixels) > SEEN, key
+
+
+@pytest.mark.parametrize(
+    ("key", "part", "kinds"),
+    [
+        pytest.param("m", "floor", ["mirror", "matte"], id="M"),
+        pytest.param("w", "walls", ["matte", "none"], id="W"),
+        pytest.param("l", "environment", ["light", "dark"], id="L"),
+    ],
+)
+def test_switches_go_there_and_back(view: View, server: Server, key: str, part: str, kinds: list[str]) -> None:
+    view.page.keyboard.press("l")  # to a sky of the report's, since the studio is neither of them
+    view.at_rest(after=1)
+    while view.scene["environment"]["kind"] != "dark":
+        view.change_by("l")
+    start = view.at_rest()
+    for kind in kinds:
+        before, after = view.change_by(key)
+        assert server.session(view.session)["scene"][part]["kind"] == kind
+        assert view.scene[part]["kind"] == kind
+        assert difference(before.pixels, after.pixels) > SEEN
+    np.testing.assert_array_equal(view.look().pixels, start.pixels)
+
+
+def test_walls_and_floor_become_mirrors_together(view: View) -> None:
+    view.change_by("w")
+    view.change_by("m")
+    assert (view.scene["floor"]["kind"], view.scene["walls"]["kind"]) == ("mirror", "mirror")
+
+
+def test_f_brings_the_camera_back(view: View, server: Server) -> None:
+    start = view.at_rest()
+    camera = view.scene["camera"]
+    for key in ("ArrowLeft", "i"):
+        view.change_by(key)
+    assert view.scene["camera"] != camera
+    before, after = view.change_by("f")
+    assert server.session(view.session)["scene"]["camera"] == camera
+    assert difference(before.pixels, after.pixels) > SEEN
+    np.testing.assert_array_equal(after.pixels, start.pixels)
+
+
+def test_p_starts_and_pauses_the_fall_and_r_puts_the_stone_back(view: View, server: Server) -> None:
+    start = view.at_rest()
+    view.page.keyboard.press("p")
+    view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.4")
+    assert server.session(view.session)["falling"]
+    view.page.keyboard.press("p")
+    view.until("() => !culet.state.falling")
+    paused = view.at_rest(after=start.frame["step"])
+    assert not server.session(view.session)["falling"]
+    assert paused.frame["simulationTime"] > 0.4
+    assert difference(paused.pixels, start.pixels) > SEEN
+    view.page.keyboard.press("p")
+    view.until("time => culet.lastFrame.simulationTime > time", paused.frame["simulationTime"])
+    view.page.keyboard.press("r")
+    view.until("() => !culet.state.falling && culet.lastFrame.simulationTime === 0")
+    np.testing.assert_array_equal(view.at_rest(after=paused.frame["step"]).pixels, start.pixels)

@@ -1,0 +1,33 @@
+"""From the address to a picture."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from e2e.conftest import SMALL, ViewOf
+from e2e.server import Server
+from e2e.view import View, difference, pixels_of
+
+JPEG = 2.5
+"""Mean difference, of 255, that compression may make. Measured at quality 92: default 1.2, matte 1.6, classic 0.7."""
+
+
+def test_a_new_page_opens_a_session_and_puts_its_id_into_the_url(view: View, server: Server) -> None:
+    assert re.fullmatch(rf"{re.escape(server.url)}/\?session=[0-9a-f]{{32}}", view.page.url)
+    session = server.session(view.session)
+    assert session["viewers"] == 1
+    assert session["scene"] == view.scene
+    assert session["scene"]["floor"]["kind"] == "matte", "the preset named in the address"
+
+
+@pytest.mark.parametrize("preset", ["default", "matte", "classic"])
+def test_the_canvas_shows_what_the_server_renders(view_of: ViewOf, server: Server, preset: str) -> None:
+    view = view_of().open(f"?preset={preset}")
+    seen = view.at_rest()
+    answer = server.http.get(f"/api/sessions/{view.session}/frame.tga", params={"step": seen.frame["step"]})
+    still = pixels_of(answer.content)
+    assert still.shape == (SMALL["height"], SMALL["width"], 3)
+    assert still.std() > 5, "a picture of something"
+    assert difference(seen.pixels, still) < JPEG

@@ -1,0 +1,158 @@
+"""A page that watches a session: what its user does and sees, and what it sends."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, cast
+from urllib.parse import parse_qs, urlsplit
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from playwright.sync_api import ConsoleMessage, Page, Request, WebSocket
+
+from culet_protocol.frame import Flags
+from e2e.server import PATIENCE, Server
+
+Pixels = NDArray[np.int16]
+"""(height, width, 3), 0 to 255; signed, so that differences are."""
+
+MILLISECONDS = 1e3
+OF_ONE_VIEWER = ("ack", "ping", "resize", "visibility")
+"""Messages that change nothing in the session."""
+
+READ_THE_CANVAS = "() => [culet.lastFrame, document.getElementById('picture').toDataURL('image/png')]"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the canvas showed, and the header of the frame that it was."""
+
+    frame: dict[str, Any]
+    pixels: Pixels
+
+
+@dataclass
+class View:
+    """One page on a session."""
+
+    page: Page
+    server: Server
+    sent: list[dict[str, Any]] = field(default_factory=list)
+    """Control messages of the session, in order."""
+    complaints: list[str] = field(default_factory=list)
+    """Errors and warnings in the console, and exceptions that nobody caught."""
+    foreign: list[str] = field(default_factory=list)
+    """Requests to anything but the server."""
+
+    def __post_init__(self) -> None:
+        self.page.set_default_timeout(PATIENCE * MILLISECONDS)
+        self.page.on("console", self._logged)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("request", self._requested)
+        self.page.on("websocket", self._connected)
+
+    def open(self, query: str = "?preset=matte") -> View:
+        """Go to the page, and wait for its first picture."""
+        self.page.goto(f"{self.server.url}/{query}")
+        self.page.wait_for_function("() => window.culet && culet.framesShown > 0")
+        return self
+
+    @property
+    def session(self) -> str:
+        """The session's id, from the page's address."""
+        return parse_qs(urlsplit(self.page.url).query)["session"][0]
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What the page knows of its session."""
+        return cast(dict[str, Any], self.page.evaluate("() => culet.state"))
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """The scene, as the page knows it."""
+        return cast(dict[str, Any], self.state["scene"])
+
+    @property
+    def problems(self) -> list[str]:
+        """What the page has complained of to its user."""
+        return cast(list[str], self.page.evaluate("() => [...culet.problems]"))
+
+    def number(self, name: str) -> float:
+        """One of the page's counters, such as framesShown."""
+        return cast(float, self.page.evaluate("name => culet[name]", name))
+
+    def until(self, condition: str, argument: object = None) -> None:
+        """Wait until a JavaScript function of the argument is true."""
+        self.page.wait_for_function(condition, arg=argument)
+
+    def look(self) -> Seen:
+        """The canvas and its frame, in one go."""
+        frame, url = self.page.evaluate(READ_THE_CANVAS)
+        return Seen(frame, pixels_of(base64.b64decode(url.partition(",")[2])))
+
+    def at_rest(self, after: int = -1) -> Seen:
+        """The canvas once it shows the finished picture of a step later than that."""
+        self.until(
+            "([step, final]) => culet.lastFrame && culet.lastFrame.step > step && culet.lastFrame.flags & final",
+            [after, int(Flags.FINAL)],
+        )
+        return self.look()
+
+    def change(self, act: Callable[[], object]) -> tuple[Seen, Seen]:
+        """Do something that changes the picture: the finished pictures before and after."""
+        before = self.at_rest()
+        act()
+        return before, self.at_rest(after=before.frame["step"])
+
+    def change_by(self, key: str) -> tuple[Seen, Seen]:
+        """As `change`, by a key."""
+        return self.change(lambda: self.page.keyboard.press(key))
+
+    def settle_messages(self) -> None:
+        """Wait until the page has sent, and this process has heard of, all that its user's acts so far call for."""
+        # Pointer input goes out with the next animation frame; the one after it has surely seen that.
+        self.page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def press(self, code: str, key: str, *, repeat: bool = False, modifiers: int = 0) -> None:
+        """Press and release a key at a place (KeyboardEvent.code) that prints a letter (KeyboardEvent.key)."""
+        keyboard = self.page.context.new_cdp_session(self.page)
+        stroke = {"code": code, "key": key, "modifiers": modifiers}
+        keyboard.send("Input.dispatchKeyEvent", {"type": "keyDown", "autoRepeat": repeat, **stroke})
+        keyboard.send("Input.dispatchKeyEvent", {"type": "keyUp", **stroke})
+        keyboard.detach()
+        self.settle_messages()
+
+    def _logged(self, message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning"):
+            self.complaints.append(message.text)
+
+    def _requested(self, request: Request) -> None:
+        if not request.url.startswith((f"{self.server.url}/", "data:", "blob:")):
+            self.foreign.append(request.url)
+
+    def _connected(self, websocket: WebSocket) -> None:
+        if urlsplit(websocket.url).netloc != urlsplit(self.server.url).netloc:
+            self.foreign.append(websocket.url)
+        websocket.on("framesent", self._sent)
+
+    def _sent(self, payload: str | bytes) -> None:
+        message = json.loads(payload)
+        if message["type"] not in OF_ONE_VIEWER:
+            self.sent.append(message)
+
+
+def pixels_of(data: bytes) -> Pixels:
+    """The pixels of an image file."""
+    with Image.open(io.BytesIO(data)) as image:
+        return np.asarray(image.convert("RGB"), np.int16)
+
+
+def difference(a: Pixels, b: Pixels) -> float:
+    """Mean absolute difference of two pictures of the same size, 0 to 255."""
+    assert a.shape == b.shape
+    return float(np.abs(a - b).mean())
