@@ -1,0 +1,202 @@
+"""The scene: its default, its journey through JSON, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from culet.errors import InputError, SceneError
+from culet.optics.dispersion import channel_indices
+from culet.scene import PRESETS, Scene
+
+DEFAULT = json.loads((Path(__file__).parent / "default.json").read_text())
+"""The default scene, written out. Change it here when the default is meant to change."""
+
+FULL: dict[str, Any] = {
+    **DEFAULT,
+    "stones": [
+        {
+            **DEFAULT["stones"][0],
+            "cut": {"name": "brilliant", "table_percent": 57, "crown_degrees": 34, "pavilion_degrees": 41},
+            "mesh": "0123abcd",
+            "material": {"sellmeier": [[0.3306, 0.175], [4.3356, 0.106]]},
+            "absorption": [1, 2, 3],
+            "size_mm": 3.2,
+        }
+    ],
+}
+"""A scene that says everything it can say."""
+
+
+def test_nothing_is_the_default_scene_written_out() -> None:
+    assert Scene.read({}) == Scene()
+    assert json.loads(Scene().model_dump_json()) == DEFAULT
+    assert Scene.read(DEFAULT) == Scene()
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_scene_survives_json(name: str) -> None:
+    scene = PRESETS[name][1]
+    assert Scene.read(json.loads(scene.model_dump_json())) == scene
+    assert Scene.model_validate_json(scene.model_dump_json()) == scene
+
+
+def test_a_scene_that_says_everything_survives_json() -> None:
+    scene = Scene.read(FULL)
+    again = json.loads(scene.model_dump_json())
+    assert Scene.read(again) == scene
+    assert again["stones"][0]["material"] == FULL["stones"][0]["material"]
+    assert again["stones"][0]["cut"]["table_percent"] == 57
+
+
+def test_a_scene_cannot_be_changed() -> None:
+    with pytest.raises(ValueError, match="frozen"):
+        Scene().camera.fov_degrees = 3
+
+
+def test_an_orientation_is_normalised_once() -> None:
+    q = Scene.read({"stones": [{"orientation": [2, 0, 0, 2]}]}).stones[0].orientation
+    assert q == pytest.approx((math.sqrt(0.5), 0, 0, math.sqrt(0.5)), abs=3e-16)
+    assert Scene.read({"stones": [{"orientation": q}]}).stones[0].orientation == q
+
+
+BAD: dict[str, tuple[Any, str | None, str]] = {
+    "unknown key": ({"colour": 1}, "colour", "not permitted; got 1"),
+    "unknown nested key": ({"camera": {"fow_degrees": 3}}, "camera.fow_degrees", "not permitted"),
+    "no object": ([], None, "scene: .*dictionary.*; got \\[\\]"),
+    "null": (None, None, "scene: .*; got None"),
+    "other version": ({"version": 2}, "version", "1; got 2"),
+    "field of view 0": ({"camera": {"fov_degrees": 0}}, "camera.fov_degrees", "0.001; got 0"),
+    "field of view 180": ({"camera": {"fov_degrees": 180}}, "camera.fov_degrees", "170; got 180"),
+    "up along the sight": ({"camera": {"position": [0, 3, 0], "target": [0, 0, 0]}}, "camera", "up is parallel"),
+    "up of no length": ({"camera": {"up": [0, 0, 0]}}, "camera", "up has length 0"),
+    "nowhere to look": ({"camera": {"position": [1, 1, 1], "target": [1, 1, 1]}}, "camera", "looks nowhere"),
+    "two coordinates": ({"camera": {"position": [1, 2]}}, "camera.position.2", "required"),
+    "four coordinates": ({"camera": {"position": [1, 2, 3, 4]}}, "camera.position", "at most 3"),
+    "text for a number": ({"camera": {"fov_degrees": "wide"}}, "camera.fov_degrees", "number.*; got 'wide'"),
+    "two stones": ({"stones": [{}, {}]}, "stones", "at most 1"),
+    "unknown material": ({"stones": [{"material": "glass"}]}, "stones.0.material", "'classic'; got 'glass'"),
+    "no material": ({"stones": [{"material": 5}]}, "stones.0.material", "`ior` or one with `sellmeier`; got 5"),
+    "index below 1": ({"stones": [{"material": {"ior": [0.9, 1, 1]}}]}, "stones.0.material.ior.0", "1; got 0.9"),
+    "index above 10": ({"stones": [{"material": {"ior": [1, 1, 11]}}]}, "stones.0.material.ior.2", "10; got 11"),
+    "two materials": (
+        {"stones": [{"material": {"ior": [2, 2, 2], "sellmeier": [[1, 0.1]]}}]}, "stones.0.material.ior", "not permitted",
+    ),
+    "empty formula": ({"stones": [{"material": {"sellmeier": []}}]}, "stones.0.material.sellmeier", "at least 1"),
+    "unknown cut": ({"stones": [{"cut": "rose"}]}, "stones.0.cut", "'brilliant'; got 'rose'"),
+    "cut by a number": ({"stones": [{"cut": 73}]}, "stones.0.cut", "'brilliant' or its proportions; got 73"),
+    "table too wide": ({"stones": [{"cut": {"table_percent": 101}}]}, "stones.0.cut.table_percent", "100; got 101"),
+    "mesh by a path": ({"stones": [{"mesh": "../../etc/passwd"}]}, "stones.0.mesh", "pattern"),
+    "mesh by a file": ({"stones": [{"mesh": "stone.ply"}]}, "stones.0.mesh", "pattern"),
+    "negative absorption": ({"stones": [{"absorption": [0, -1, 0]}]}, "stones.0.absorption.1", "0; got -1"),
+    "size 0": ({"stones": [{"size_mm": 0}]}, "stones.0.size_mm", "greater than 0; got 0"),
+    "no orientation": ({"stones": [{"orientation": [0, 0, 0, 0]}]}, "stones.0.orientation", "length 0"),
+    "unknown floor": ({"floor": {"kind": "glossy"}}, "floor.kind", "'mirror'; got 'glossy'"),
+    "floor by name": ({"floor": "mirror"}, "floor", "got 'mirror'"),
+    "nine lights": ({"lights": [{"position": [0, 9, 0], "colour": [1, 1, 1]}] * 9}, "lights", "at most 8"),
+    "dark light": ({"lights": [{"position": [0, 9, 0], "colour": [1, 1, -1]}]}, "lights.0.colour.2", "0; got -1"),
+    "light without a place": ({"lights": [{"colour": [1, 1, 1]}]}, "lights.0.position", "required"),
+    "unknown sky": ({"environment": {"kind": "cloudy"}}, "environment", "'cloudy'.*'studio'"),
+    "sky without a kind": ({"environment": {"radiance": [1, 1, 1]}}, "environment", "'kind'"),
+    "sky's colour": ({"environment": {"kind": "gradient", "top": [1, -2, 1]}}, "environment.top.1", "0; got -2"),
+    "lamp nowhere": (
+        {"environment": {"kind": "studio", "lamps": [{"direction": [0, 0, 0], "half_angle_degrees": 5, "radiance": [1, 1, 1]}]}},
+        "environment.lamps.0.direction", "points nowhere",
+    ),
+    "cut-off 0": ({"optics": {"cutoff": 0}}, "optics.cutoff", "0.000000001; got 0"),
+    "cut-off 1": ({"optics": {"cutoff": 1}}, "optics.cutoff", "less than 1; got 1"),
+    "no bounces": ({"optics": {"max_bounces": 0}}, "optics.max_bounces", "1; got 0"),
+    "half a bounce": ({"optics": {"max_bounces": 2.5}}, "optics.max_bounces", "integer.*; got 2.5"),
+    "two bands": ({"optics": {"bands": 2}}, "optics.bands", "3; got 2"),
+    "no samples": ({"sampling": {"samples_per_pixel": 0}}, "sampling.samples_per_pixel", "1; got 0"),
+    "exposure 0": ({"film": {"exposure": 0}}, "film.exposure", "greater than 0; got 0"),
+    "unknown tone map": ({"film": {"tone_map": "aces"}}, "film.tone_map", "'none'; got 'aces'"),
+    "restitution 2": ({"simulation": {"restitution": 2}}, "simulation.restitution", "1; got 2"),
+    "negative gravity": ({"simulation": {"gravity": -1}}, "simulation.gravity", "0; got -1"),
+    "massless": ({"simulation": {"mass": 0}}, "simulation.mass", "0.000000001; got 0"),
+    "no time": ({"simulation": {"time_step": 0}}, "simulation.time_step", "0.0001; got 0"),
+    "seed of no integer": ({"simulation": {"seed": 2**53}}, "simulation.seed", "9007199254740991; got 9007199254740992"),
+    "a number too large to be one": ({"camera": {"fov_degrees": 10**400}}, "camera.fov_degrees", "number"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("data", "field", "message"), BAD.values(), ids=BAD.keys())
+def test_what_cannot_be_rendered_is_refused_with_its_field(data: Any, field: str | None, message: str) -> None:  # noqa: ANN401
+    with pytest.raises(SceneError, match=message) as refusal:
+        Scene.read(data)
+    assert refusal.value.field == field
+    assert str(refusal.value).startswith(f"{field or 'scene'}: ")
+    assert isinstance(refusal.value, InputError)
+    assert refusal.value.status == 422
+
+
+def numeric_places(data: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:  # noqa: ANN401
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            yield from numeric_places(value, (*path, key))
+    elif isinstance(data, int | float):
+        yield path
+
+
+def put(data: Any, path: tuple[str | int, ...], value: object) -> Any:  # noqa: ANN401
+    """A copy of JSON data with one value exchanged."""
+    if not path:
+        return value
+    if isinstance(data, dict):
+        return {key: put(item, path[1:], value) if key == path[0] else item for key, item in data.items()}
+    return [put(item, path[1:], value) if index == path[0] else item for index, item in enumerate(data)]
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf], ids=["NaN", "infinity", "-infinity"])
+def test_nan_and_infinity_are_refused_in_every_number(value: float) -> None:
+    """Of every field of every kind of sky and material; the refusal names the number, down to its place in a vector."""
+    environments = [
+        DEFAULT["environment"],
+        {"kind": "constant", "radiance": [1, 1, 1]},
+        {"kind": "half", "radiance": [1, 1, 1]},
+        {"kind": "gradient", "bottom": [0, 0, 0], "top": [1, 1, 1]},
+    ]
+    materials = [{"ior": [1.7, 1.8, 1.9]}, FULL["stones"][0]["material"]]
+    tried = 0
+    for environment in environments:
+        for material in materials:
+            data = {**FULL, "environment": environment, "stones": [{**FULL["stones"][0], "material": material}]}
+            Scene.read(data)
+            for path in numeric_places(data):
+                with pytest.raises(SceneError) as refusal:
+                    Scene.read(put(data, path, value))
+                assert refusal.value.field == ".".join(map(str, path))
+                tried += 1
+    assert tried > 500
+
+
+def test_a_long_value_is_shown_short() -> None:
+    with pytest.raises(SceneError) as refusal:
+        Scene.read({"floor": {"kind": "x" * 10_000}})
+    assert len(str(refusal.value)) < 200
+
+
+def test_the_number_of_findings_is_told() -> None:
+    with pytest.raises(SceneError, match=r"\(and 2 more\)$"):
+        Scene.read({"floor": 1, "walls": 2, "film": 3})
+
+
+def test_a_formula_without_an_index_is_refused_when_its_index_is_needed() -> None:
+    scene = Scene.read({"stones": [{"material": {"sellmeier": [[-3, 0.1]]}}]})
+    with pytest.raises(SceneError) as refusal:
+        channel_indices(scene.stones[0].material)
+    assert refusal.value.field == "stones.0.material.sellmeier"
+
+
+def test_moving_the_stone_moves_nothing_else() -> None:
+    scene = Scene.read(FULL)
+    moved = scene.moved((1, 2, 3), (0, 1, 0, 0))
+    assert moved.stones[0].position == (1, 2, 3)
+    assert moved.stones[0].orientation == (0, 1, 0, 0)
+    assert moved.moved(scene.stones[0].position, scene.stones[0].orientation) == scene
+    assert Scene(stones=()).moved((1, 2, 3), (1, 0, 0, 0)) == Scene(stones=())

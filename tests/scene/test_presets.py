@@ -1,0 +1,66 @@
+"""Named scenes: every one renders, and the report's own keeps the report's constants."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from culet.errors import NotFoundError
+from culet.rendering.renderer import Renderer
+from culet.scene import PRESETS, Scene, preset
+from rendering.views import BARE, radiance, take, without_stone
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_shows_a_stone(renderer: Renderer, name: str) -> None:
+    scene = preset(name)
+    picture, empty = (take(renderer, each, size=(64, 36)) for each in (scene, without_stone(scene)))
+    pixels = radiance(picture)
+    assert np.isfinite(pixels).all()
+    assert pixels.min() >= 0
+    assert (abs(pixels - radiance(empty)).max(axis=-1) > 0.01).mean() > 0.005  # measured 0.0087 to 0.31
+    assert picture.segments() > 0
+
+
+def test_an_unknown_preset_is_refused_with_those_that_exist() -> None:
+    with pytest.raises(NotFoundError, match="no preset 'nmae'; there are: default, "):
+        preset("nmae")
+
+
+def test_every_preset_says_in_a_line_what_it_is() -> None:
+    for line, _ in PRESETS.values():
+        assert 10 < len(line) < 100
+        assert line.endswith(".")
+
+
+def test_the_default_preset_is_the_default_scene() -> None:
+    assert preset("default") == Scene()
+
+
+def test_the_default_stone_fills_half_of_the_pictures_height(renderer: Renderer) -> None:
+    """Its outline against a uniform sky: the rows that it changes, of 360."""
+    data = {**BARE, "environment": {"kind": "constant"}, "stones": [{"absorption": [1, 1, 1]}]}
+    picture = take(renderer, Scene.read(data), size=(640, 360))
+    stone = (radiance(picture) < 0.999).any(axis=-1)
+    rows, columns = np.flatnonzero(stone.any(axis=1)), np.flatnonzero(stone.any(axis=0))
+    assert 0 < rows[0] < rows[-1] < 359
+    assert 0 < columns[0] < columns[-1] < 639
+    assert 0.45 < len(rows) / 360 < 0.55
+
+
+def test_the_classic_scene_has_the_reports_constants() -> None:
+    """Camera, lights, indices, bounces, absorption and the numbers of its physics, as it publishes them."""
+    scene = preset("classic")
+    assert (scene.camera.position, scene.camera.fov_degrees) == ((0, 2, 13), 45)
+    assert scene.camera.target[1] < 2  # slightly down
+    assert [light.position for light in scene.lights] == [(-4, 6, 4), (4, 6, 4)]
+    assert [light.colour for light in scene.lights] == [(1, 0.2, 0.2), (0.2, 0.5, 1)]
+    assert scene.stones[0].position == (0, 4, 0)
+    assert scene.stones[0].absorption == (0.02, 0.02, 0.02)
+    assert (scene.optics.estimator, scene.optics.fresnel, scene.optics.max_bounces) == ("classic", "schlick", 12)
+    assert scene.film.tone_map == "classic"
+    physics = scene.simulation
+    assert (physics.model, physics.inertia, physics.mass, physics.spin) == ("classic", "cone", 2, (0.5, 3, 0))
+    assert (physics.gravity, physics.time_step, physics.restitution) == (9.81, 1 / 30, 0.6)
+    assert (physics.velocity_threshold, physics.tangential_damping, physics.angular_damping) == (0.1, 0.9, 0.75)
+    assert (physics.random_torque, physics.random_torque_speed) == (5, 2)
