@@ -13,9 +13,9 @@
 static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel, intL *segments) {
   __constant const parameters_t *scene = world.scene;
   const channels_t channels = {channel, 1};
-  const real eta = scene->eta[channel];
+  const real eta = world.chains[channel].eta;
   const maskL all = splat(0) < splat(1), none = !all;
-  rayL ray = {origin, direction, start, splat(1)};
+  rayL ray = {origin, direction, start, splat(1), unpolarised(direction)};
   maskL inside = DECIDED(CAMERA_INSIDE, scene->camera_inside) ? all : none, active = all;
   if (any_lane(inside)) ray.origin = along(origin, start, direction);
   realL radiance = splat(0);
@@ -47,7 +47,7 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     }
     const maskL in_room = active & !at_stone;
     const viewL view = look(world, ray, channels);
-    const radianceL fallback = sky(scene, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
+    const radianceL fallback = sky(world, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
     const maskL faces_room = in_room & view.meets;
     const realL seen = blend(faces_room & last, fallback.channel[0], view.radiance.channel[0]);
     radiance += blend(in_room, ray.weight * seen, splat(0));
@@ -57,7 +57,7 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     const vec3L point = along(ray.origin, t, ray.direction);
     const realL cosine = dot3(ray.direction, normal); // negative from outside
     const vec3L reflected = reflect3(ray.direction, cosine, normal);
-    const radianceL mirrored_sky = sky(scene, reflected, channels);
+    const radianceL mirrored_sky = sky(world, reflected, channels);
     const realL term = fresnel_schlick(fabs(cosine), eta);
     const realL ratio = blend(inside, splat(eta), splat(1 / eta));
     const realL squared = (real)1 - ratio * ratio * ((real)1 - cosine * cosine);
@@ -67,7 +67,7 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     const vec3L bent = renormalise(vec3(fma(ratio, ray.direction.x, bend * normal.x), fma(ratio, ray.direction.y, bend * normal.y),
                                         fma(ratio, ray.direction.z, bend * normal.z)));
     if (ABSORPTION != 0)
-      ray.weight *= blend(refracted & inside, exp_fast(-scene->absorption[channel] * t), splat(1));
+      ray.weight *= blend(refracted & inside, exp_fast(-world.chains[channel].absorption * t), splat(1));
     ray.weight *= blend(refracted, (real)1 - term, blend(mirrored, splat(MIRROR_REFLECTANCE), splat(1)));
 
     const maskL goes_on = refracted | total | mirrored;
@@ -83,9 +83,9 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
 
 __kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
                      __global const real4 *shadows, __global const real *boxes, __global const int *links,
-                     __global const real *corners, double jitter_x, double jitter_y, int first_tile_row, int accumulate,
-                     __global float *tallies) {
-  const world_t world = {scene, facets, shadows, {boxes, links, corners}};
+                     __global const real *corners, __global const chain_t *chains, __global const float *panorama,
+                     double jitter_x, double jitter_y, int first_tile_row, int accumulate, __global float *tallies) {
+  const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
   const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
   tile_t tile;
   tile.segments = (intL)(0);

@@ -17,6 +17,7 @@
 #define GRADIENT 1
 #define HALF 2
 #define STUDIO 3
+#define IMAGE 4
 
 // Kinds of GEOMETRY: no stone, facet half-spaces, or triangles in a tree. Never RUNTIME.
 #define EMPTY 0
@@ -26,6 +27,12 @@
 // Kinds of FRESNEL.
 #define EXACT 0
 #define SCHLICK 1
+
+// Kinds of END, where a chain's weight falls below the cut-off: it is dropped; or goes on by chance, with more weight,
+// which is right on average; or sees the sky in the mirrored direction, as in the report.
+#define CUT 0
+#define ROULETTE 1
+#define SKYLIGHT 2
 
 #ifndef GEOMETRY
 #define GEOMETRY HULL
@@ -51,6 +58,15 @@
 #ifndef FRESNEL
 #define FRESNEL RUNTIME
 #endif
+#ifndef END
+#define END RUNTIME
+#endif
+#ifndef SPECTRAL // 1: sampled wavelengths, a chain each, that light all channels. Never RUNTIME.
+#define SPECTRAL 0
+#endif
+#ifndef POLARISED // 1: chains carry the polarisation of light. Never RUNTIME.
+#define POLARISED 0
+#endif
 #ifndef CAMERA_INSIDE // 1: the camera is inside the stone
 #define CAMERA_INSIDE RUNTIME
 #endif
@@ -60,8 +76,11 @@
 // Whether light that has left the stone can meet it again.
 #define REENTRY (GEOMETRY != EMPTY && (GEOMETRY == MESH || FLOOR == MIRROR || FLOOR == RUNTIME || WALLS == MIRROR || WALLS == RUNTIME))
 
-// A chain carries one channel where the index depends on it, all three where it does not.
-#define CHANNELS (DISPERSION == 0 ? 3 : 1)
-#define CHAINS (DISPERSION == 0 ? 1 : 3)
+// A chain carries one channel where each has an index of its own; all three where they share one, and where the chain is
+// of a wavelength, which all of them see a part of.
+#define CHANNELS (SPECTRAL || DISPERSION == 0 ? 3 : 1)
+
+// Neighbouring pixels take different wavelengths: GROUPS of them, one for each pixel of a square.
+#define GROUPS (SPECTRAL ? 4 : 1)
 
 #endif

@@ -1,42 +1,85 @@
-// From sums of linear radiance to what a screen shows: three bytes a pixel.
+// From sums of linear radiance to what a screen shows: three bytes a pixel. optics/tone.py and optics/gamut.py are the
+// references, in double precision.
 #include "lanes.cl"
 
 // Kinds of tone map.
 #define TONE_NONE 0
 #define TONE_SRGB 1
 #define TONE_CLASSIC 2
+#define TONE_FILMIC 3
 
 #define BLOCK 16 // pixels that are shown together
 
-// x to the power p, for x from 0 to 8, within half a level of 8 bits: exp2 and log2 of the processor's own width.
+typedef struct {
+  float16 red, green, blue;
+} rgb16;
+
+// x to the power p, for x from 0 to 8, to well within half a level of 8 bits.
 static inline float16 power(float16 x, float p) { return native_exp2(p * native_log2(fmax(x, 1e-9f))); }
 
-static inline float16 shown(float16 radiance, int tone_map) {
-  const float16 x = clamp(radiance, 0.0f, 4.0f);
-  if (tone_map == TONE_SRGB) // IEC 61966-2-1
-    return select(1.055f * power(x, 1 / 2.4f) - 0.055f, 12.92f * x, x <= 0.0031308f);
-  if (tone_map == TONE_CLASSIC) return power(1.2f * x, 1.2f); // the report's
-  return x;
+static inline float16 encode_srgb(float16 x) { // IEC 61966-2-1
+  return select(1.055f * power(x, 1 / 2.4f) - 0.055f, 12.92f * x, x <= 0.0031308f);
 }
 
-static inline uchar16 to_bytes(float16 radiance, int tone_map) {
-  return convert_uchar16_sat_rte(255 * shown(radiance, tone_map));
+static inline float16 luminance(rgb16 c) { return 0.212639f * c.red + 0.715169f * c.green + 0.072192f * c.blue; }
+
+static inline rgb16 mix_rgb(float16 grey, float16 saturation, rgb16 c) {
+  const rgb16 mixed = {grey + saturation * (c.red - grey), grey + saturation * (c.green - grey), grey + saturation * (c.blue - grey)};
+  return mixed;
 }
 
-// A work-item shows BLOCK pixels. `scale` is the exposure over the number of samples.
-__kernel void develop(__global const real4 *image, __global uchar *bytes, int pixels, float scale, int tone_map) {
+// Towards the grey of its luminance, until every component is from 0 to the ceiling.
+static inline rgb16 desaturate(rgb16 c, float ceiling) {
+  const float16 grey = clamp(luminance(c), 0.0f, ceiling);
+  const float16 lowest = fmin(c.red, fmin(c.green, c.blue)), highest = fmax(c.red, fmax(c.green, c.blue));
+  const float16 from_below = select((float16)(1), grey / fmax(grey - lowest, 1e-20f), lowest < 0);
+  const float16 from_above = select((float16)(1), (ceiling - grey) / fmax(highest - grey, 1e-20f), highest > ceiling);
+  return mix_rgb(grey, fmin(from_below, from_above), c);
+}
+
+// J. Hable, Filmic Tonemapping Operators (2010), with its exposure of 2 before the curve.
+static inline float16 hable(float16 x) {
+  return (x * (0.15f * x + 0.05f) + 0.004f) / (x * (0.15f * x + 0.5f) + 0.06f) - 0.02f / 0.30f;
+}
+#define LINEAR_WHITE 11.2f
+
+static inline rgb16 filmic(rgb16 c) {
+  c = desaturate(c, 1e20f);
+  const float16 before = luminance(c), after = fmax(hable(fmin(2 * before, LINEAR_WHITE)) / hable(LINEAR_WHITE), 0.0f);
+  const float16 scale = select((float16)(0), after / fmax(before, 1e-20f), before > 0);
+  const rgb16 scaled = {scale * c.red, scale * c.green, scale * c.blue};
+  return desaturate(scaled, 1);
+}
+
+static inline float16 shown(float16 x, int tone_map) {
+  const float16 inside = clamp(x, 0.0f, 4.0f);
+  if (tone_map == TONE_SRGB || tone_map == TONE_FILMIC) return encode_srgb(inside);
+  if (tone_map == TONE_CLASSIC) return power(1.2f * inside, 1.2f); // the report's
+  return inside;
+}
+
+static inline uchar16 to_bytes(float16 x, int tone_map) { return convert_uchar16_sat_rte(255 * shown(x, tone_map)); }
+
+// A work-item shows BLOCK pixels, of which `even` and `odd` hold the sums of half the samples each. `scale` is the exposure
+// over the number of samples; `inside_gamut` says that no component is negative, or that those that are may be clipped.
+__kernel void develop(__global const real4 *even, __global const real4 *odd, int both, __global uchar *bytes, int pixels,
+                      float scale, int tone_map, int inside_gamut) {
   const int first = get_global_id(0) * BLOCK, count = min(BLOCK, pixels - first);
-  float red[BLOCK], green[BLOCK], blue[BLOCK];
+  float linear[3][BLOCK];
   for (int i = 0; i < BLOCK; i++) {
-    const float4 sum = convert_float4(image[first + min(i, count - 1)]);
-    red[i] = scale * sum.x;
-    green[i] = scale * sum.y;
-    blue[i] = scale * sum.z;
+    const int pixel = first + min(i, count - 1);
+    const float4 sum = convert_float4(both ? even[pixel] + odd[pixel] : even[pixel]);
+    linear[0][i] = scale * sum.x;
+    linear[1][i] = scale * sum.y;
+    linear[2][i] = scale * sum.z;
   }
+  rgb16 colour = {vload16(0, linear[0]), vload16(0, linear[1]), vload16(0, linear[2])};
+  if (!inside_gamut) colour = desaturate(colour, 1e20f);
+  if (tone_map == TONE_FILMIC) colour = filmic(colour);
   uchar out[3][BLOCK];
-  vstore16(to_bytes(vload16(0, red), tone_map), 0, out[0]);
-  vstore16(to_bytes(vload16(0, green), tone_map), 0, out[1]);
-  vstore16(to_bytes(vload16(0, blue), tone_map), 0, out[2]);
+  vstore16(to_bytes(colour.red, tone_map), 0, out[0]);
+  vstore16(to_bytes(colour.green, tone_map), 0, out[1]);
+  vstore16(to_bytes(colour.blue, tone_map), 0, out[2]);
   for (int i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) bytes[3 * (first + i) + k] = out[k][i];
 }

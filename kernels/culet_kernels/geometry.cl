@@ -2,16 +2,7 @@
 #ifndef CULET_GEOMETRY
 #define CULET_GEOMETRY
 #include "features.cl"
-#include "hull.cl"
-#include "mesh.cl"
-
-// What a scene is made of.
-typedef struct {
-  __constant const parameters_t *scene;
-  __global const real4 *facets;  // HULL: normal and offset, in the world's axes
-  __global const real4 *shadows; // HULL: planes of the lights' shadow volumes
-  tree_t tree;                   // MESH
-} world_t;
+#include "world.cl"
 
 // Whether a ray can meet the stone at all: whether it passes the unit sphere around it, not wholly before t_min.
 static inline maskL passes_stone(vec3L origin, vec3L direction, realL t_min) {
@@ -34,8 +25,7 @@ static inline crossingL stone_exit(world_t world, vec3L origin, vec3L direction,
 static inline maskL stone_shadow(world_t world, int light, vec3L point, vec3L to_light, maskL mask) {
   if (GEOMETRY == EMPTY) return mask & !mask;
   // The line to the light passes the unit sphere if its moment about the centre is less than its length.
-  const vec3L moment = vec3(point.y * to_light.z - point.z * to_light.y, point.z * to_light.x - point.x * to_light.z,
-                            point.x * to_light.y - point.y * to_light.x);
+  const vec3L moment = cross3(point, to_light);
   const maskL near = mask & (dot3(moment, moment) < (real)1.0001 * dot3(to_light, to_light));
   if (!any_lane(near)) return near;
   if (GEOMETRY == HULL)

@@ -16,7 +16,6 @@ typedef struct {
   real reach;                       // from the eye to the foot, in lengths of that direction
   real cutoff;                      // weight below which a chain ends
   real centre[3];                   // the stone's centre in the world, from where checkers are counted
-  real eta[3];                      // index of refraction, by chain
   real absorption[3];               // per R, by channel
   real sky_bottom[3], sky_top[3];   // radiance, by channel
   real lamp[MAX_LAMPS][3];          // direction of a lamp in the sky, over the width of its edge (in cosine),
@@ -31,9 +30,20 @@ typedef struct {
   int lights, lamps;
   int max_bounces; // interior segments of a chain, at most
   int width, height;
-  int floor_kind, walls_kind, sky_kind, fresnel_kind;
+  int chains; // one for each index of refraction
+  int panorama_width, panorama_height;
+  int sample; // its number, from which chance and the pixels' wavelengths are drawn
+  int floor_kind, walls_kind, sky_kind, fresnel_kind, end_kind;
   int camera_inside; // the stone
   int pierces;       // the stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
+
+// One index of refraction.
+typedef struct {
+  real eta;
+  real absorption; // per R
+  real share[3];   // of each channel's light; they sum to 1 over the chains that a pixel sees
+  int group;       // of pixels that see it
+} chain_t;
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef CULET_ROOM
 #define CULET_ROOM
 #include "geometry.cl"
+#include "polarisation.cl"
 #include "sky.cl"
 
 #define AMBIENT ((real)0.2)           // of a matte surface, in lights of colour 1
@@ -49,6 +50,7 @@ typedef struct {
   vec3L origin, direction;
   realL start;
   realL weight;
+  polarisationL polarisation;
 } rayL;
 
 // Whether floor or walls come before the stone; only where the stone reaches through one of them.
@@ -73,7 +75,7 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
   view.meets = view.reflects = ray.start < ray.start; // none
   view.point = ray.origin;
   view.normal = ray.direction;
-  view.radiance = sky(scene, ray.direction, channels);
+  view.radiance = sky(world, ray.direction, channels);
   const int first = floor_kind == NONE ? 1 : 0, last = walls_kind == NONE ? 1 : MAX_SURFACES;
   if (first == last) return view;
 
@@ -134,6 +136,8 @@ static inline radianceL gather(world_t world, rayL *ray, realL share, maskL *tow
     ray->weight = blend(active, MIRROR_REFLECTANCE * ray->weight, ray->weight);
     ray->origin = blend3(active, view.point, ray->origin);
     ray->direction = blend3(active, reflect3(ray->direction, dot3(ray->direction, view.normal), view.normal), ray->direction);
+    if (POLARISED)
+      ray->polarisation = blend_polarisation(active, mirror_polarisation(ray->polarisation, view.normal), ray->polarisation);
     const realL whole = share * ray->weight;
     if (REENTRY) {
       const maskL heading = active & passes_stone(ray->origin, ray->direction, splat(0));

@@ -2,8 +2,7 @@
 #ifndef CULET_SKY
 #define CULET_SKY
 #include "features.cl"
-#include "parameters.cl"
-#include "vector.cl"
+#include "world.cl"
 
 // Radiance in up to three channels. Which ones, `channels_t` says: all three, or the one of a dispersed chain; its count
 // is known at compile time wherever it is used, so that the channels left out cost nothing.
@@ -25,8 +24,41 @@ static inline radianceL black(void) {
   return none;
 }
 
-static inline radianceL sky(__constant const parameters_t *scene, vec3L direction, channels_t channels) {
+// The panorama in a direction, between its four nearest pixels. The zenith is its upper edge, -z its left one, and +x is a
+// quarter of the way to the right; it goes round, and at the poles a row looks across to its other half.
+static inline radianceL panorama(world_t world, vec3L direction, channels_t channels) {
+  const int width = world.scene->panorama_width, height = world.scene->panorama_height;
+  const realL across = hypot(direction.x, direction.z);
+  const realL turn = atan2(direction.x, -direction.z) * (real)M_1_PI_F * (real)0.5;
+  const realL u = (turn - floor(turn)) * width - (real)0.5, v = atan2(across, direction.y) * (real)M_1_PI_F * height - (real)0.5;
+  real column[LANES], row[LANES], radiance[3][LANES];
+  store_lanes(u, column);
+  store_lanes(v, row);
+  for (int lane = 0; lane < LANES; lane++) {
+    const real left = floor(column[lane]), upper = floor(row[lane]), du = column[lane] - left, dv = row[lane] - upper;
+    for (int k = 0; k < channels.count; k++) radiance[k][lane] = 0;
+    for (int corner = 0; corner < 4; corner++) {
+      int x = (int)left + (corner & 1), y = (int)upper + (corner >> 1);
+      if (y < 0 || y >= height) {
+        y = y < 0 ? -1 - y : 2 * height - 1 - y;
+        x += width / 2;
+      }
+      x = (x % width + width) % width;
+      y = clamp(y, 0, height - 1);
+      const real share = (corner & 1 ? du : 1 - du) * (corner >> 1 ? dv : 1 - dv);
+      for (int k = 0; k < channels.count; k++)
+        radiance[k][lane] += share * world.panorama[((size_t)y * width + x) * 3 + channels.first + k];
+    }
+  }
+  radianceL seen = black();
+  for (int k = 0; k < channels.count; k++) seen.channel[k] = load_lanes(radiance[k]);
+  return seen;
+}
+
+static inline radianceL sky(world_t world, vec3L direction, channels_t channels) {
+  __constant const parameters_t *scene = world.scene;
   const int kind = DECIDED(SKY, scene->sky_kind);
+  if (kind == IMAGE) return panorama(world, direction, channels);
   radianceL radiance = black();
   if (kind == STUDIO) {
     for (int k = 0; k < channels.count; k++) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);

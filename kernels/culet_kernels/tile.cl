@@ -23,6 +23,12 @@ static inline int pixel_at(int x, int y) {
   return first_pixel(x, y) + y % PACKET_HEIGHT * PACKET_WIDTH + x % PACKET_WIDTH;
 }
 
+// Which pixels of a packet belong to a group: one of each square of four, another one in the next sample.
+static inline maskL in_group(int x, int y, int group, int sample) {
+  const intL number = ((PACKET_X + x) & 1) + 2 * ((PACKET_Y + y) & 1) + sample;
+  return widen((number & 3) == (intL)(group));
+}
+
 // Of one sample, by tile: how many segments its chains had inside the stone, and the weight that they dropped, summed over
 // pixels. A float counts segments exactly up to 2^24.
 #define SEGMENTS 0

@@ -21,6 +21,10 @@ static inline vec3L along(vec3L origin, realL t, vec3L direction) {
   return vec3(fma(t, direction.x, origin.x), fma(t, direction.y, origin.y), fma(t, direction.z, origin.z));
 }
 
+static inline vec3L cross3(vec3L a, vec3L b) {
+  return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
 static inline vec3L scale3(realL s, vec3L a) { return vec3(s * a.x, s * a.y, s * a.z); }
 
 static inline vec3L blend3(maskL mask, vec3L yes, vec3L no) {

@@ -7,6 +7,7 @@ from enum import IntEnum
 
 from culet.geometry.stone import Stone
 from culet.optics.dispersion import channel_indices
+from culet.rendering.chains import is_coloured, is_spectral
 from culet.rendering.projection import camera_is_inside
 from culet.scene.model import Environment, Plane, Scene
 
@@ -26,8 +27,9 @@ MOST_HALF_SPACES = 600
 """Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. With
 the brilliant's 73 the tree takes some 8 times as long."""
 SURFACE = {"none": 0, "matte": 1, "mirror": 2}
-SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3}
+SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3, "image": 4}
 FRESNEL = {"exact": 0, "schlick": 1}
+END = {"cut": 0, "roulette": 1, "sky": 2}
 
 
 @dataclass(frozen=True)
@@ -42,12 +44,15 @@ class Features:
     dispersion: int = RUNTIME
     absorption: int = RUNTIME
     fresnel: int = RUNTIME
+    end: int = RUNTIME
+    spectral: int = 0
+    polarised: int = 0
     camera_inside: int = RUNTIME
 
     @property
     def general(self) -> Features:
-        """The program for every scene of this geometry."""
-        return Features(geometry=self.geometry)
+        """The program for every scene of this geometry, spectral or not, polarised or not."""
+        return Features(geometry=self.geometry, spectral=self.spectral, polarised=self.polarised)
 
     @property
     def options(self) -> list[str]:
@@ -74,6 +79,7 @@ def features_of(scene: Scene, stone: Stone | None) -> Features:
     """The program that holds what this scene needs, and nothing else."""
     kinds: tuple[Plane, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds
+    optics = scene.optics
     surfaces = floor.kind != "none" or walls.kind != "none"
     settings = scene.stones[0] if stone is not None else None
     indices = channel_indices(settings.material) if settings else (1.0, 1.0, 1.0)
@@ -84,7 +90,10 @@ def features_of(scene: Scene, stone: Stone | None) -> Features:
         lights=RUNTIME if scene.lights and surfaces else 0,
         sky=SKY[environment.kind],
         dispersion=int(len(set(indices)) > 1),
-        absorption=RUNTIME if settings and any(settings.absorption) else 0,
-        fresnel=FRESNEL[scene.optics.fresnel],
+        absorption=RUNTIME if stone is not None and is_coloured(scene) else 0,
+        fresnel=FRESNEL[optics.fresnel],
+        end=END[optics.end],
+        spectral=int(is_spectral(scene)),
+        polarised=int(optics.polarised and optics.estimator == "chain"),
         camera_inside=int(stone is not None and camera_is_inside(scene, stone)),
     )

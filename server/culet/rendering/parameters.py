@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
-from culet.optics.dispersion import channel_indices
+from culet.rendering.chains import absorption
 from culet.rendering.device import Real
-from culet.rendering.features import FRESNEL, SKY, SURFACE
+from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.projection import camera_is_inside, placement, project
 from culet.scene.model import (
     ConstantEnvironment,
@@ -38,12 +38,13 @@ def layout(real: Real) -> np.dtype[np.void]:
         [
             ("foot", d, 3), ("foot_column", d, 3), ("foot_row", d, 3),
             ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
-            ("reach", r), ("cutoff", r), ("centre", r, 3), ("eta", r, 3), ("absorption", r, 3),
+            ("reach", r), ("cutoff", r), ("centre", r, 3), ("absorption", r, 3),
             ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
             ("lamp_edge", r, MAX_LAMPS), ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
             ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
             ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("max_bounces", i),
-            ("width", i), ("height", i), ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i),
+            ("width", i), ("height", i), ("chains", i), ("panorama_width", i), ("panorama_height", i), ("sample", i),
+            ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i), ("end_kind", i),
             ("camera_inside", i), ("pierces", i),
         ],
         align=True,
@@ -67,12 +68,6 @@ def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[floa
             return (0.05, 0.05, 0.1), (0.2, 0.2, 0.3)
 
 
-def absorption_per_radius(scene: Scene) -> tuple[float, ...]:
-    """Absorption coefficients by channel, per R; where the stone has a size they are given per millimetre."""
-    stone = scene.stones[0]
-    return tuple(a * (stone.size_mm if stone.size_mm is not None else 1) for a in stone.absorption)
-
-
 def room_surfaces(centre: NDArray[np.float64]) -> NDArray[np.float64]:
     """(4, 4) floor and walls as inward normal and offset, relative to the stone's centre."""
     normals = np.array([(0, 1, 0), *WALL_NORMALS], dtype=float)
@@ -85,10 +80,11 @@ def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.floa
     return room_surfaces(centre)[[scene.floor.kind != "none", *[scene.walls.kind != "none"] * 3]]
 
 
-def parameters(
-    scene: Scene, stone: Stone | None, width: int, height: int, shadow_start: NDArray[np.int32], real: Real
-) -> NDArray[np.void]:
-    """One struct; every position is relative to the stone's centre, subtracted in double precision."""
+def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real: Real) -> NDArray[np.void]:
+    """One struct; every position is relative to the stone's centre, subtracted in double precision.
+
+    What depends on other buffers (shadows, chains, panorama) is left zero.
+    """
     p = np.zeros((), layout(real))
     centre, rotation = placement(scene)
     projection = project(scene, width, height)
@@ -106,16 +102,14 @@ def parameters(
         p["light_colour"][number] = light.colour
     p["lights"] = len(scene.lights)
     p["axes"] = rotation
-    p["shadow_start"][: len(shadow_start)] = shadow_start
     p["max_bounces"] = scene.optics.max_bounces
     p["width"], p["height"] = width, height
     p["floor_kind"], p["walls_kind"] = SURFACE[scene.floor.kind], SURFACE[scene.walls.kind]
     p["sky_kind"] = SKY[scene.environment.kind]
     p["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
-    p["eta"] = 1
+    p["end_kind"] = END[scene.optics.end]
     if stone is not None:
-        p["eta"] = channel_indices(scene.stones[0].material)
-        p["absorption"] = absorption_per_radius(scene)
+        p["absorption"] = absorption(scene)
         p["facets"] = len(stone.planes)
         p["camera_inside"] = camera_is_inside(scene, stone)
         p["pierces"] = _pierces(scene, stone)

@@ -105,6 +105,6 @@ def warm_up(device: Device, kernel: Any, variant: Variant) -> None:  # noqa: ANN
     parameters["foot"], parameters["direction"] = (0, 10, 0), (1, 0, 0)
     scene = cl.Buffer(device.context, flags | cl.mem_flags.COPY_HOST_PTR, hostbuf=parameters)
     scratch = cl.Buffer(device.context, flags, 1024)
-    args = (scratch, scene, *[scratch] * 5, np.float64(0), np.float64(0), np.int32(0), np.int32(0), scratch)
+    args = (scratch, scene, *[scratch] * 7, np.float64(0), np.float64(0), np.int32(0), np.int32(0), scratch)
     kernel(queue, (1, 1), (1, 1), *args)
     queue.finish()

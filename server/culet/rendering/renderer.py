@@ -12,22 +12,21 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.geometry.polygons import edges_of_facets
 from culet.geometry.stone import Stone
+from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
-from culet.rendering.features import Features, Geometry, features_of
-from culet.rendering.parameters import parameters, shown_surfaces
+from culet.rendering.features import Features, features_of
+from culet.rendering.inputs import Inputs, Panorama
 from culet.rendering.program import Programs, Variant, build
-from culet.rendering.projection import placement, world_planes
-from culet.rendering.shadows import shadow_planes
-from culet.rendering.tree import tree_of
 from culet.scene.model import Scene
 
 SOURCES = {"chain": "render.cl", "classic": "classic.cl"}
 """Of each estimator; both have a kernel `render` with the same arguments."""
+SPECTRAL_TILE = 64
+"""Pixels on a side: each wavelength has a quarter of a tile's pixels to fill packets with, so tiles are larger."""
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
-TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2}
+TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3}
 
 
 class Renderer:
@@ -52,10 +51,18 @@ class Renderer:
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
 
     def picture(
-        self, scene: Scene, stone: Stone | None, width: int, height: int, *, features: Features | None = None
+        self,
+        scene: Scene,
+        stone: Stone | None,
+        width: int,
+        height: int,
+        *,
+        panorama: Panorama | None = None,
+        features: Features | None = None,
     ) -> Picture:
-        """An empty picture of the scene, to be refined. `features` asks for another program than the scene needs."""
-        return Picture(self, scene, stone, width, height, features)
+        """An empty picture of the scene, to be refined. The panorama, (height, width, 3) linear radiance, belongs to a
+        scene whose sky is an image; `features` asks for another program than the scene needs."""
+        return Picture(self, scene, stone, width, height, panorama, features)
 
     def describe(self) -> dict[str, str | int]:
         """Device, driver and lanes, for reports."""
@@ -68,17 +75,34 @@ class Renderer:
         }
 
 
-def jitter(sample: int) -> tuple[float, float]:
-    """Where in its pixel a sample lies, from the corner: the centre first, then the R2 sequence (M. Roberts, The
-    unreasonable effectiveness of quasirandom sequences, 2018)."""
-    return (0.5 + sample * 0.7548776662466927) % 1, (0.5 + sample * 0.5698402909980532) % 1
+def jitter(sample: int, kind: str = "box") -> tuple[float, float]:
+    """Where a sample lies, from its pixel's upper left corner, in pixels: the centre first, then the R2 sequence (M.
+    Roberts, The unreasonable effectiveness of quasirandom sequences, 2018), spread as the reconstruction filter weighs
+    (M. Ernst et al., Filter Importance Sampling, 2006)."""
+    x, y = (0.5 + sample * 0.7548776662466927) % 1, (0.5 + sample * 0.5698402909980532) % 1
+    return (x, y) if kind == "box" else (_tent(x), _tent(y))
+
+
+def _tent(u: float) -> float:
+    """The tent's inverse distribution: from 0.5 - 1 to 0.5 + 1 pixels, half of it within the pixel's middle 0.59."""
+    return 0.5 + (math.sqrt(2 * u) - 1 if u < 0.5 else 1 - math.sqrt(2 - 2 * u))
 
 
 class Picture:
-    """A scene seen at a size: sums of linear radiance on the device, one more sample of each pixel at a time."""
+    """A scene seen at a size: sums of linear radiance on the device, one more sample of each pixel at a time.
+
+    Samples are summed in two halves, the even and the odd ones: how far the halves are apart tells the error of the whole.
+    """
 
     def __init__(
-        self, renderer: Renderer, scene: Scene, stone: Stone | None, width: int, height: int, features: Features | None
+        self,
+        renderer: Renderer,
+        scene: Scene,
+        stone: Stone | None,
+        width: int,
+        height: int,
+        panorama: Panorama | None,
+        features: Features | None,
     ) -> None:
         self.scene, self.width, self.height = scene, width, height
         self.samples = 0
@@ -89,26 +113,14 @@ class Picture:
         stone = stone if scene.stones else None
         features = features or features_of(scene, stone)
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
-        self._kernel = get(features, replace(renderer.variant, source=SOURCES[scene.optics.estimator]))
-
-        shadow_start, shadows = np.zeros(1, np.int32), np.zeros((1, 4))
-        facets = np.zeros((1, 4))
-        struct = parameters(scene, stone, width, height, shadow_start, real)
-        if stone is not None and features.geometry == Geometry.HULL:
-            facets = world_planes(scene, stone)
-            if features.lights != 0:
-                shadow_start, shadows = _shadow_volumes(scene, stone, facets)
-                struct["shadow_start"][: len(shadow_start)] = shadow_start
-        self._tiles = math.ceil(width / renderer.variant.tile), math.ceil(height / renderer.variant.tile)
-        self._image = self._allocate(width * height * 4 * np.dtype(real).itemsize)
+        self._variant = replace(renderer.variant, source=SOURCES[scene.optics.estimator])
+        if is_spectral(scene):
+            self._variant = replace(self._variant, tile=SPECTRAL_TILE)
+        self._kernel = get(features, self._variant)
+        self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
+        self._tiles = math.ceil(width / self._variant.tile), math.ceil(height / self._variant.tile)
+        self._halves = [self._allocate(width * height * 4 * np.dtype(real).itemsize) for _ in range(2)]
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
-        self._inputs = [self._upload(struct), self._upload(facets.astype(real)), self._upload(shadows.astype(real))]
-        self._mesh = [None, None, None]
-        if stone is not None and features.geometry == Geometry.MESH:
-            tree = tree_of(stone)
-            self._mesh = [
-                self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))
-            ]
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
@@ -117,20 +129,20 @@ class Picture:
 
     def refine_in_bands(self, samples: int, rows: int) -> Iterator[float]:
         """The same in bands of about `rows` rows; yields the part that is done, between them."""
-        tile = self._renderer.variant.tile
+        tile = self._variant.tile
         tiles = max(1, math.ceil(rows / tile))
         bands = math.ceil(self._tiles[1] / tiles)
         queue = self._renderer.device.queue
         self.seconds = 0.0
         for sample in range(samples):
-            x, y = jitter(self.samples)
+            x, y = jitter(self.samples, self.scene.sampling.filter)
+            half, accumulate = self.samples % 2, self.samples >= 2
             for band in range(bands):
                 start = time.perf_counter()
                 count = min(tiles, self._tiles[1] - band * tiles)
                 event = self._kernel(
-                    queue, (self._tiles[0], count), (1, 1), self._image, *self._inputs, *self._mesh,
-                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(self.samples > 0),
-                    self._tallies,
+                    queue, (self._tiles[0], count), (1, 1), self._halves[half], *self._inputs.of_sample(self.samples),
+                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(accumulate), self._tallies,
                 )  # fmt: skip
                 event.wait()
                 self.seconds += time.perf_counter() - start
@@ -165,8 +177,10 @@ class Picture:
         target = self._allocate(shown.nbytes)
         film, pixels = self.scene.film, self.width * self.height
         self._renderer.develop(
-            self._renderer.device.queue, (math.ceil(pixels / 16),), None, self._image, target, np.int32(pixels),
+            self._renderer.device.queue, (math.ceil(pixels / 16),), None, *self._halves, np.int32(self.samples > 1),
+            target, np.int32(pixels),
             np.float32(film.exposure / max(1, self.samples)), np.int32(TONE_MAPS[film.tone_map]),
+            np.int32(film.gamut == "clip" or not is_spectral(self.scene)),
         )  # fmt: skip
         cl.enqueue_copy(self._renderer.device.queue, shown, target)
         return shown
@@ -177,27 +191,28 @@ class Picture:
         cl.enqueue_copy(self._renderer.device.queue, tallies, self._tallies)
         return tallies
 
+    def error_estimate(self) -> float:
+        """Root mean square error of `linear()` that the two halves of the samples let expect, in radiance; NaN below
+        two samples. Each half has twice the variance of the whole, so their difference has four times it."""
+        if self.samples < 2:
+            return math.nan
+        even, odd = (half[..., :3] for half in self._read_halves())
+        count = math.ceil(self.samples / 2), self.samples // 2
+        difference = even / count[0] - odd / count[1]
+        return float(np.sqrt(np.mean(difference.astype(float) ** 2)) / 2)
+
+    def _read_halves(self) -> list[NDArray[np.floating[Any]]]:
+        halves = []
+        for number, buffer in enumerate(self._halves):
+            sums = np.zeros((self.height, self.width, 4), self._renderer.variant.real)
+            if self.samples > number:
+                cl.enqueue_copy(self._renderer.device.queue, sums, buffer)
+            halves.append(sums)
+        return halves
+
     def _mean(self) -> NDArray[np.floating[Any]]:
-        sums = np.empty((self.height, self.width, 4), self._renderer.variant.real)
-        cl.enqueue_copy(self._renderer.device.queue, sums, self._image)
-        return sums / max(1, self.samples)
+        even, odd = self._read_halves()
+        return (even + odd) / max(1, self.samples)
 
     def _allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
         return self._renderer.pool.allocate(size)
-
-    def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401
-        flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
-        return cl.Buffer(self._renderer.device.context, flags, hostbuf=np.ascontiguousarray(array))
-
-
-def _shadow_volumes(
-    scene: Scene, stone: Stone, facets: NDArray[np.float64]
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Where each light's planes begin, and all of them."""
-    centre, rotation = placement(scene)
-    surfaces, vertices, edges = shown_surfaces(scene, centre), stone.vertices @ rotation.T, edges_of_facets(stone)
-    volumes = [
-        shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights
-    ]
-    starts = np.cumsum([0, *map(len, volumes)]).astype(np.int32)
-    return starts, np.vstack([*volumes, np.zeros((1, 4))])

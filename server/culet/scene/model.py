@@ -216,8 +216,20 @@ class StudioEnvironment(Model):
     )
 
 
+class ImageEnvironment(Model):
+    """A panorama of all directions: an uploaded picture, or one of the studio's own."""
+
+    kind: Literal["image"]
+    image: Annotated[str, Field(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = Field(
+        "light-box", description="light-box, ring-lights or aset, or the id of an uploaded .exr, .hdr or .png."
+    )
+    scale: Annotated[float, Field(ge=0, le=1e6)] = Field(1, description="Factor on its radiance.")
+    turn_degrees: Annotated[float, Field(ge=-360, le=360)] = Field(0, description="About the vertical.")
+
+
 Environment = Annotated[
-    StudioEnvironment
+    ImageEnvironment
+    | StudioEnvironment
     | DarkEnvironment
     | LightEnvironment
     | ConstantEnvironment
@@ -254,18 +266,31 @@ class Optics(Model):
     """How light is followed."""
 
     fresnel: Literal["exact", "schlick"] = "exact"
-    bands: Literal[3] = Field(3, description="Wavelength bands: 3 is one index for each channel.")
+    bands: Annotated[int, Field(ge=3, le=64)] = Field(
+        3, description="3: an index for each channel. More: that many sampled wavelengths for each pixel and sample."
+    )
+    polarised: bool = Field(
+        False, description="Carry polarisation along each path, with the phases of total reflection; else average it."
+    )
     cutoff: Annotated[float, Field(ge=1e-9, lt=1)] = Field(
         0.01, description="A chain whose weight falls below this ends; what it carried is counted as cut."
     )
     max_bounces: Annotated[int, Field(ge=1, le=65536)] = Field(
         256, description="Interior segments of a chain, at most."
     )
+    end: Literal["cut", "roulette", "sky"] = Field(
+        "cut",
+        description="Of a chain below the cut-off: dropped, continued by chance without bias, or replaced by the sky.",
+    )
     estimator: Literal["chain", "classic"] = "chain"
 
 
 class Sampling(Model):
-    """How often each pixel is sampled; the first sample is the pixel's centre."""
+    """How each pixel is sampled; the first sample is the pixel's centre."""
+
+    filter: Literal["box", "tent"] = Field(
+        "box", description="Reconstruction: box averages the pixel, tent reaches to its neighbours' centres."
+    )
 
     samples_per_pixel: Annotated[int, Field(ge=1, le=65536)] = 1
 
@@ -274,8 +299,13 @@ class Film(Model):
     """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
 
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
-    tone_map: Literal["srgb", "classic", "none"] = Field(
-        "srgb", description="srgb: IEC 61966-2-1; classic: (1.2 L)^1.2 as in the report; none: linear. All are clipped."
+    tone_map: Literal["srgb", "filmic", "classic", "none"] = Field(
+        "srgb",
+        description="srgb: IEC 61966-2-1; filmic: a curve on the luminance that keeps hues, then srgb; "
+        "classic: (1.2 L)^1.2 as in the report; none: linear. What is above 1 is clipped.",
+    )
+    gamut: Literal["desaturate", "clip"] = Field(
+        "desaturate", description="What becomes of spectral colours that no screen has: towards grey, or clipped."
     )
 
 

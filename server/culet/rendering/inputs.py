@@ -1,0 +1,98 @@
+"""What the kernels read of a scene, on the device."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+from numpy.typing import NDArray
+
+from culet.errors import SceneError
+from culet.geometry.polygons import edges_of_facets
+from culet.geometry.stone import Stone
+from culet.rendering.chains import chain_table, is_spectral
+from culet.rendering.device import Device, Real
+from culet.rendering.features import Features, Geometry
+from culet.rendering.parameters import parameters, shown_surfaces
+from culet.rendering.projection import placement, world_planes
+from culet.rendering.shadows import shadow_planes
+from culet.rendering.tree import tree_of
+from culet.scene.model import ImageEnvironment, Scene
+
+Panorama = NDArray[np.float32]
+"""(height, width, 3) linear radiance: the zenith above, -z at the left edge, +x a quarter of the way to the right."""
+
+
+class Inputs:
+    """Buffers of one scene, in the order of the kernels' arguments; all but the chains are the same for every sample."""
+
+    def __init__(
+        self,
+        device: Device,
+        scene: Scene,
+        stone: Stone | None,
+        width: int,
+        height: int,
+        panorama: Panorama | None,
+        features: Features,
+        real: Real,
+    ) -> None:
+        self._device, self._scene, self._real = device, scene, real
+        self._common = features.dispersion == 0
+        self._changes = stone is not None and (is_spectral(scene) or scene.optics.end == "roulette")
+        self._sample = -1
+        shadow_start, shadows, facets = np.zeros(1, np.int32), np.zeros((1, 4)), np.zeros((1, 4))
+        self._struct = parameters(scene, stone, width, height, real)
+        mesh: list[Any] = [None, None, None]
+        if stone is not None and features.geometry == Geometry.HULL:
+            facets = world_planes(scene, stone)
+            if features.lights != 0:
+                shadow_start, shadows = _shadow_volumes(scene, stone, facets)
+                self._struct["shadow_start"][: len(shadow_start)] = shadow_start
+        elif stone is not None:
+            tree = tree_of(stone)
+            mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
+        self._has_stone = stone is not None
+        self._panorama = None
+        if isinstance(scene.environment, ImageEnvironment):
+            self._panorama = self._upload(self._checked(panorama))
+        self._fixed = [self._upload(facets.astype(real)), self._upload(shadows.astype(real)), *mesh]
+
+    def of_sample(self, sample: int) -> list[Any]:
+        """The kernels' arguments for that sample."""
+        if self._sample < 0 or (self._changes and sample != self._sample):
+            chains = self._chains(sample)
+            self._struct["sample"], self._struct["chains"] = sample, len(chains)
+            self._uploaded = self._upload(self._struct), self._upload(chains)
+            self._sample = sample
+        struct, chains = self._uploaded
+        return [struct, *self._fixed, chains, self._panorama]
+
+    def _chains(self, sample: int) -> NDArray[np.void]:
+        scene = self._scene if self._has_stone else Scene()
+        return chain_table(scene, sample, self._real, common=self._common)
+
+    def _checked(self, panorama: Panorama | None) -> Panorama:
+        if panorama is None or panorama.ndim != 3 or panorama.shape[2] != 3:
+            shape = None if panorama is None else panorama.shape
+            raise SceneError(f"environment.image: expected a panorama of (height, width, 3), got {shape}", "environment.image")
+        self._struct["panorama_height"], self._struct["panorama_width"] = panorama.shape[:2]
+        return np.ascontiguousarray(panorama, np.float32)
+
+    def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401 - pyopencl has no types
+        flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
+        return cl.Buffer(self._device.context, flags, hostbuf=np.ascontiguousarray(array))
+
+
+def _shadow_volumes(
+    scene: Scene, stone: Stone, facets: NDArray[np.float64]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Where each light's planes begin, and all of them."""
+    centre, rotation = placement(scene)
+    surfaces, vertices, edges = shown_surfaces(scene, centre), stone.vertices @ rotation.T, edges_of_facets(stone)
+    volumes = [
+        shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights
+    ]
+    starts = np.cumsum([0, *map(len, volumes)]).astype(np.int32)
+    return starts, np.vstack([*volumes, np.zeros((1, 4))])
