@@ -1,7 +1,8 @@
 """One kernel text in eight shapes: packets of 1, 4, 8 and 16 lanes, in single and in double precision.
 
 They agree to rounding but where rounding is decisive: a ray meets an edge of the stone or of the checker and takes the
-other side, or leaves the stone at the critical angle, where the reflectance's slope is infinite. Those pixels are counted, and bounded by number.
+other side, or leaves the stone at the critical angle, where the slope of the reflectance is infinite. Those pixels are
+counted, and bounded by number.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def test_every_width_of_packet_gives_the_same_picture_in_double_precision(
 def test_every_width_of_packet_gives_the_same_picture_in_single_precision(
     renderer_of: RendererOf, case: Case, lanes: int
 ) -> None:
-    """The compiler may round one width otherwise than another: an edge was decided differently in 2 pixels of 14,400."""
+    """The compiler may round one width otherwise than another: it decided 2 pixels of 14,400 differently."""
     wide, narrow = (radiance(general(renderer_of(n, np.float32), case)) for n in (16, lanes))
     difference = abs(narrow - wide).max(axis=-1)
     assert (difference > 1e-6).sum() <= 6
