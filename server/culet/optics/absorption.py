@@ -24,8 +24,7 @@ carat. On shorter paths they are a little too weak or strong, on longer ones too
 LEAST_TRANSMITTANCE = 1e-3
 """What a channel keeps after that path, at least: a colour outside the gamut would need an infinite coefficient."""
 
-_MATCHING_BANDS = 310
-"""1 nm each."""
+_BANDS_OF_1_NM = 310
 
 
 @dataclass(frozen=True)
@@ -56,6 +55,11 @@ class AbsorptionSpectrum:
         given = within(nanometres, SPAN_NANOMETRES, "absorption")
         return np.asarray(sum((band.per_mm(given) for band in self.bands), start=np.zeros_like(given)))
 
+    def colour_after(self, path_mm: float) -> NDArray[np.float64]:
+        """(3,) linear sRGB of white light after a path, without reflection."""
+        every = bands(_BANDS_OF_1_NM)
+        return np.asarray(np.exp(-path_mm * self.per_mm(every.wavelength)) @ every.weights)
+
     def rgb_per_mm(self) -> tuple[float, float, float]:
         """Coefficients of the three channels, 1/mm, that leave the spectrum's colour after MATCHED_PATH_MM."""
         red, green, blue = _matched(self)
@@ -64,7 +68,6 @@ class AbsorptionSpectrum:
 
 @cache
 def _matched(spectrum: AbsorptionSpectrum) -> tuple[float, ...]:
-    """-ln of the spectral transmittance seen through each channel, over the path; none is negative."""
-    every = bands(_MATCHING_BANDS)
-    seen = np.exp(-MATCHED_PATH_MM * spectrum.per_mm(every.wavelength)) @ every.weights
-    return tuple((-np.log(np.clip(seen, LEAST_TRANSMITTANCE, 1)) / MATCHED_PATH_MM).tolist())
+    """-ln of the transmittance that each channel sees, over the path; none is negative."""
+    seen = np.clip(spectrum.colour_after(MATCHED_PATH_MM), LEAST_TRANSMITTANCE, 1)
+    return tuple((-np.log(seen) / MATCHED_PATH_MM).tolist())

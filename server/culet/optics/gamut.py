@@ -37,7 +37,7 @@ def desaturate(rgb: NDArray[np.float64], ceiling: float = np.inf) -> NDArray[np.
         from_above = np.where(highest > ceiling, (ceiling - luminance) / (highest - luminance), 1)
     saturation = np.minimum(from_below, from_above)
     moved = luminance + saturation * (rgb - luminance)
-    return np.clip(moved, 0, ceiling)  # of rounding, 1e-17
+    return np.asarray(np.clip(moved, 0, ceiling))  # rounding leaves 1e-17 below
 
 
 GAMUT_METHODS: Mapping[str, Callable[[NDArray[np.float64]], NDArray[np.float64]]] = MappingProxyType(
