@@ -24,6 +24,9 @@ WEB = REPOSITORY / "client" / "web"
 SMALL = {"width": 384, "height": 216}
 """Pixels of most pages here: enough to see every change, finished in a fraction of a second."""
 
+WITH_PANEL = {"width": 640, "height": 240}
+"""Pixels of the smallest page on which the panel is open."""
+
 ARGUMENTS = (
     "--no-sandbox",  # which containers do not allow it to set up
     "--disable-gpu",

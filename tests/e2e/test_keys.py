@@ -12,16 +12,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from e2e.conftest import ViewOf
+from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
 from e2e.view import View, difference
 
 STEP = 0.5
 CTRL, META, ALT = 2, 4, 1
 """Bits of the DevTools protocol's Input.dispatchKeyEvent."""
-
-WITH_PANEL = {"width": 800, "height": 640}
-"""Pixels of a page on which the panel is open."""
 
 Vector = NDArray[np.float64]
 Scene = dict[str, Any]

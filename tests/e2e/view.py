@@ -7,6 +7,7 @@ import io
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, cast
 from urllib.parse import parse_qs, urlsplit
 
@@ -126,6 +127,12 @@ class View:
         keyboard.send("Input.dispatchKeyEvent", {"type": "keyUp", **stroke})
         keyboard.detach()
         self.settle_messages()
+
+    def open_file(self, button: str, file: Path) -> None:
+        """Choose a file by one of the panel's buttons."""
+        with self.page.expect_file_chooser() as chooser:
+            self.page.get_by_role("button", name=button).click()
+        chooser.value.set_files(file)
 
     def _logged(self, message: ConsoleMessage) -> None:
         if message.type in ("error", "warning"):

@@ -108,3 +108,14 @@ def test_a_sliver_belongs_to_the_facet_around_it_whichever_way_it_points() -> No
     corners = np.array([(0, 0, 0), (1, 0, 0), (0.5, 1e-9, 0), (0.5, 1, 0), (0.5, -1, 0)])
     triangles = np.array([(0, 1, 3), (1, 0, 2), (0, 4, 2), (4, 1, 2)], np.int64)
     assert facets_of(corners, triangles, FLATNESS).tolist() == [0, 0, 0, 0]
+
+
+def test_the_planes_of_merged_facets_hold_every_vertex() -> None:
+    """A globe of 1600 quads in single precision: 5e-8 of noise tilts each plane, and climbing finds what it cuts."""
+    globe = trimesh.creation.uv_sphere(count=[40, 40])
+    corners = np.array(globe.vertices).astype(np.float32).astype(np.float64)
+    form = decided(corners, np.array(globe.faces, np.int64))
+    assert isinstance(form, Polyhedron)
+    assert len(form.planes) < len(form.triangles)
+    highest = (corners @ form.planes[:, :3].T).max(axis=0)
+    assert abs(highest - form.planes[:, 3]).max() < 1e-14  # measured 2e-16

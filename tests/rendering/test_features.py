@@ -91,7 +91,7 @@ def test_a_feature_that_is_off_is_not_in_the_program(narrow: Renderer, size_of_g
 
 
 def test_without_dispersion_a_third_of_the_segments_is_followed(narrow: Renderer) -> None:
-    """This feature saves work, not code: one chain carries three channels, and its arithmetic is written out for each."""
+    """This feature saves work, not code: one chain carries three channels, and its arithmetic is there for each."""
     feature, kind, scene = DECIDED["no dispersion"]
     general = take(narrow, Scene.read(scene), features=Features())
     decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))

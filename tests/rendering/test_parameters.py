@@ -46,9 +46,7 @@ def test_the_struct_is_laid_out_as_the_kernels_have_it(device: Device, real: typ
     assert dict(zip(names, sizes, strict=True)) == {name: host.fields[name][0].itemsize for name in names}
     assert numbers(device, ["(int)sizeof(p)"], real) == [host.itemsize]
     ends = [place + size for place, size in zip(places, sizes, strict=True)]
-    assert (
-        max(np.subtract([*places[1:], host.itemsize], ends)) < 8
-    )  # gaps are padding, too small for a forgotten double
+    assert max(np.subtract([*places[1:], host.itemsize], ends)) < 8  # padding: no forgotten double
 
 
 def test_the_limits_are_the_kernels(device: Device) -> None:

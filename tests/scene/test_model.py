@@ -56,7 +56,7 @@ def test_a_scene_that_says_everything_survives_json() -> None:
 
 def test_a_scene_cannot_be_changed() -> None:
     with pytest.raises(ValueError, match="frozen"):
-        Scene().camera.fov_degrees = 3
+        setattr(Scene().camera, "fov_degrees", 3)  # noqa: B010 - a plain assignment is what mypy would refuse
 
 
 def test_an_orientation_is_normalised_once() -> None:
@@ -65,6 +65,7 @@ def test_an_orientation_is_normalised_once() -> None:
     assert Scene.read({"stones": [{"orientation": q}]}).stones[0].orientation == q
 
 
+LAMP = {"half_angle_degrees": 5, "radiance": [1, 1, 1]}
 BAD: dict[str, tuple[Any, str | None, str]] = {
     "unknown key": ({"colour": 1}, "colour", "not permitted; got 1"),
     "unknown nested key": ({"camera": {"fow_degrees": 3}}, "camera.fow_degrees", "not permitted"),
@@ -85,7 +86,8 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "index below 1": ({"stones": [{"material": {"ior": [0.9, 1, 1]}}]}, "stones.0.material.ior.0", "1; got 0.9"),
     "index above 10": ({"stones": [{"material": {"ior": [1, 1, 11]}}]}, "stones.0.material.ior.2", "10; got 11"),
     "two materials": (
-        {"stones": [{"material": {"ior": [2, 2, 2], "sellmeier": [[1, 0.1]]}}]}, "stones.0.material.ior", "not permitted",
+        {"stones": [{"material": {"ior": [2, 2, 2], "sellmeier": [[1, 0.1]]}}]},
+        "stones.0.material.ior", "not permitted",
     ),
     "empty formula": ({"stones": [{"material": {"sellmeier": []}}]}, "stones.0.material.sellmeier", "at least 1"),
     "unknown cut": ({"stones": [{"cut": "rose"}]}, "stones.0.cut", "'brilliant'; got 'rose'"),
@@ -105,7 +107,7 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "sky without a kind": ({"environment": {"radiance": [1, 1, 1]}}, "environment", "'kind'"),
     "sky's colour": ({"environment": {"kind": "gradient", "top": [1, -2, 1]}}, "environment.top.1", "0; got -2"),
     "lamp nowhere": (
-        {"environment": {"kind": "studio", "lamps": [{"direction": [0, 0, 0], "half_angle_degrees": 5, "radiance": [1, 1, 1]}]}},
+        {"environment": {"kind": "studio", "lamps": [{"direction": [0, 0, 0], **LAMP}]}},
         "environment.lamps.0.direction", "points nowhere",
     ),
     "cut-off 0": ({"optics": {"cutoff": 0}}, "optics.cutoff", "0.000000001; got 0"),
@@ -120,7 +122,7 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "negative gravity": ({"simulation": {"gravity": -1}}, "simulation.gravity", "0; got -1"),
     "massless": ({"simulation": {"mass": 0}}, "simulation.mass", "0.000000001; got 0"),
     "no time": ({"simulation": {"time_step": 0}}, "simulation.time_step", "0.0001; got 0"),
-    "seed of no integer": ({"simulation": {"seed": 2**53}}, "simulation.seed", "9007199254740991; got 9007199254740992"),
+    "seed of no integer": ({"simulation": {"seed": 2**53}}, "simulation.seed", "got 9007199254740992"),
     "a number too large to be one": ({"camera": {"fov_degrees": 10**400}}, "camera.fov_degrees", "number"),
 }  # fmt: skip
 
@@ -196,7 +198,6 @@ def test_a_formula_without_an_index_is_refused_when_its_index_is_needed() -> Non
 def test_moving_the_stone_moves_nothing_else() -> None:
     scene = Scene.read(FULL)
     moved = scene.moved((1, 2, 3), (0, 1, 0, 0))
-    assert moved.stones[0].position == (1, 2, 3)
-    assert moved.stones[0].orientation == (0, 1, 0, 0)
+    assert [*moved.stones[0].position, *moved.stones[0].orientation] == [1, 2, 3, 0, 1, 0, 0]
     assert moved.moved(scene.stones[0].position, scene.stones[0].orientation) == scene
     assert Scene(stones=()).moved((1, 2, 3), (1, 0, 0, 0)) == Scene(stones=())

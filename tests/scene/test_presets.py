@@ -18,7 +18,7 @@ def test_every_preset_shows_a_stone(renderer: Renderer, name: str) -> None:
     pixels = radiance(picture)
     assert np.isfinite(pixels).all()
     assert pixels.min() >= 0
-    assert (abs(pixels - radiance(empty)).max(axis=-1) > 0.01).mean() > 0.005  # measured 0.0087 to 0.31
+    assert (abs(pixels - radiance(empty)).max(axis=-1) > 0.01).mean() > 0.005  # measured 0.020, far away, to 0.24
     assert picture.segments() > 0
 
 
@@ -38,25 +38,25 @@ def test_the_default_preset_is_the_default_scene() -> None:
 
 
 def test_the_default_stone_fills_half_of_the_pictures_height(renderer: Renderer) -> None:
-    """Its outline against a uniform sky: the rows that it changes, of 360."""
+    """Its outline, tinted against a uniform sky: the rows that it changes, of 360."""
     data = {**BARE, "environment": {"kind": "constant"}, "stones": [{"absorption": [1, 1, 1]}]}
     picture = take(renderer, Scene.read(data), size=(640, 360))
     stone = (radiance(picture) < 0.999).any(axis=-1)
-    rows, columns = np.flatnonzero(stone.any(axis=1)), np.flatnonzero(stone.any(axis=0))
+    rows, columns = (np.unique(places) for places in np.nonzero(stone))
     assert 0 < rows[0] < rows[-1] < 359
     assert 0 < columns[0] < columns[-1] < 639
-    assert 0.45 < len(rows) / 360 < 0.55
+    assert 0.45 < len(rows) / 360 < 0.55  # measured 0.503
 
 
 def test_the_classic_scene_has_the_reports_constants() -> None:
     """Camera, lights, indices, bounces, absorption and the numbers of its physics, as it publishes them."""
     scene = preset("classic")
-    assert (scene.camera.position, scene.camera.fov_degrees) == ((0, 2, 13), 45)
-    assert scene.camera.target[1] < 2  # slightly down
+    assert [*scene.camera.position, scene.camera.fov_degrees] == [0, 2, 13, 45]
+    assert scene.camera.target[1] < scene.camera.position[1]  # slightly down
     assert [light.position for light in scene.lights] == [(-4, 6, 4), (4, 6, 4)]
     assert [light.colour for light in scene.lights] == [(1, 0.2, 0.2), (0.2, 0.5, 1)]
-    assert scene.stones[0].position == (0, 4, 0)
-    assert scene.stones[0].absorption == (0.02, 0.02, 0.02)
+    assert list(scene.stones[0].position) == [0, 4, 0]
+    assert list(scene.stones[0].absorption) == [0.02] * 3
     assert (scene.optics.estimator, scene.optics.fresnel, scene.optics.max_bounces) == ("classic", "schlick", 12)
     assert scene.film.tone_map == "classic"
     physics = scene.simulation

@@ -15,7 +15,7 @@ from culet.engine.snapshot import LARGEST_FRACTION, Snapshot
 from culet.errors import InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.scene import Camera, Scene
-from culet.simulation import FixedStepClock, Simulation
+from culet.simulation import FixedStepClock, Simulation, surfaces_of
 from culet_protocol.engine import SessionState
 
 
@@ -90,6 +90,8 @@ class Session:
     def change(self, scene: Scene, *, home: Camera | None = None) -> None:
         """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was."""
         self._authored = scene.model_copy(update={"camera": home or self.home})
+        if self._simulation is not None:
+            self._simulation.surround(surfaces_of(scene))
         self._camera = scene.camera
         self._show()
 
@@ -195,4 +197,6 @@ class Session:
         self._simulation: Simulation | None = None
         if stone is not None and scene.stones:
             start = scene.stones[0]
-            self._simulation = Simulation(scene.simulation, stone, start.position, start.orientation)
+            self._simulation = Simulation(
+                scene.simulation, stone, start.position, start.orientation, surfaces_of(scene)
+            )

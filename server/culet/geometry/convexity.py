@@ -102,9 +102,7 @@ def _from_hull(vertices: Points, hull: ConvexHull, tolerance: float, dent: float
     used, compact = np.unique(triangles, return_inverse=True)
     triangles, points = compact.reshape(-1, 3), vertices[used]
     planes = planes_of(vertices, simplices, facet, int(facet.max()) + 1)
-    # The hull vouches for the planes of its own triangles; those of merged ones are moved out to the farthest vertex.
-    merged = np.bincount(facet) > 1
-    planes[merged, 3] = _support(planes[merged, :3], vertices[hull.vertices])
+    planes[:, 3] = _support(planes[:, :3], vertices, simplices, facet)
     own = np.full(len(planes), np.inf)
     np.minimum.at(own, owner, np.einsum("tkj,tj->tk", points[triangles], planes[owner, :3]).min(axis=1))
     gap = float((planes[:, 3] - own).max())
@@ -113,13 +111,34 @@ def _from_hull(vertices: Points, hull: ConvexHull, tolerance: float, dent: float
     return Polyhedron(points, triangles.astype(np.int32), owner, planes, dent)
 
 
-def _support(normals: Points, points: Points) -> NDArray[np.float64]:
-    """(F,) the largest n.x over all points."""
-    step = max(1, _CHUNK // len(points))
-    farthest = np.empty(len(normals))
-    for k in range(0, len(normals), step):
-        farthest[k : k + step] = (normals[k : k + step] @ points.T).max(axis=1)
-    return farthest
+def _support(normals: Points, vertices: Points, simplices: Triangles, facet: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(F,) the largest n.x over all vertices of a hull, for the normals of its own facets.
+
+    From the facet's highest vertex uphill along edges: on a convex surface the first vertex without a higher neighbour
+    is the highest of all. All facets climb together, one edge a round.
+    """
+    corner, owner = simplices.ravel(), np.repeat(facet, 3)
+    height = np.einsum("ij,ij->i", vertices[corner], normals[owner])
+    order = np.lexsort((height, owner))
+    last = np.searchsorted(owner[order], np.arange(len(normals)), side="right") - 1
+    at = corner[order[last]]
+    top: NDArray[np.float64] = height[order[last]]
+    edges = np.unique(np.concatenate([simplices[:, [0, 1]], simplices[:, [1, 2]], simplices[:, [2, 0]]]), axis=0)
+    first = np.searchsorted(edges[:, 0], np.arange(len(vertices) + 1))
+    climbing = np.arange(len(normals))
+    while len(climbing):
+        degree = first[at[climbing] + 1] - first[at[climbing]]
+        begin = np.cumsum(degree) - degree
+        step = np.arange(int(degree.sum())) - np.repeat(begin - first[at[climbing]], degree)
+        neighbour = edges[step, 1]
+        height = np.einsum("ij,ij->i", vertices[neighbour], normals[np.repeat(climbing, degree)])
+        best = np.maximum.reduceat(height, begin)
+        up = best > top[climbing]
+        chosen = np.flatnonzero((height == np.repeat(best, degree)) & np.repeat(up, degree))
+        at[np.repeat(climbing, degree)[chosen]] = neighbour[chosen]
+        top[climbing] = np.maximum(top[climbing], best)
+        climbing = climbing[up]
+    return top
 
 
 def _polygons(triangles: Triangles, facet: NDArray[np.int64]) -> list[list[int]] | None:

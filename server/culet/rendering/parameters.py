@@ -19,16 +19,11 @@ from culet.scene.model import (
     Scene,
     StudioEnvironment,
 )
+from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
 
 MAX_LAMPS = 8
 MAX_LIGHTS = 8
 MAX_SURFACES = 4
-FLOOR_Y = -1.0
-"""Height of the floor, R."""
-WALL_DISTANCE = 8.0
-"""Of the walls from the world's origin, R."""
-WALL_NORMALS = ((0, 0, 1), (np.sqrt(0.75), 0, 0.5), (-np.sqrt(0.75), 0, 0.5))
-"""Inward: a hexagon's three far sides."""
 
 
 def layout(real: Real) -> np.dtype[np.void]:

@@ -312,7 +312,11 @@ class Film(Model):
 class Simulation(Model):
     """How the stone moves."""
 
-    model: Literal["classic"] = Field("classic", description="classic: the report's sphere against the floor.")
+    model: Literal["rigid", "classic"] = Field(
+        "classic",
+        description="rigid: the stone's own corners against floor and walls; classic: the report's sphere against "
+        "the floor.",
+    )
     inertia: Literal["polyhedron", "cone", "cone_apex"] = Field(
         "polyhedron",
         description="polyhedron: integral over the mesh; cone: R=1, h=2 about its centre of mass; "
@@ -323,6 +327,22 @@ class Simulation(Model):
     spin: Vector = Field((0.5, 3, 0), description="Initial angular velocity, rad/s.")
     velocity: Vector = Field((0, 0, 0), description="Initial velocity, R/s.")
     restitution: Annotated[float, Field(ge=0, le=1)] = 0.6
+    friction: Annotated[float, Field(ge=0, le=1e3)] = Field(0.3, description="Coulomb's coefficient (rigid).")
+    rolling_resistance: Annotated[float, Field(ge=0, le=1)] = Field(
+        0.01, description="Lever arm of the floor's resistance to rolling, R (rigid)."
+    )
+    integrator: Literal["rkmk4", "rk4", "midpoint", "splitting", "euler"] = Field(
+        "rkmk4",
+        description="How a free rotation is followed (rigid): Munthe-Kaas or classical Runge-Kutta, both of fourth "
+        "order; Lie midpoint or splitting, of second; the report's Euler, of first.",
+    )
+    bounce_speed: Annotated[float, Field(ge=1e-6, le=1)] = Field(
+        0.02, description="A slower impact does not bounce, in sqrt(g R) (rigid)."
+    )
+    contact_step: Annotated[float, Field(ge=1e-5, le=0.1)] = Field(
+        0.02, description="Longest step in contact, in sqrt(R / g) (rigid)."
+    )
+    sleeping: bool = Field(True, description="Whether a stone at rest is left out of the simulation (rigid).")
     velocity_threshold: Annotated[float, Field(ge=0, le=1e6)] = Field(
         0.1, description="A slower impact stops, R/s (classic)."
     )

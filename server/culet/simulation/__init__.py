@@ -4,5 +4,6 @@ from culet.simulation.clock import FixedStepClock
 from culet.simulation.paths import Path, record, write
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
+from culet.simulation.surfaces import Surface, surfaces_of
 
-__all__ = ["FixedStepClock", "Path", "RigidState", "Simulation", "record", "write"]
+__all__ = ["FixedStepClock", "Path", "RigidState", "Simulation", "Surface", "record", "surfaces_of", "write"]

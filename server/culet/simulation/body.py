@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -12,9 +14,12 @@ from culet.errors import InputError
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.floor import sphere_gap
+from culet.simulation.hull import Hull
 from culet.simulation.inertia import inertia_tensor
+from culet.simulation.principal_axes import PrincipalAxis, principal_axes
 from culet.simulation.rotation import rotate, rotate_back
 from culet.simulation.state import Quaternion, RigidState, Triple
+from culet.simulation.surfaces import FLOOR, Surface
 
 Rows = tuple[Triple, Triple, Triple]
 
@@ -29,14 +34,31 @@ class RigidBody:
     """About the centre of mass in the stone's axes, mass R^2."""
     inverse_inertia: Rows
     """1 / (mass R^2)."""
+    surfaces: tuple[Surface, ...] = (FLOOR,)
+    """What stops it."""
 
     @classmethod
-    def of(cls, settings: SimulationSettings, stone: Stone) -> Self:
-        """The body of that stone; InputError if its inertia tensor is none."""
+    def of(cls, settings: SimulationSettings, stone: Stone, surfaces: tuple[Surface, ...] = (FLOOR,)) -> Self:
+        """The body of that stone between these surfaces; InputError if its inertia tensor is none."""
         per_mass = _rows(inertia_tensor(settings.inertia, stone))
         inverse = _inverse(per_mass)
         mass = settings.mass
-        return cls(stone, mass, _scaled(per_mass, mass), _scaled(inverse, 1 / mass))
+        return cls(stone, mass, _scaled(per_mass, mass), _scaled(inverse, 1 / mass), surfaces)
+
+    @cached_property
+    def hull(self) -> Hull:
+        """The vertices that can touch a plane."""
+        return Hull.of(self.stone.vertices)
+
+    @cached_property
+    def principal_axes(self) -> tuple[PrincipalAxis, PrincipalAxis, PrincipalAxis]:
+        """Directions in the stone's axes with their moments, the smallest first."""
+        return principal_axes(self.inertia)
+
+    def fastest_turn(self, angular_momentum: Triple) -> float:
+        """Upper bound of the angular speed, rad/s, however the stone is turned."""
+        x, y, z = angular_momentum
+        return math.sqrt(x * x + y * y + z * z) / self.principal_axes[0].moment
 
     def velocity(self, state: RigidState) -> Triple:
         """Of the centre of mass, R/s."""
@@ -44,9 +66,12 @@ class RigidBody:
         return (x / self.mass, y / self.mass, z / self.mass)
 
     def angular_velocity(self, state: RigidState) -> Triple:
-        """In world axes, rad/s: turned into the stone's axes, through its inverse tensor, and back."""
-        q = state.orientation
-        return rotate(q, _apply(self.inverse_inertia, rotate_back(q, state.angular_momentum)))
+        """In world axes, rad/s."""
+        return self.angular_velocity_at(state.orientation, state.angular_momentum)
+
+    def angular_velocity_at(self, orientation: Quaternion, angular_momentum: Triple) -> Triple:
+        """In world axes, rad/s: L turned into the stone's axes, through its inverse tensor, and back."""
+        return rotate(orientation, _apply(self.inverse_inertia, rotate_back(orientation, angular_momentum)))
 
     def angular_momentum(self, orientation: Quaternion, omega: Triple) -> Triple:
         """Of that angular velocity (world axes, rad/s), in world axes, mass R^2/s."""

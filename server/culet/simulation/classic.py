@@ -30,9 +30,9 @@ import numpy as np
 
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
-from culet.simulation.floor import BOUNDING_RADIUS, FLOOR
-from culet.simulation.rotation import euler_step
-from culet.simulation.state import RigidState, Triple
+from culet.simulation.floor import BOUNDING_RADIUS, FLOOR, sphere_gap
+from culet.simulation.rotation import euler_step, rotate_back
+from culet.simulation.state import RigidState, Touch, Triple
 
 SLEEP_SPEED = 1e-4
 """R/s. A slower slide ends; with the report's damping it would have gone another 3e-5 R, some hundredth of a pixel."""
@@ -69,6 +69,15 @@ def step(state: RigidState, settings: SimulationSettings, body: RigidBody) -> Ri
     if asleep:
         momentum = angular = (0.0, 0.0, 0.0)
     return RigidState(state.step + 1, state.time + h, (x, y, z), orientation, momentum, angular, impacts, asleep)
+
+
+def touch(state: RigidState, body: RigidBody) -> Touch:
+    """How the bounding sphere meets the floor; the clearance is the real stone's, which sinks in or floats."""
+    gap = sphere_gap(state.position)
+    # the world's y of a vertex v is (R v).y = v.(R^T e_y): one turned axis instead of all vertices turned
+    up = rotate_back(state.orientation, (0.0, 1.0, 0.0))
+    lowest = state.position[1] + float((body.stone.vertices @ np.array(up)).min())
+    return Touch(int(gap <= 0), max(-gap, 0.0), lowest - FLOOR)
 
 
 def random_torque(seed: int, impacts: int, largest: float) -> tuple[float, float]:

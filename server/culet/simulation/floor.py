@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from culet.scene.room import FLOOR_Y
 from culet.simulation.state import Triple
 
-FLOOR = -1.0
-"""Height y of the floor, R; fixed by the scene."""
+FLOOR = FLOOR_Y
 BOUNDING_RADIUS = 1.0
 """R: a stone's farthest vertex is at distance 1 from its centre."""
 

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import NamedTuple
 
 from culet.scene.model import Simulation as SimulationSettings
-from culet.simulation import classic
+from culet.simulation import classic, rigid
 from culet.simulation.body import RigidBody
-from culet.simulation.state import RigidState
+from culet.simulation.state import RigidState, Touch
 
 
-class MotionModel(Protocol):
-    """A pure function from a state to the state one fixed step later; all that it remembers is in the state."""
+class MotionModel(NamedTuple):
+    """Pure functions: all that a model remembers is in the state."""
 
-    def __call__(self, state: RigidState, settings: SimulationSettings, body: RigidBody) -> RigidState: ...
+    step: Callable[[RigidState, SimulationSettings, RigidBody], RigidState]
+    """The state one fixed step later."""
+    touch: Callable[[RigidState, RigidBody], Touch]
+    """How the state meets the surfaces."""
 
 
-MODELS: dict[str, MotionModel] = {"classic": classic.step}
+MODELS: dict[str, MotionModel] = {
+    "rigid": MotionModel(rigid.step, rigid.touch),
+    "classic": MotionModel(classic.step, classic.touch),
+}

@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from culet.errors import InputError, SceneError, TooLargeError
 from culet.geometry.stone import Stone
 from culet.scene.model import Scene
-from culet.simulation.floor import FLOOR, sphere_gap
-from culet.simulation.rotation import rotate_back
 from culet.simulation.simulation import Simulation
+from culet.simulation.surfaces import surfaces_of
 
 MAX_STEPS = 500_000
 """Four hours at 30 steps a second. Each recorded step takes about 1 kB while it is turned into text."""
@@ -49,15 +48,15 @@ class Path:
     angular_velocity: Floats
     """(N, 3), world axes, rad/s"""
     energy: Floats
-    """(N,), mass R^2/s^2; 0 at rest on the floor"""
+    """(N,), mass R^2/s^2; its potential part is 0 where the centre of mass is 1 R above the floor"""
     asleep: NDArray[np.bool_]
     """(N,)"""
     impacts: NDArray[np.int64]
     """(N,), hard impacts so far"""
     contacts: NDArray[np.int64]
-    """(N,), points that touch the floor: of the bounding sphere, at most 1"""
+    """(N,), vertices that touch a surface; classic: 1 where the bounding sphere touches the floor"""
     penetration: Floats
-    """(N,), how far the bounding sphere reaches below the floor, R"""
+    """(N,), how far the deepest vertex is inside a surface, R; classic: how far the bounding sphere is"""
     clearance: Floats
     """(N,), height of the stone's lowest vertex above the floor, R; negative: it is inside the floor"""
 
@@ -85,7 +84,7 @@ def record(scene: Scene, stone: Stone, seconds: float, progress: Progress | None
         raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
     count = _whole_steps(seconds, scene.simulation.time_step)
     placed = scene.stones[0]
-    simulation = Simulation(scene.simulation, stone, placed.position, placed.orientation)
+    simulation = Simulation(scene.simulation, stone, placed.position, placed.orientation, surfaces_of(scene))
     path = _empty_path(scene.simulation.model_dump(mode="json"), count + 1)
     for index in range(count + 1):
         if index:
@@ -131,9 +130,7 @@ def _empty_path(settings: dict[str, Any], length: int) -> Path:
 
 def _record_state(path: Path, index: int, simulation: Simulation) -> None:
     state, body = simulation.state, simulation.body
-    gap = sphere_gap(state.position)
-    # the world's y of a vertex v is (R v).y = v.(R^T e_y): one turned axis instead of all vertices turned
-    up = rotate_back(state.orientation, (0.0, 1.0, 0.0))
+    touch = simulation.touch()
     path.step[index] = state.step
     path.time[index] = state.time
     path.position[index] = state.position
@@ -143,9 +140,9 @@ def _record_state(path: Path, index: int, simulation: Simulation) -> None:
     path.energy[index] = simulation.energy()
     path.asleep[index] = state.asleep
     path.impacts[index] = state.impacts
-    path.contacts[index] = gap <= 0
-    path.penetration[index] = max(-gap, 0.0)
-    path.clearance[index] = state.position[1] + float((body.stone.vertices @ np.array(up)).min()) - FLOOR
+    path.contacts[index] = touch.contacts
+    path.penetration[index] = touch.penetration
+    path.clearance[index] = touch.clearance
 
 
 def write(path: Path, file: pathlib.Path) -> None:

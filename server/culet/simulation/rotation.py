@@ -28,6 +28,18 @@ def rotate_back(q: Quaternion, v: Triple) -> Triple:
     return rotate((w, -x, -y, -z), v)
 
 
+def product(p: Quaternion, q: Quaternion) -> Quaternion:
+    """p q: the rotation q, then p."""
+    a, b, c, d = p
+    w, x, y, z = q
+    return (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+
+
 def normalised(q: Quaternion) -> Quaternion:
     """q divided by its norm, which must not be 0."""
     w, x, y, z = q

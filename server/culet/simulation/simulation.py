@@ -10,10 +10,16 @@ from culet.errors import InputError
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
+from culet.simulation.impulses import impulse_at
 from culet.simulation.models import MODELS
+from culet.simulation.motion import Motion, speed
 from culet.simulation.rotation import normalised, slerp
 from culet.simulation.snapshot import read_snapshot, write_snapshot
-from culet.simulation.state import Quaternion, RigidState, Triple
+from culet.simulation.state import Quaternion, RigidState, Touch, Triple
+from culet.simulation.surfaces import FLOOR, Surface
+
+MAX_SPEED = 1e4
+"""R/s. Of any point of a stone after a push; the scene's own start may be faster."""
 
 
 class Simulation:
@@ -23,15 +29,23 @@ class Simulation:
     """
 
     def __init__(
-        self, settings: SimulationSettings, stone: Stone, start_position: Triple, start_orientation: Quaternion
+        self,
+        settings: SimulationSettings,
+        stone: Stone,
+        start_position: Triple,
+        start_orientation: Quaternion,
+        surfaces: tuple[Surface, ...] = (FLOOR,),
     ) -> None:
-        """At the start, with the settings' `velocity` and `spin`; InputError if the start is no pose."""
+        """At the start, with the settings' `velocity` and `spin`; InputError if the start is no pose.
+
+        `surfaces` stop the stone (`surfaces_of` a scene); the model `classic` knows the floor alone.
+        """
         if not all(math.isfinite(c) for c in (*start_position, *start_orientation)):
             raise InputError(f"a start is finite; got {start_position}, {start_orientation}", "start")
         if not any(start_orientation):
             raise InputError("a quaternion of length 0 is no orientation", "start_orientation")
         self.settings = settings
-        self.body = RigidBody.of(settings, stone)
+        self.body = RigidBody.of(settings, stone, surfaces)
         self._model = MODELS[settings.model]
         orientation = start_orientation
         if abs(sum(c * c for c in orientation) - 1) > 1e-12:  # normalising again would change the last bit
@@ -59,7 +73,32 @@ class Simulation:
         if state.asleep:
             self.state = replace(state, step=state.step + 1, time=state.time + self.settings.time_step)
         else:
-            self.state = self._model(state, self.settings, self.body)
+            self.state = self._model.step(state, self.settings, self.body)
+
+    def push(self, impulse: Triple, point: Triple) -> None:
+        """Strike the stone at a point of the world (R) with an impulse (mass R/s), and wake it.
+
+        InputError if one of them is not finite, or the stone would be faster than a scene can ask for.
+        """
+        if not all(math.isfinite(c) for c in (*impulse, *point)):
+            raise InputError(f"a push is finite; got {impulse} at {point}", "impulse")
+        state = self.state
+        motion = Motion(state.position, state.orientation, state.momentum, state.angular_momentum)
+        x, y, z = (a - b for a, b in zip(point, state.position, strict=True))
+        pushed = impulse_at(motion, (x, y, z), impulse)
+        if speed(pushed, self.body) > MAX_SPEED:
+            raise InputError(f"a push makes the stone move at {MAX_SPEED:g} R/s at most; got {impulse}", "impulse")
+        self.state = replace(state, momentum=pushed.momentum, angular_momentum=pushed.angular_momentum, asleep=False)
+
+    def surround(self, surfaces: tuple[Surface, ...]) -> None:
+        """Put other surfaces about the stone; one that sleeps wakes, in case they moved it."""
+        if surfaces != self.body.surfaces:
+            self.body = replace(self.body, surfaces=surfaces)
+            self.state = replace(self.state, asleep=False)
+
+    def touch(self) -> Touch:
+        """How the current state meets the surfaces."""
+        return self._model.touch(self.state, self.body)
 
     def reset(self) -> None:
         """Back to the start, step 0."""
@@ -77,7 +116,7 @@ class Simulation:
         return (x, y, z), orientation
 
     def energy(self) -> float:
-        """Kinetic and potential energy of the current state, mass R^2/s^2; 0 at rest on the floor."""
+        """Kinetic and potential energy of the current state, mass R^2/s^2; 0 at rest 1 R above the floor."""
         return self.body.energy(self.state, self.settings.gravity)
 
     def snapshot(self) -> dict[str, Any]:

@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 Triple = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
+
+
+class Touch(NamedTuple):
+    """How a stone meets the surfaces about it."""
+
+    contacts: int
+    """Points that touch."""
+    penetration: float
+    """How deep the deepest of them is inside, R."""
+    clearance: float
+    """Height of the stone's lowest vertex above the floor, R; negative: it is inside the floor."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,87 @@
+"""Free flight up to the first touch, by conservative advancement: nothing is passed through, at any speed and step.
+
+No point of the stone moves faster than B = |V| + |omega| r, so that nothing can touch for gap / B seconds. That alone
+would creep towards a touch, and never get away from one. So a step may also be as long as the vertices' paths are
+straight: their acceleration is below A = g + |omega|^2 r, and between two instants at which a vertex is outside it dips
+in by no more than A t^2 / 8; `SAGITTA` bounds that. Where a step ends inside, the touch is found by regula falsi.
+"""
+
+from __future__ import annotations
+
+import math
+
+from culet.simulation.body import RigidBody
+from culet.simulation.contact import TOUCH
+from culet.simulation.free_rotation import Integrator
+from culet.simulation.motion import Motion, flown, gaps, speed, sphere_centre_gap
+from culet.simulation.state import Triple
+
+SAGITTA = 1e-5
+"""R. How deep a vertex may dip in and out unseen. Larger: fewer steps near surfaces, and later touches missed."""
+MAX_REFINEMENTS = 80
+
+
+def fly(motion: Motion, body: RigidBody, gravity: float, time: float, integrator: Integrator) -> tuple[Motion, float]:
+    """Fly for at most `time` seconds, until a vertex touches; the motion then, and the time that it took.
+
+    The stone must be outside the surfaces (`pushed_out`); it is outside at the end, at a touch by less than TOUCH.
+    """
+    omega = body.fastest_turn(motion.angular_momentum)
+    turning = omega * body.hull.radius
+    part = time
+    for surface in body.surfaces:
+        closing = turning + _approach(motion, body, surface.normal, gravity, time)
+        room = sphere_centre_gap(motion, surface) - body.hull.radius
+        if room > closing * time:
+            continue
+        room = max(float(gaps(motion, body, surface).min()), 0.0)
+        if room <= closing * part:
+            part = min(part, room / closing) if closing > 0 else part
+    if part < time:
+        bend = gravity + omega * turning
+        straight = math.sqrt(8 * SAGITTA / bend) if bend > 0 else time
+        part = min(max(part, straight), time)
+    end = flown(motion, body, gravity, part, integrator)
+    inside = _depth(end, body)
+    if inside <= 0:
+        return end, part
+    return _touch(motion, body, gravity, part, inside, integrator)
+
+
+def _approach(motion: Motion, body: RigidBody, normal: Triple, gravity: float, time: float) -> float:
+    """Upper bound of the centre's speed towards a surface within `time`, R/s, at least 0."""
+    (px, py, pz), (a, b, c) = motion.momentum, normal
+    speed_now = -(px * a + py * b + pz * c) / body.mass
+    return max(speed_now + max(gravity * b, 0.0) * time, speed_now, 0.0)
+
+
+def _depth(motion: Motion, body: RigidBody) -> float:
+    """How far the deepest vertex is inside a surface, R; negative: how far the nearest is outside, if near at all."""
+    deepest = -math.inf
+    for surface in body.surfaces:
+        if sphere_centre_gap(motion, surface) <= body.hull.radius + TOUCH:
+            deepest = max(deepest, -float(gaps(motion, body, surface).min()))
+    return deepest
+
+
+def _touch(
+    motion: Motion, body: RigidBody, gravity: float, late: float, inside: float, integrator: Integrator
+) -> tuple[Motion, float]:
+    """The last instant found before `late`, when a vertex is `inside`, at which all are outside."""
+    outside, early, at_early = -_depth(motion, body), 0.0, motion
+    for attempt in range(MAX_REFINEMENTS):
+        bound = speed(at_early, body) + gravity * (late - early)
+        if (early > 0 and outside <= TOUCH / 2) or bound * (late - early) <= TOUCH / 2:
+            break
+        if attempt % 3 == 2 or not math.isfinite(outside):
+            middle = (early + late) / 2
+        else:  # aimed a little before the crossing, so that the end outside comes near it
+            middle = early + (late - early) * max(outside - TOUCH / 4, 0.0) / (outside + inside)
+            middle = max(middle, early + 0.01 * (late - early))
+        at_middle = flown(motion, body, gravity, middle, integrator)
+        depth = _depth(at_middle, body)
+        if depth > 0:
+            late, inside = middle, depth
+        else:
+            early, outside, at_early = middle, -depth, at_middle
+    return at_early, early

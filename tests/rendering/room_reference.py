@@ -1,0 +1,136 @@
+"""The room once more, from its description: floor, walls, checkers, lights, shadows, mirrors and skies, ray by ray.
+
+Double precision, in the world's own coordinates, with shadows by clipping the segment to the light against the stone's
+half-spaces: nothing here is shared with the kernels but the description.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.stone import Stone
+from culet.scene import Scene
+from culet.scene.model import (
+    ConstantEnvironment,
+    Environment,
+    GradientEnvironment,
+    HalfEnvironment,
+    LightEnvironment,
+    StudioEnvironment,
+)
+from rendering.views import Array, pixel_directions
+
+SURFACES = np.array([[0, 1, 0, -1], [0, 0, 1, -8], [math.sqrt(3) / 2, 0, 0.5, -8], [-math.sqrt(3) / 2, 0, 0.5, -8]])
+"""The room is n.x >= d; the floor comes first."""
+MATTE = 0.6, 0.9
+MIRROR = 0.1, 0.05
+"""Albedo of the checker's even and odd cells, of 1 R."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    radiance: Array
+    """(..., 3)."""
+    stone: NDArray[np.bool_]
+    """Where the way of light meets the stone; the radiance is not told there."""
+
+
+def sky(environment: Environment, direction: Array) -> Array:
+    """(N, 3) radiance from infinity; direction (N, 3) of unit length."""
+    height = (0.5 * (1 + direction[:, 1]))[:, None]
+    match environment:
+        case ConstantEnvironment(radiance=colour):
+            return np.tile(colour, (len(direction), 1))
+        case LightEnvironment():
+            return np.tile((0.7, 0.85, 1), (len(direction), 1))
+        case HalfEnvironment(radiance=colour):
+            return np.where(direction[:, 1:2] > 0, colour, 0.0)
+        case GradientEnvironment(bottom=bottom, top=top):
+            return np.array(bottom) * (1 - height) + np.array(top) * height
+        case StudioEnvironment(ambient=ambient, lamps=lamps):
+            total = np.tile(np.array(ambient), (len(direction), 1))
+            for lamp in lamps:
+                rim, full = np.cos(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])))
+                cosine = direction @ (np.array(lamp.direction) / np.linalg.norm(lamp.direction))
+                s = np.clip((cosine - rim) / (full - rim), 0, 1)
+                total += (3 * s**2 - 2 * s**3)[:, None] * np.array(lamp.radiance)
+            return total
+        case _:
+            return np.array((0.05, 0.05, 0.1)) * (1 - height) + np.array((0.2, 0.2, 0.3)) * height
+
+
+def world_half_spaces(scene: Scene, stone: Stone | None) -> Array:
+    """(F, 4) the stone's facets where the scene has it."""
+    if stone is None or not scene.stones:
+        return np.array([[1.0, 0, 0, -1e9], [-1.0, 0, 0, -1e9]])  # nothing is inside both
+    w, *v = scene.stones[0].orientation
+    axis = np.array(v)
+    normals = stone.planes[:, :3]
+    turned = normals + 2 * w * np.cross(axis, normals) + 2 * np.cross(axis, np.cross(axis, normals))
+    return np.column_stack([turned, stone.planes[:, 3] + turned @ np.array(scene.stones[0].position)])
+
+
+def passes_through(
+    planes: Array, origin: Array, direction: Array, length: float | Array = math.inf
+) -> NDArray[np.bool_]:
+    """Whether the segments origin + t direction, 0 < t < length, have a part inside all half-spaces."""
+    gap = planes[:, 3] - origin @ planes[:, :3].T
+    speed = direction @ planes[:, :3].T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = gap / speed
+    enter = np.where(speed < 0, t, -math.inf).max(axis=1)
+    leave = np.where(speed > 0, t, math.inf).min(axis=1)
+    outside = ((speed == 0) & (gap < 0)).any(axis=1)
+    hits: NDArray[np.bool_] = ~outside & (np.maximum(enter, 0) < np.minimum(leave, length))
+    return hits
+
+
+def lighting(scene: Scene, planes: Array, point: Array, normal: Array) -> Array:
+    """(N, 3) light on surfaces: 0.2 of ambient, and each light's colour by its cosine, a fifth of it in the shadow."""
+    total = np.full(point.shape, 0.2)
+    for light in scene.lights:
+        way = np.array(light.position) - point
+        cosine = (way * normal).sum(axis=1) / np.linalg.norm(way, axis=1)
+        shadow = np.where(passes_through(planes, point, way, 1.0), 0.2, 1.0)
+        total += (np.maximum(cosine, 0) * shadow)[:, None] * np.array(light.colour)
+    return total
+
+
+def look_around(scene: Scene, stone: Stone | None, width: int, height: int) -> Seen:
+    """(height, width) what the pixels' centres see of the room."""
+    direction = pixel_directions(scene, width, height).reshape(-1, 3)
+    origin = np.tile(np.array(scene.camera.position, float), (len(direction), 1))
+    planes = world_half_spaces(scene, stone)
+    kinds = [scene.floor.kind, *[scene.walls.kind] * 3]
+    radiance, weight = np.zeros(direction.shape), np.ones(len(direction))
+    stopped, met_stone = np.zeros(len(direction), bool), np.zeros(len(direction), bool)
+    while (weight * ~stopped).max() > 1e-12:
+        nearest, which = np.full(len(direction), math.inf), np.full(len(direction), -1)
+        for number, (surface, kind) in enumerate(zip(SURFACES, kinds, strict=True)):
+            speed, gap = direction @ surface[:3], origin @ surface[:3] - surface[3]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                t = -gap / speed
+            nearer = (speed < 0) & (gap > -1e-9) & (t < nearest) & (kind != "none")
+            nearest, which = np.where(nearer, t, nearest), np.where(nearer, number, which)
+        met_stone |= ~stopped & passes_through(planes, origin, direction, nearest)
+        stopped |= met_stone
+        seen = sky(scene.environment, direction)
+        met = which >= 0
+        mirror = met & (np.array(kinds)[which] == "mirror")
+        normal = SURFACES[which, :3]
+        point = origin + np.where(met, nearest, 0)[:, None] * direction
+        along = np.where(which == 0, point[:, 0], normal[:, 2] * point[:, 0] - normal[:, 0] * point[:, 2])
+        across = np.where(which == 0, point[:, 2], point[:, 1])
+        odd = ((np.floor(along) + np.floor(across)) % 2).astype(int)
+        albedo = np.where(mirror, 0.2 * np.array(MIRROR)[odd], np.array(MATTE)[odd])
+        seen = np.where(met[:, None], albedo[:, None] * lighting(scene, planes, point, normal), seen)
+        radiance += np.where(stopped, 0, weight)[:, None] * seen
+        stopped |= ~mirror
+        weight = weight * 0.8
+        origin = np.where(mirror[:, None], point, origin)
+        direction = np.where(mirror[:, None], direction - 2 * (direction * normal).sum(1)[:, None] * normal, direction)
+    return Seen(radiance.reshape(height, width, 3), met_stone.reshape(height, width))

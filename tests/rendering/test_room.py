@@ -1,0 +1,142 @@
+"""Floor, walls, lights, shadows, mirrors and skies, against a second account of them in numpy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.rendering.features import Features, Geometry
+from culet.rendering.renderer import Renderer
+from culet.scene import Scene
+from rendering.room_reference import look_around
+from rendering.views import radiance, take
+
+SIZE = 96, 54
+FINE = {"cutoff": 1e-9}
+"""Light in mirrors is followed to a tenth of the cut-off."""
+WIDE: dict[str, Any] = {
+    "camera": {"position": [0.7, 1.5, 5], "target": [0.2, 0, -2], "fov_degrees": 75},
+    "optics": FINE,
+}
+SKIES: dict[str, dict[str, Any]] = {
+    "dark": {"kind": "dark"},
+    "light": {"kind": "light"},
+    "constant": {"kind": "constant", "radiance": [0.1, 2, 3]},
+    "half": {"kind": "half", "radiance": [3, 2, 1]},
+    "gradient": {"kind": "gradient", "bottom": [1, 0, 0.5], "top": [0, 2, 0.5]},
+    "studio": {"kind": "studio"},
+}
+ROOMS = [(floor, walls) for floor in ("none", "matte", "mirror") for walls in ("none", "matte", "mirror")]
+
+
+def compare(renderer: Renderer, scene: Scene, stone: Stone | None, tolerance: float, doubtful: int) -> None:
+    """Pixels that see the room alone agree, but for those whose ray meets a checker's or a shadow's edge."""
+    expected = look_around(scene, stone, *SIZE)
+    seen = radiance(take(renderer, scene, stone, SIZE))
+    room = ~expected.stone
+    assert room.mean() > 0.3
+    difference = abs(seen - expected.radiance).max(axis=-1)[room]
+    assert (difference > tolerance).sum() <= doubtful
+
+
+@pytest.mark.parametrize("environment", SKIES.values(), ids=SKIES.keys())
+def test_every_sky_is_as_described(exact: Renderer, environment: dict[str, Any]) -> None:
+    """In all directions: 170 degrees towards the studio's lamps, and its half sky to both sides of the horizon."""
+    camera = {"position": [0, 0, 0], "target": [0.1, 0.6, 0.3], "fov_degrees": 150}
+    scene = Scene.read({"stones": [], "floor": {"kind": "none"}, "environment": environment, "camera": camera})
+    compare(exact, scene, None, 5e-12, 0)  # measured 1.1e-12, the studio; 5e-16 the others
+
+
+@pytest.mark.parametrize(("floor", "walls"), ROOMS)
+def test_every_room_is_as_described(renderer: Renderer, exact: Renderer, floor: str, walls: str) -> None:
+    """Without a stone: checkers, both lights, mirrors in mirrors."""
+    scene = Scene.read({**WIDE, "stones": [], "floor": {"kind": floor}, "walls": {"kind": walls}})
+    compare(exact, scene, None, 5e-12, 0)  # measured 1.9e-12, a lamp's edge
+    compare(renderer, scene, None, 1e-3, 40)  # of 5184: lamps' edges, up to 7e-4; the far checker's edges
+
+
+def test_a_mirror_floor_returns_four_fifths_of_the_sky_and_a_fifth_of_its_own_light(exact: Renderer) -> None:
+    """The closed form for no lights: 0.8 sky + 0.2 x 0.2 x albedo, albedo 0.1 and 0.05."""
+    data = {"stones": [], "lights": [], "environment": {"kind": "constant", "radiance": [1, 2, 4]}}
+    camera = {"position": [0, 3, 0], "target": [0.5, -1, 0.5], "fov_degrees": 50}
+    pixels = radiance(take(exact, Scene.read({**data, "camera": camera}))).reshape(-1, 3)
+    expected = np.array([[0.8 * c + 0.04 * albedo for c in (1, 2, 4)] for albedo in (0.1, 0.05)])
+    distance = abs(pixels[:, None, :] - expected).max(axis=-1)
+    assert distance.min(axis=1).max() < 1e-14
+    assert (distance < 1e-14).mean(axis=0).min() > 0.3  # both kinds of cell are seen
+
+
+def test_a_mirrored_camera_sees_the_mirrored_stone(exact: Renderer) -> None:
+    """A stone seen from below, through no floor, is what the mirror shows of it from above, times 0.8.
+
+    The mirror's own light is known, and the stone in the open sees no floor, so its light may not come by way of the
+    mirror: a stone of index 1 that absorbs does neither reflect nor refract, and shows the sky behind it.
+    """
+    stone = {"material": {"ior": [1, 1, 1]}, "absorption": [0.5, 1, 2], "position": [0, 1, 0]}
+    sky = {"kind": "gradient", "bottom": [0.2, 0.3, 0.4], "top": [1, 2, 3]}
+    common = {"stones": [stone], "lights": [], "environment": sky, "optics": FINE}
+    above = {"position": [0, 2, 4], "target": [0, -2.9, -0.2], "fov_degrees": 25}
+    below = {"position": [0, -4, 4], "target": [0, 0.9, -0.2], "up": [0, -1, 0], "fov_degrees": 25}
+    mirrored = radiance(take(exact, Scene.read({**common, "camera": above})))
+    direct = radiance(take(exact, Scene.read({**common, "camera": below, "floor": {"kind": "none"}})))[:, ::-1]
+    floor = look_around(Scene.read({**common, "camera": above, "stones": []}), None, *SIZE).radiance
+    bare = look_around(Scene.read({**common, "camera": below, "stones": [], "floor": {"kind": "none"}}), None, *SIZE)
+    own = floor - 0.8 * bare.radiance[:, ::-1]  # the mirror's own light
+    assert mirrored == pytest.approx(0.8 * direct + own, abs=1e-12)
+    assert (abs(direct - bare.radiance[:, ::-1]).max(axis=-1) > 0.1).mean() > 0.05  # the stone is in view
+
+
+LIGHTS: dict[str, dict[str, Any]] = {
+    "two above": {},
+    "low": {"lights": [{"position": [-3, -0.5, 1], "colour": [1, 1, 1]}]},
+    "near": {"lights": [{"position": [0.3, 1.9, 0.2], "colour": [1, 1, 1]}]},
+    "inside the stone": {"lights": [{"position": [0.1, 0.75, 0], "colour": [1, 1, 1]}]},
+    "under the stone": {"lights": [{"position": [0.2, -0.5, 0.1], "colour": [1, 1, 1]}]},
+    "below the floor": {"lights": [{"position": [0, -3, 0], "colour": [1, 1, 1]}]},
+    "in the floor": {"lights": [{"position": [2, -1, 0], "colour": [1, 1, 1]}]},
+    "far": {"lights": [{"position": [-1e6, 2e6, 5e5], "colour": [1, 1, 1]}]},
+    "eight": {"lights": [{"position": [4 - i, 3, i], "colour": [0.1 * i, 0.5, 1]} for i in range(8)]},
+}
+PLACES: dict[str, dict[str, Any]] = {
+    "hovering": {"position": [0, 0.8, 0]},
+    "through the floor": {"position": [0.3, -1.1, 0]},
+    "lying at the wall": {"position": [0, -0.6, -7.5]},
+}
+
+
+@pytest.mark.parametrize("light", LIGHTS.values(), ids=LIGHTS.keys())
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES.keys())
+def test_shadows_lie_where_the_stone_is_in_the_way(
+    exact: Renderer, light: dict[str, Any], place: dict[str, Any]
+) -> None:
+    """Shadow volumes against clipping each pixel's segment to the light: floor and walls, seen past the stone."""
+    x, _, z = place["position"]
+    camera = {"position": [x, 5, z + 5], "target": [x, -1, z], "fov_degrees": 60}
+    data = {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}, "camera": camera, "stones": [place], "optics": FINE}
+    scene = Scene.read({**data, **light})
+    compare(exact, scene, stone_of(scene.stones[0], {}), 1e-11, 0)
+
+
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES.keys())
+def test_a_tree_of_triangles_casts_the_same_shadows(exact: Renderer, place: dict[str, Any]) -> None:
+    """The same stone with its facets as triangles; the edge of a shadow may fall to either side."""
+    x, _, z = place["position"]
+    camera = {"position": [x, 5, z + 5], "target": [x, -1, z], "fov_degrees": 60}
+    scene = Scene.read({"floor": {"kind": "matte"}, "camera": camera, "stones": [place], "optics": FINE})
+    by_planes, by_triangles = (
+        radiance(take(exact, scene, size=SIZE, features=Features(geometry)))
+        for geometry in (Geometry.HULL, Geometry.MESH)
+    )
+    assert (abs(by_planes - by_triangles).max(axis=-1) > 1e-9).sum() <= 2
+
+
+def test_a_mirror_shows_the_stones_shadow(exact: Renderer) -> None:
+    """Pixels that see the floor's shadow by way of a mirror wall."""
+    camera = {"position": [0, 1, 4], "target": [0, 0.3, -8], "fov_degrees": 60}
+    data = {"floor": {"kind": "matte"}, "walls": {"kind": "mirror"}, "camera": camera, "optics": FINE}
+    scene = Scene.read({**data, "stones": [{"position": [0, 0.2, -4]}]})
+    compare(exact, scene, stone_of(scene.stones[0], {}), 1e-11, 0)
