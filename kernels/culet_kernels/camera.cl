@@ -11,7 +11,8 @@ typedef struct {
 } primaryL;
 
 // The rays through a packet of pixels; column and row are those of its first pixel, the jitter is within a pixel.
-static inline primaryL primary_rays(__constant const parameters_t *scene, int column, int row, double jitter_x, double jitter_y) {
+static inline primaryL primary_rays(__constant const parameters_t *scene, int column, int row, double jitter_x,
+                                    double jitter_y) {
   const doubleL x = ints_to_double(PACKET_X) + (column + jitter_x), y = ints_to_double(PACKET_Y) + (row + jitter_y);
   const vec3L foot = vec3(from_double(scene->foot[0] + x * scene->foot_column[0] + y * scene->foot_row[0]),
                           from_double(scene->foot[1] + x * scene->foot_column[1] + y * scene->foot_row[1]),

@@ -10,7 +10,8 @@
 #include "room.cl"
 #include "tile.cl"
 
-static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel, intL *segments) {
+static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel,
+                                 intL *segments) {
   __constant const parameters_t *scene = world.scene;
   const channels_t channels = {channel, 1};
   const real eta = world.chains[channel].eta;
@@ -47,7 +48,8 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     }
     const maskL in_room = active & !at_stone;
     const viewL view = look(world, ray, channels);
-    const radianceL fallback = sky(world, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
+    const radianceL fallback =
+        sky(world, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
     const maskL faces_room = in_room & view.meets;
     const realL seen = blend(faces_room & last, fallback.channel[0], view.radiance.channel[0]);
     radiance += blend(in_room, ray.weight * seen, splat(0));
@@ -64,8 +66,9 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     const maskL refracted = at_stone & (squared >= 0) & !last, total = at_stone & !refracted & !last;
     radiance += blend(at_stone, ray.weight * mirrored_sky.channel[0] * blend(last, splat(1), term), splat(0));
     const realL bend = blend(inside, sqrt(fmax(squared, splat(0))), -sqrt(fmax(squared, splat(0)))) - ratio * cosine;
-    const vec3L bent = renormalise(vec3(fma(ratio, ray.direction.x, bend * normal.x), fma(ratio, ray.direction.y, bend * normal.y),
-                                        fma(ratio, ray.direction.z, bend * normal.z)));
+    const vec3L bent =
+        renormalise(vec3(fma(ratio, ray.direction.x, bend * normal.x), fma(ratio, ray.direction.y, bend * normal.y),
+                         fma(ratio, ray.direction.z, bend * normal.z)));
     if (ABSORPTION != 0)
       ray.weight *= blend(refracted & inside, exp_fast(-world.chains[channel].absorption * t), splat(1));
     ray.weight *= blend(refracted, (real)1 - term, blend(mirrored, splat(MIRROR_REFLECTANCE), splat(1)));

@@ -74,7 +74,9 @@
 #define DECIDED(feature, parameter) ((feature) == RUNTIME ? (parameter) : (feature))
 
 // Whether light that has left the stone can meet it again.
-#define REENTRY (GEOMETRY != EMPTY && (GEOMETRY == MESH || FLOOR == MIRROR || FLOOR == RUNTIME || WALLS == MIRROR || WALLS == RUNTIME))
+#define REENTRY                                                                                                        \
+  (GEOMETRY != EMPTY &&                                                                                                \
+   (GEOMETRY == MESH || FLOOR == MIRROR || FLOOR == RUNTIME || WALLS == MIRROR || WALLS == RUNTIME))
 
 // A chain carries one channel where each has an index of its own; all three where they share one, and where the chain is
 // of a wavelength, which all of them see a part of.

@@ -24,7 +24,8 @@ static inline float16 encode_srgb(float16 x) { // IEC 61966-2-1
 static inline float16 luminance(rgb16 c) { return 0.212639f * c.red + 0.715169f * c.green + 0.072192f * c.blue; }
 
 static inline rgb16 mix_rgb(float16 grey, float16 saturation, rgb16 c) {
-  const rgb16 mixed = {grey + saturation * (c.red - grey), grey + saturation * (c.green - grey), grey + saturation * (c.blue - grey)};
+  const rgb16 mixed = {grey + saturation * (c.red - grey), grey + saturation * (c.green - grey),
+                       grey + saturation * (c.blue - grey)};
   return mixed;
 }
 
@@ -62,8 +63,8 @@ static inline uchar16 to_bytes(float16 x, int tone_map) { return convert_uchar16
 
 // A work-item shows BLOCK pixels, of which `even` and `odd` hold the sums of half the samples each. `scale` is the exposure
 // over the number of samples; `inside_gamut` says that no component is negative, or that those that are may be clipped.
-__kernel void develop(__global const real4 *even, __global const real4 *odd, int both, __global uchar *bytes, int pixels,
-                      float scale, int tone_map, int inside_gamut) {
+__kernel void develop(__global const real4 *even, __global const real4 *odd, int both, __global uchar *bytes,
+                      int pixels, float scale, int tone_map, int inside_gamut) {
   const int first = get_global_id(0) * BLOCK, count = min(BLOCK, pixels - first);
   float linear[3][BLOCK];
   for (int i = 0; i < BLOCK; i++) {

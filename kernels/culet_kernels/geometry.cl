@@ -29,7 +29,8 @@ static inline maskL stone_shadow(world_t world, int light, vec3L point, vec3L to
   const maskL near = mask & (dot3(moment, moment) < (real)1.0001 * dot3(to_light, to_light));
   if (!any_lane(near)) return near;
   if (GEOMETRY == HULL)
-    return near & hull_shadow(world.shadows, world.scene->shadow_start[light], world.scene->shadow_start[light + 1], point);
+    return near &
+           hull_shadow(world.shadows, world.scene->shadow_start[light], world.scene->shadow_start[light + 1], point);
   return mesh_crossing(world.scene, world.tree, point, to_light, splat(0), 1, near, 1).hit;
 }
 

@@ -51,9 +51,12 @@ static inline void fill(hits_t *hits) {
 // The packet that begins at a place in the list, and the surface that it meets.
 static inline packetL hits_at(const hits_t *hits, int place, vec3L *normal) {
   packetL packet;
-  packet.origin = vec3(load_lanes(hits->number[0] + place), load_lanes(hits->number[1] + place), load_lanes(hits->number[2] + place));
-  packet.direction = vec3(load_lanes(hits->number[3] + place), load_lanes(hits->number[4] + place), load_lanes(hits->number[5] + place));
-  *normal = vec3(load_lanes(hits->number[6] + place), load_lanes(hits->number[7] + place), load_lanes(hits->number[8] + place));
+  packet.origin = vec3(load_lanes(hits->number[0] + place), load_lanes(hits->number[1] + place),
+                       load_lanes(hits->number[2] + place));
+  packet.direction = vec3(load_lanes(hits->number[3] + place), load_lanes(hits->number[4] + place),
+                          load_lanes(hits->number[5] + place));
+  *normal = vec3(load_lanes(hits->number[6] + place), load_lanes(hits->number[7] + place),
+                 load_lanes(hits->number[8] + place));
   for (int k = 0; k < WEIGHTS; k++) packet.weight[k] = load_lanes(hits->number[9] + place);
   for (int k = 0; k < CHANNELS; k++) packet.radiance[k] = splat(0);
   packet.polarisation = load_polarisation(hits->number[POLARISED ? 10 : 0] + place, HITS);

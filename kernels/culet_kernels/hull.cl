@@ -17,7 +17,8 @@ typedef struct {
 
 // Where a ray from outside enters. A facet that is parallel to the ray and has it outside counts as entered at infinity,
 // so that the ray misses.
-static inline crossingL hull_entry(__global const real4 *facets, int count, vec3L origin, vec3L direction, realL t_min) {
+static inline crossingL hull_entry(__global const real4 *facets, int count, vec3L origin, vec3L direction,
+                                   realL t_min) {
   realL t_in = splat(-1e30f), t_out = splat(1e30f);
   vec3L normal = vec3(splat(0), splat(0), splat(0));
   for (int i = 0; i < count; i++) {
@@ -51,7 +52,8 @@ static inline crossingL hull_exit(__global const real4 *facets, int count, vec3L
   for (int i = 0; i < count; i++) {
     const real4 facet = facets[i];
     const realL speed = dot_uniform(direction, facet);
-    const realL gap = fma(-origin.x, splat(facet.x), fma(-origin.y, splat(facet.y), fma(-origin.z, splat(facet.z), splat(facet.w))));
+    const realL gap =
+        fma(-origin.x, splat(facet.x), fma(-origin.y, splat(facet.y), fma(-origin.z, splat(facet.z), splat(facet.w))));
     const realL candidate = speed / fmax(gap, splat(SMALLEST_GAP));
     const maskL nearer = candidate > nearness;
     nearness = fmax(nearness, candidate);

@@ -35,8 +35,8 @@ typedef struct {
 
 typedef struct {
   real origin[3], direction[3];
-  real start; // hits before this do not count,
-  real limit; // nor do those behind this; becomes the nearest hit
+  real start;   // hits before this do not count,
+  real limit;   // nor do those behind this; becomes the nearest hit
   int triangle; // leaf x TREE_WIDTH + place, -1 for none
 } probe_t;
 
@@ -51,12 +51,14 @@ static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) 
   const realW det = ax * px + ay * py + az * pz;
   const maskW faces = side * det > (real)1e-30;
   const realW inverse = (real)1 / select((realW)(1), det, faces);
-  const realW tx = probe->origin[0] - load_wide(rows, 0), ty = probe->origin[1] - load_wide(rows, 1), tz = probe->origin[2] - load_wide(rows, 2);
+  const realW tx = probe->origin[0] - load_wide(rows, 0), ty = probe->origin[1] - load_wide(rows, 1),
+              tz = probe->origin[2] - load_wide(rows, 2);
   const realW u = (tx * px + ty * py + tz * pz) * inverse;
   const realW qx = ty * az - tz * ay, qy = tz * ax - tx * az, qz = tx * ay - ty * ax;
   const realW v = (dx * qx + dy * qy + dz * qz) * inverse;
   const realW t = (bx * qx + by * qy + bz * qz) * inverse;
-  const maskW hits = faces & (u >= -OVERLAP) & (v >= -OVERLAP) & (u + v <= 1 + OVERLAP) & (t >= probe->start - OVERLAP) & (t < probe->limit);
+  const maskW hits = faces & (u >= -OVERLAP) & (v >= -OVERLAP) & (u + v <= 1 + OVERLAP) &
+                     (t >= probe->start - OVERLAP) & (t < probe->limit);
   if (!any(hits)) return;
   int hit[TREE_WIDTH];
   real distance[TREE_WIDTH];
@@ -158,13 +160,15 @@ static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree
     probe_tree(tree, side, &probe);
     if (probe.triangle < 0) continue;
     t[lane] = fmax(probe.limit, probe.start);
-    __global const real *rows = tree.corners + (probe.triangle / TREE_WIDTH * 12 + 9) * TREE_WIDTH + probe.triangle % TREE_WIDTH;
+    __global const real *rows =
+        tree.corners + (probe.triangle / TREE_WIDTH * 12 + 9) * TREE_WIDTH + probe.triangle % TREE_WIDTH;
     for (int k = 0; k < 3; k++) normal[k][lane] = rows[k * TREE_WIDTH];
   }
   const realL found = load_lanes(t);
   const maskL hit = mask & (found > (real)-1e29);
-  const crossingL crossing = {hit, blend(hit, found, splat(0)),
-                              to_world(scene, vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2])))};
+  const crossingL crossing = {
+      hit, blend(hit, found, splat(0)),
+      to_world(scene, vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2])))};
   return crossing;
 }
 

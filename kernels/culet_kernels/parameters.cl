@@ -13,8 +13,9 @@ typedef struct {
   double foot_column[3]; // how it moves with each column of pixels,
   double foot_row[3];    // and with each row
   real direction[3], direction_column[3], direction_row[3]; // the same for the ray's direction, not normalised
-  real reach;                       // from the eye to the foot, in lengths of that direction
-  real cutoff;                      // weight below which a chain ends
+  real reach;                                               // from the eye to the foot, in lengths of that direction
+  real cutoff;                                              // weight below which a chain ends
+  real panorama_turn;                                       // of the sky's image about the vertical, in whole turns
   real centre[3];                   // the stone's centre in the world, from where checkers are counted
   real absorption[3];               // per R, by channel
   real sky_bottom[3], sky_top[3];   // radiance, by channel
@@ -28,14 +29,14 @@ typedef struct {
   int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
   int facets;                       // half-spaces of the stone
   int lights, lamps;
-  int max_bounces; // interior segments of a chain, at most
+  int max_bounces;                  // interior segments of a chain, at most
   int width, height;
-  int chains; // one for each index of refraction
+  int chains;                       // one for each index of refraction
   int panorama_width, panorama_height;
-  int sample; // its number, from which chance and the pixels' wavelengths are drawn
+  int sample;                       // its number, from which chance and the pixels' wavelengths are drawn
   int floor_kind, walls_kind, sky_kind, fresnel_kind, end_kind;
-  int camera_inside; // the stone
-  int pierces;       // the stone reaches through a surface of the room, which may hide a part of it
+  int camera_inside;                // the stone
+  int pierces;                      // the stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 
 // One index of refraction.

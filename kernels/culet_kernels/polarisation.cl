@@ -20,13 +20,15 @@ typedef struct {
 static inline polarisationL unpolarised(vec3L direction) {
   // Any axis will do: perpendicular to the ray, from whichever of x and z is farther from it.
   const maskL steep = fabs(direction.x) > fabs(direction.z);
-  const vec3L axis = blend3(steep, vec3(-direction.y, direction.x, splat(0)), vec3(splat(0), direction.z, -direction.y));
+  const vec3L axis =
+      blend3(steep, vec3(-direction.y, direction.x, splat(0)), vec3(splat(0), direction.z, -direction.y));
   const polarisationL none = {splat(0), splat(0), splat(0), normalise(axis)};
   return none;
 }
 
 static inline polarisationL blend_polarisation(maskL mask, polarisationL yes, polarisationL no) {
-  const polarisationL blended = {blend(mask, yes.q, no.q), blend(mask, yes.u, no.u), blend(mask, yes.v, no.v), blend3(mask, yes.axis, no.axis)};
+  const polarisationL blended = {blend(mask, yes.q, no.q), blend(mask, yes.u, no.u), blend(mask, yes.v, no.v),
+                                 blend3(mask, yes.axis, no.axis)};
   return blended;
 }
 
@@ -50,14 +52,15 @@ static inline polarisationL align(polarisationL p, vec3L direction, vec3L normal
 
 // What a boundary does to light in the frame of its plane of incidence.
 typedef struct {
-  realL kept;                            // the part of the weight that is reflected; the rest is transmitted
+  realL kept; // the part of the weight that is reflected; the rest is transmitted
   polarisationL reflected, transmitted;
 } splitL;
 
 // The row times [[a, b, 0, 0], [b, a, 0, 0], [0, 0, c, d], [0, 0, -d, c]], divided by its new first entry.
 static inline polarisationL times(polarisationL p, realL a, realL b, realL c, realL d, realL first) {
   const realL inverse = (real)1 / fmax(first, splat((real)1e-12));
-  const polarisationL product = {(b + a * p.q) * inverse, (c * p.u - d * p.v) * inverse, (d * p.u + c * p.v) * inverse, p.axis};
+  const polarisationL product = {(b + a * p.q) * inverse, (c * p.u - d * p.v) * inverse, (d * p.u + c * p.v) * inverse,
+                                 p.axis};
   return product;
 }
 
@@ -71,7 +74,8 @@ static inline splitL split(polarisationL p, realL cos_a, realL cos_s, realL squa
   const realL g = sqrt(fmax(-squared_a, splat(0)));
   const realL real_z = eta * (cos_s * cos_s + g * g), imaginary_z = cos_s * g * (eta * eta - 1);
   const realL inverse = (real)1 / (real_z * real_z + imaginary_z * imaginary_z + (real)1e-30);
-  const realL a = blend(total, splat(1), (real)0.5 * (big_rs + big_rp)), b = blend(total, splat(0), (real)0.5 * (big_rs - big_rp));
+  const realL a = blend(total, splat(1), (real)0.5 * (big_rs + big_rp)),
+              b = blend(total, splat(0), (real)0.5 * (big_rs - big_rp));
   const realL c = blend(total, (real_z * real_z - imaginary_z * imaginary_z) * inverse, rs * rp);
   const realL d = blend(total, 2 * real_z * imaginary_z * inverse, splat(0));
   splitL result;

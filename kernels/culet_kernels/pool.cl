@@ -94,8 +94,10 @@ static inline packetL pop(pool_t *pool, maskL *mask) {
   *mask = widen(LANE_INDEX < (intL)(pool->count - start));
   pool->count = start;
   packetL packet;
-  packet.origin = vec3(load_lanes(pool->origin[0] + start), load_lanes(pool->origin[1] + start), load_lanes(pool->origin[2] + start));
-  packet.direction = vec3(load_lanes(pool->direction[0] + start), load_lanes(pool->direction[1] + start), load_lanes(pool->direction[2] + start));
+  packet.origin = vec3(load_lanes(pool->origin[0] + start), load_lanes(pool->origin[1] + start),
+                       load_lanes(pool->origin[2] + start));
+  packet.direction = vec3(load_lanes(pool->direction[0] + start), load_lanes(pool->direction[1] + start),
+                          load_lanes(pool->direction[2] + start));
   for (int k = 0; k < WEIGHTS; k++) packet.weight[k] = load_lanes(pool->weight[k] + start);
   for (int k = 0; k < CHANNELS; k++) packet.radiance[k] = load_lanes(pool->radiance[k] + start);
   packet.polarisation = load_polarisation(pool->polar[0] + (POLARISED ? start : 0), POOL_SIZE);

@@ -3,7 +3,8 @@
 #include "trace.cl"
 
 // What each pixel of the tile sees without the stone, directly or by way of mirrors, and where its ray meets the stone.
-static inline void see(world_t world, tile_t *tile, hits_t hits[GROUPS], int column, int row, double jitter_x, double jitter_y) {
+static inline void see(world_t world, tile_t *tile, hits_t hits[GROUPS], int column, int row, double jitter_x,
+                       double jitter_y) {
   const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
   for (int group = 0; group < GROUPS; group++) hits[group].count = 0;
   for (int y = 0; y < TILE; y += PACKET_HEIGHT)
@@ -47,7 +48,8 @@ static inline void trace(world_t world, tile_t *tile, pools_t *pools, task_t tas
   for (int next = 0;;) {
     const bool all_begun = next >= hits->count;
     // Light that has come back goes first: it is what makes the pools grow.
-    if (REENTRY && (pools->outside.count >= LANES || (all_begun && pools->inside.count == 0 && pools->outside.count > 0)))
+    if (REENTRY &&
+        (pools->outside.count >= LANES || (all_begun && pools->inside.count == 0 && pools->outside.count > 0)))
       come_back(world, tile, pools, task);
     else if (pools->inside.count >= LANES || (all_begun && pools->inside.count > 0))
       advance(world, tile, pools, task);

@@ -6,10 +6,10 @@
 #include "polarisation.cl"
 #include "sky.cl"
 
-#define AMBIENT ((real)0.2)           // of a matte surface, in lights of colour 1
-#define SHADOW ((real)0.2)            // what reaches a shaded point of a light
+#define AMBIENT ((real)0.2)      // of a matte surface, in lights of colour 1
+#define SHADOW ((real)0.2)       // what reaches a shaded point of a light
 #define MIRROR_REFLECTANCE ((real)0.8)
-#define MIRROR_SHARE ((real)0.2)      // of a mirror's own light in what it shows
+#define MIRROR_SHARE ((real)0.2) // of a mirror's own light in what it shows
 // Cosine to a surface below which a ray passes it by: the horizon, 1e6 R away for an eye 1 R above the floor. A ray that
 // is closer to parallel would meet it where the checker is finer than a float.
 #define HORIZON ((real)1e-6)
@@ -17,10 +17,10 @@
 #define SLOP ((real)1e-3)
 
 typedef struct {
-  maskL meets;        // floor or walls, not the sky
-  maskL reflects;     // a mirror: the ray goes on
+  maskL meets;         // floor or walls, not the sky
+  maskL reflects;      // a mirror: the ray goes on
   vec3L point, normal; // from where, if it does
-  radianceL radiance; // what is seen there: the surface's own light, or the sky
+  radianceL radiance;  // what is seen there: the surface's own light, or the sky
 } viewL;
 
 static inline realL checker(realL u, realL v) { // 0 or 0.5
@@ -34,7 +34,8 @@ static inline radianceL lighting(world_t world, vec3L point, vec3L normal, maskL
   radianceL sum = {{splat(AMBIENT), splat(AMBIENT), splat(AMBIENT)}};
   if (LIGHTS == 0) return sum;
   for (int i = 0; i < scene->lights; i++) {
-    const vec3L to_light = vec3(scene->light[i][0] - point.x, scene->light[i][1] - point.y, scene->light[i][2] - point.z);
+    const vec3L to_light =
+        vec3(scene->light[i][0] - point.x, scene->light[i][1] - point.y, scene->light[i][2] - point.z);
     const realL cosine = dot3(normal, to_light) * rsqrt(fmax(dot3(to_light, to_light), splat((real)1e-30)));
     const maskL lit = mask & (cosine > 0);
     const maskL shaded = stone_shadow(world, i, point, to_light, lit);
@@ -60,7 +61,8 @@ static inline maskL hidden_by_room(world_t world, rayL ray, realL t) {
   if (!scene->pierces) return hidden;
   const int floor_kind = DECIDED(FLOOR, scene->floor_kind), walls_kind = DECIDED(WALLS, scene->walls_kind);
   for (int i = floor_kind == NONE ? 1 : 0; i < (walls_kind == NONE ? 1 : MAX_SURFACES); i++) {
-    const real4 surface = (real4)(scene->surface[i][0], scene->surface[i][1], scene->surface[i][2], scene->surface[i][3]);
+    const real4 surface =
+        (real4)(scene->surface[i][0], scene->surface[i][1], scene->surface[i][2], scene->surface[i][3]);
     const vec3L start = along(ray.origin, ray.start, ray.direction), end = along(ray.origin, t, ray.direction);
     hidden |= (dot_uniform(start, surface) > surface.w) & (dot_uniform(end, surface) < surface.w);
   }
@@ -98,7 +100,8 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
   view.point = along(ray.origin, nearest, ray.direction);
 
   // Checkers are counted in the world: over x and z on the floor, along the wall and over y on a wall.
-  const realL x = view.point.x + scene->centre[0], y = view.point.y + scene->centre[1], z = view.point.z + scene->centre[2];
+  const realL x = view.point.x + scene->centre[0], y = view.point.y + scene->centre[1],
+              z = view.point.z + scene->centre[2];
   const maskL is_floor = view.normal.y > (real)0.5;
   const realL u = blend(is_floor, x, view.normal.z * x - view.normal.x * z), v = blend(is_floor, z, y);
   const maskL odd = checker(u, v) > (real)0.25;
@@ -135,9 +138,11 @@ static inline radianceL gather(world_t world, rayL *ray, realL share, maskL *tow
     ray->start = blend(active, splat(0), ray->start);
     ray->weight = blend(active, MIRROR_REFLECTANCE * ray->weight, ray->weight);
     ray->origin = blend3(active, view.point, ray->origin);
-    ray->direction = blend3(active, reflect3(ray->direction, dot3(ray->direction, view.normal), view.normal), ray->direction);
+    ray->direction =
+        blend3(active, reflect3(ray->direction, dot3(ray->direction, view.normal), view.normal), ray->direction);
     if (POLARISED)
-      ray->polarisation = blend_polarisation(active, mirror_polarisation(ray->polarisation, view.normal), ray->polarisation);
+      ray->polarisation =
+          blend_polarisation(active, mirror_polarisation(ray->polarisation, view.normal), ray->polarisation);
     const realL whole = share * ray->weight;
     if (REENTRY) {
       const maskL heading = active & passes_stone(ray->origin, ray->direction, splat(0));

@@ -29,8 +29,9 @@ static inline radianceL black(void) {
 static inline radianceL panorama(world_t world, vec3L direction, channels_t channels) {
   const int width = world.scene->panorama_width, height = world.scene->panorama_height;
   const realL across = hypot(direction.x, direction.z);
-  const realL turn = atan2(direction.x, -direction.z) * (real)M_1_PI_F * (real)0.5;
-  const realL u = (turn - floor(turn)) * width - (real)0.5, v = atan2(across, direction.y) * (real)M_1_PI_F * height - (real)0.5;
+  const realL turn = atan2(direction.x, -direction.z) * (real)M_1_PI_F * (real)0.5 - world.scene->panorama_turn;
+  const realL u = (turn - floor(turn)) * width - (real)0.5,
+              v = atan2(across, direction.y) * (real)M_1_PI_F * height - (real)0.5;
   real column[LANES], row[LANES], radiance[3][LANES];
   store_lanes(u, column);
   store_lanes(v, row);
@@ -64,7 +65,8 @@ static inline radianceL sky(world_t world, vec3L direction, channels_t channels)
     for (int k = 0; k < channels.count; k++) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);
     for (int i = 0; i < scene->lamps; i++) {
       // Smoothstep from the lamp's rim to where it has its full radiance.
-      const realL cosine = direction.x * scene->lamp[i][0] + direction.y * scene->lamp[i][1] + direction.z * scene->lamp[i][2];
+      const realL cosine =
+          direction.x * scene->lamp[i][0] + direction.y * scene->lamp[i][1] + direction.z * scene->lamp[i][2];
       const realL s = clamp(cosine - scene->lamp_edge[i], (realL)0, (realL)1);
       const realL share = s * s * ((real)3 - 2 * s);
       for (int k = 0; k < channels.count; k++)

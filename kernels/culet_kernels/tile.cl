@@ -43,7 +43,8 @@ static inline void write_tile(const tile_t *tile, __global real4 *image, __globa
   for (int y = 0; y < TILE && row + y < scene->height; y++)
     for (int x = 0; x < TILE && column + x < scene->width; x++) {
       const int pixel = pixel_at(x, y);
-      const real4 sample = (real4)(tile->radiance[0][pixel], tile->radiance[1][pixel], tile->radiance[2][pixel], tile->cut[pixel] / 3);
+      const real4 sample =
+          (real4)(tile->radiance[0][pixel], tile->radiance[1][pixel], tile->radiance[2][pixel], tile->cut[pixel] / 3);
       __global real4 *sum = image + (size_t)(row + y) * scene->width + (column + x);
       *sum = accumulate ? *sum + sample : sample;
       dropped += sample.w;

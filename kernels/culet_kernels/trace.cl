@@ -42,7 +42,8 @@ static inline void scale_weights(packetL *packet, realL factor) {
 // at most twice it.
 static inline realL over_channels(task_t task, const packetL *packet) {
   if (WEIGHTS == 3) return packet->weight[0] + packet->weight[1] + packet->weight[2];
-  if (SPECTRAL) return (fabs(task.chain.share[0]) + fabs(task.chain.share[1]) + fabs(task.chain.share[2])) * packet->weight[0];
+  if (SPECTRAL)
+    return (fabs(task.chain.share[0]) + fabs(task.chain.share[1]) + fabs(task.chain.share[2])) * packet->weight[0];
   return CHANNELS * packet->weight[0];
 }
 
@@ -100,7 +101,8 @@ static inline realL chance(task_t task, const packetL *packet) {
   store_ints(packet->tag, tag);
   store_lanes(packet->weight[0], weight);
   for (int lane = 0; lane < LANES; lane++) {
-    uint x = (uint)tag[lane] ^ task.seed ^ as_uint((float)weight[lane]) * 0x9e3779b9u; // the weight tells branches apart
+    uint x =
+        (uint)tag[lane] ^ task.seed ^ as_uint((float)weight[lane]) * 0x9e3779b9u; // the weight tells branches apart
     x ^= x >> 16;
     x *= 0x7feb352du;
     x ^= x >> 15;
@@ -134,8 +136,8 @@ static inline maskL settle(world_t world, task_t task, packetL *packet, maskL ma
 }
 
 // The boundary's reflectance for a packet, and its polarisation on either side.
-static inline splitL meet_boundary(world_t world, task_t task, const packetL *packet, vec3L normal, realL cos_a, realL cos_s,
-                                   realL squared_a) {
+static inline splitL meet_boundary(world_t world, task_t task, const packetL *packet, vec3L normal, realL cos_a,
+                                   realL cos_s, realL squared_a) {
   splitL result;
   if (POLARISED)
     return split(align(packet->polarisation, packet->direction, normal), cos_a, cos_s, squared_a, task.chain.eta);
@@ -150,7 +152,8 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
                          vec3L normal, maskL mask) {
   const realL cos_a = clamp(-dot3(packet.direction, normal), (realL)0, (realL)1);
   const realL cos_s = cosine_in_stone(cos_a, task.chain.eta);
-  const splitL parts = meet_boundary(world, task, &packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)));
+  const splitL parts =
+      meet_boundary(world, task, &packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)));
   realL cut = leave(world, pools, task, &packet, point, reflect3(packet.direction, -cos_a, normal), parts.kept,
                     parts.reflected, mask, GEOMETRY != MESH);
 
@@ -195,8 +198,10 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
       const realL cos_a = sqrt(fmax(squared_a, (realL)0));
       const splitL parts = meet_boundary(world, task, &packet, crossing.normal, cos_a, cos_s, squared_a);
       if (any_lane(leaves)) {
-        const vec3L outward = renormalise(along(scale3(splat(eta), packet.direction), cos_a - eta * cos_s, crossing.normal));
-        cut += leave(world, pools, task, &packet, packet.origin, outward, (real)1 - parts.kept, parts.transmitted, leaves, GEOMETRY != MESH);
+        const vec3L outward =
+            renormalise(along(scale3(splat(eta), packet.direction), cos_a - eta * cos_s, crossing.normal));
+        cut += leave(world, pools, task, &packet, packet.origin, outward, (real)1 - parts.kept, parts.transmitted,
+                     leaves, GEOMETRY != MESH);
       }
       scale_weights(&packet, parts.kept);
       packet.polarisation = parts.reflected;
@@ -221,7 +226,8 @@ static inline void come_back(world_t world, tile_t *tile, pools_t *pools, task_t
   const maskL hits = taken & meets, misses = taken & !meets;
   if (any_lane(misses)) {
     packetL passing = packet;
-    const realL cut = leave(world, pools, task, &passing, packet.origin, packet.direction, splat(1), packet.polarisation, misses, true);
+    const realL cut = leave(world, pools, task, &passing, packet.origin, packet.direction, splat(1),
+                            packet.polarisation, misses, true);
     deposit(tile, task, misses, &passing, cut);
   }
   if (any_lane(hits))

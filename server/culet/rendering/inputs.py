@@ -8,21 +8,17 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.errors import SceneError
 from culet.geometry.polygons import edges_of_facets
 from culet.geometry.stone import Stone
 from culet.rendering.chains import chain_table, is_spectral
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features, Geometry
+from culet.rendering.panoramas import Panorama, panorama_of
 from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
 from culet.rendering.tree import tree_of
 from culet.scene.model import ImageEnvironment, Scene
-
-Panorama = NDArray[np.float32]
-"""(height, width, 3) linear radiance: the zenith above, -z at the left edge, +x a quarter of the way to the right."""
-
 
 class Inputs:
     """Buffers of one scene, in the order of the kernels' arguments; all but the chains are the same for every sample."""
@@ -56,7 +52,11 @@ class Inputs:
         self._has_stone = stone is not None
         self._panorama = None
         if isinstance(scene.environment, ImageEnvironment):
-            self._panorama = self._upload(self._checked(panorama))
+            if panorama is None:
+                panorama = panorama_of(scene.environment, {})
+            self._struct["panorama_height"], self._struct["panorama_width"] = panorama.shape[:2]
+            self._struct["panorama_turn"] = scene.environment.turn_degrees / 360
+            self._panorama = self._upload(panorama * np.float32(scene.environment.scale))
         self._fixed = [self._upload(facets.astype(real)), self._upload(shadows.astype(real)), *mesh]
 
     def of_sample(self, sample: int) -> list[Any]:
@@ -72,13 +72,6 @@ class Inputs:
     def _chains(self, sample: int) -> NDArray[np.void]:
         scene = self._scene if self._has_stone else Scene()
         return chain_table(scene, sample, self._real, common=self._common)
-
-    def _checked(self, panorama: Panorama | None) -> Panorama:
-        if panorama is None or panorama.ndim != 3 or panorama.shape[2] != 3:
-            shape = None if panorama is None else panorama.shape
-            raise SceneError(f"environment.image: expected a panorama of (height, width, 3), got {shape}", "environment.image")
-        self._struct["panorama_height"], self._struct["panorama_width"] = panorama.shape[:2]
-        return np.ascontiguousarray(panorama, np.float32)
 
     def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401 - pyopencl has no types
         flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR

@@ -16,7 +16,8 @@ from culet.geometry.stone import Stone
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, features_of
-from culet.rendering.inputs import Inputs, Panorama
+from culet.rendering.inputs import Inputs
+from culet.rendering.panoramas import Panorama
 from culet.rendering.program import Programs, Variant, build
 from culet.scene.model import Scene
 
@@ -60,8 +61,8 @@ class Renderer:
         panorama: Panorama | None = None,
         features: Features | None = None,
     ) -> Picture:
-        """An empty picture of the scene, to be refined. The panorama, (height, width, 3) linear radiance, belongs to a
-        scene whose sky is an image; `features` asks for another program than the scene needs."""
+        """An empty picture of the scene, to be refined. The panorama belongs to a scene
+        whose sky is an uploaded image; `features` asks for another program than the scene needs."""
         return Picture(self, scene, stone, width, height, panorama, features)
 
     def describe(self) -> dict[str, str | int]:

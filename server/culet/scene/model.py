@@ -88,14 +88,20 @@ def _form_of_material(value: object) -> str | None:
     return "<ior>" if isinstance(value, IndexMaterial) or (isinstance(value, dict) and "ior" in value) else None
 
 
+MaterialName = Literal[
+    "diamond", "diamond-turri", "moissanite", "cubic-zirconia", "sapphire", "ruby", "emerald", "spinel", "yag", "quartz",
+    "strontium-titanate", "rutile", "bk7", "classic",
+]  # fmt: skip
+"""Those of optics/materials.py, which has their sources."""
+
 Material = Annotated[
-    Annotated[Literal["diamond", "classic"], Tag("<name>")]
+    Annotated[MaterialName, Tag("<name>")]
     | Annotated[IndexMaterial, Tag("<ior>")]
     | Annotated[SellmeierMaterial, Tag("<sellmeier>")],
     Discriminator(
         _form_of_material,
         custom_error_type="material",
-        custom_error_message="Input should be 'diamond', 'classic', an object with `ior` or one with `sellmeier`",
+        custom_error_message="Input should be a material's name, an object with `ior` or one with `sellmeier`",
     ),
 ]
 
