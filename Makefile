@@ -48,6 +48,7 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 	$(BIN)/clang-format -i kernels/culet_kernels/*.cl
+	$(BIN)/python .ci/default_scene.py
 	cd $(WEB) && npm run format
 
 # pytest ends with 5 if it has found no test.

@@ -1,4 +1,7 @@
-"""What README.md says is so: the default scene, the keys, the commands, the files it links to; its examples run."""
+"""What README.md says is so: the default scene, the keys, the commands, the files it links to; its command lines run.
+
+The end-to-end tests run its examples of REST.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,8 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 import typer
 from PIL import Image
 
@@ -34,7 +35,7 @@ def block(heading: str, language: str) -> str:
 
 def test_the_default_scene_is_written_out_in_full() -> None:
     default = Scene().model_dump(mode="json")
-    assert json.loads(block("The scene", "json")) == default, f"write this into README.md:\n{json.dumps(default)}"
+    assert json.loads(block("The scene", "json")) == default, "make format writes it"
 
 
 def test_the_default_cut_is_written_out_in_full() -> None:
@@ -86,21 +87,6 @@ def test_every_preset_that_an_example_names_exists() -> None:
     assert {name for pair in named for name in pair if name} <= set(PRESETS)
 
 
-@pytest.fixture(scope="module")
-def server() -> Iterator[str]:
-    """The URL of a running `culet serve`."""
-    command = [sys.executable, "-u", "-m", "culet", "serve", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout
-        ready = process.stdout.readline()
-        try:
-            found = re.search(r"http://\S+?(?=/?\s)", ready)
-            assert found, f"expected a URL, got {ready!r}"
-            yield found[0]
-        finally:
-            process.terminate()
-
-
 def run(script: str, folder: Path) -> None:
     """Run an example as a reader would, with this environment's commands."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -114,15 +100,6 @@ def size_and_format(file: Path) -> tuple[tuple[int, int], str | None]:
     """What Pillow takes a file for."""
     with Image.open(file) as image:
         return image.size, image.format
-
-
-def test_the_examples_of_rest_run(server: str, tmp_path: Path) -> None:
-    example = block("REST", "sh")
-    assert "server=http://127.0.0.1:8000\n" in example
-    run(example.replace("http://127.0.0.1:8000", server), tmp_path)
-    assert size_and_format(tmp_path / "classic.tga") == ((320, 180), "TGA")
-    assert size_and_format(tmp_path / "stone.png") == ((320, 180), "PNG")
-    assert size_and_format(tmp_path / "frame.tga") == ((320, 180), "TGA")
 
 
 def test_the_examples_of_the_command_line_run(tmp_path: Path) -> None:
