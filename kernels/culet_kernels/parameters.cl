@@ -16,12 +16,12 @@ typedef struct {
   real reach;                                               // from the eye to the foot, in lengths of that direction
   real cutoff;                                              // weight below which a chain ends
   real panorama_turn;                                       // of the sky's image about the vertical, in whole turns
-  real centre[3];                   // the stone's centre in the world, from where checkers are counted
-  real absorption[3];               // per R, by channel
-  real sky_bottom[3], sky_top[3];   // radiance, by channel
-  real lamp[MAX_LAMPS][3];          // direction of a lamp in the sky, over the width of its edge (in cosine),
-  real lamp_edge[MAX_LAMPS];        // and how far along that scale the edge begins
-  real lamp_radiance[MAX_LAMPS][3]; // by channel
+  real centre[3];                                  // the stone's centre in the world, from where checkers are counted
+  real absorption[3];                              // per R, by channel
+  real sky_bottom[3], sky_top[3];                  // radiance, by channel
+  real lamp[MAX_LAMPS][3];                         // direction of a lamp in the sky, of unit length;
+  real lamp_rim[MAX_LAMPS], lamp_slope[MAX_LAMPS]; // its edge: rim - slope (squared distance to it), from 0 to 1
+  real lamp_radiance[MAX_LAMPS][3];                // by channel
   real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
   real light[MAX_LIGHTS][3];        // position
   real light_colour[MAX_LIGHTS][3]; // by channel

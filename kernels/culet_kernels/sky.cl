@@ -6,8 +6,10 @@
 
 // Radiance in up to three channels. Which ones, `channels_t` says: all three, or the one of a dispersed chain; its count
 // is known at compile time wherever it is used, so that the channels left out cost nothing.
+// With one lane in single precision it would be 12 bytes, which PoCL 3.1 (LLVM 15) returns in registers, and loses.
+#define RADIANCE_CHANNELS (LANES == 1 ? 5 : 3)
 typedef struct {
-  realL channel[3];
+  realL channel[RADIANCE_CHANNELS];
 } radianceL;
 
 typedef struct {
@@ -64,10 +66,11 @@ static inline radianceL sky(world_t world, vec3L direction, channels_t channels)
   if (kind == STUDIO) {
     for (int k = 0; k < channels.count; k++) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);
     for (int i = 0; i < scene->lamps; i++) {
-      // Smoothstep from the lamp's rim to where it has its full radiance.
-      const realL cosine =
-          direction.x * scene->lamp[i][0] + direction.y * scene->lamp[i][1] + direction.z * scene->lamp[i][2];
-      const realL s = clamp(cosine - scene->lamp_edge[i], (realL)0, (realL)1);
+      // Smoothstep over 1 - cosine, from the lamp's rim to where it has its full radiance; as half the squared distance
+      // between unit vectors, since small lamps would lose their digits in a cosine next to 1.
+      const vec3L apart =
+          vec3(direction.x - scene->lamp[i][0], direction.y - scene->lamp[i][1], direction.z - scene->lamp[i][2]);
+      const realL s = clamp(scene->lamp_rim[i] - scene->lamp_slope[i] * dot3(apart, apart), (realL)0, (realL)1);
       const realL share = s * s * ((real)3 - 2 * s);
       for (int k = 0; k < channels.count; k++)
         radiance.channel[k] = fma(share, splat(scene->lamp_radiance[i][channels.first + k]), radiance.channel[k]);

@@ -35,7 +35,7 @@ def layout(real: Real) -> np.dtype[np.void]:
             ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
             ("reach", r), ("cutoff", r), ("panorama_turn", r), ("centre", r, 3), ("absorption", r, 3),
             ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
-            ("lamp_edge", r, MAX_LAMPS), ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
+            ("lamp_rim", r, MAX_LAMPS), ("lamp_slope", r, MAX_LAMPS), ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
             ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
             ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("max_bounces", i),
             ("width", i), ("height", i), ("chains", i), ("panorama_width", i), ("panorama_height", i), ("sample", i),
@@ -112,12 +112,13 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
 
 
 def _set_lamps(p: NDArray[np.void], studio: StudioEnvironment) -> None:
-    """A lamp's share is smoothstep((direction . axis - rim) / (full - rim)); the division is put into axis and rim."""
+    """A lamp's share is smoothstep((rim - x) / (rim - full)), x = 1 - cosine = 2 sin^2(angle / 2), its values at the rim
+    and where the lamp is at its full."""
     for number, lamp in enumerate(studio.lamps):
-        rim, full = np.cos(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])))
-        axis = np.array(lamp.direction) / np.linalg.norm(lamp.direction)
-        p["lamp"][number] = axis / (full - rim)
-        p["lamp_edge"][number] = rim / (full - rim)
+        rim, full = 2 * np.sin(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])) / 2) ** 2
+        p["lamp"][number] = np.array(lamp.direction) / np.linalg.norm(lamp.direction)
+        p["lamp_rim"][number] = rim / (rim - full)
+        p["lamp_slope"][number] = 0.5 / (rim - full)
         p["lamp_radiance"][number] = lamp.radiance
     p["lamps"] = len(studio.lamps)
 

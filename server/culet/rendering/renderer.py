@@ -174,6 +174,8 @@ class Picture:
 
     def rgb(self) -> NDArray[np.uint8]:
         """(height, width, 3) tone-mapped, 8 bits."""
+        if self.samples == 0:
+            return np.zeros((self.height, self.width, 3), np.uint8)
         shown = np.empty((self.height, self.width, 3), np.uint8)
         target = self._allocate(shown.nbytes)
         film, pixels = self.scene.film, self.width * self.height
@@ -188,7 +190,9 @@ class Picture:
 
     def _tally(self) -> NDArray[np.float32]:
         """By tile: segments, and the weight that was cut; of the last sample."""
-        tallies = np.empty((self._tiles[0] * self._tiles[1], TALLIES), np.float32)
+        tallies = np.zeros((self._tiles[0] * self._tiles[1], TALLIES), np.float32)
+        if self.samples == 0:
+            return tallies
         cl.enqueue_copy(self._renderer.device.queue, tallies, self._tallies)
         return tallies
 
