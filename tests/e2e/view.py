@@ -26,6 +26,15 @@ MILLISECONDS = 1e3
 OF_ONE_VIEWER = ("ack", "ping", "resize", "visibility")
 """Messages that change nothing in the session."""
 
+RECORD = """() => {
+  window.record = [];
+  const look = () => {
+    const { sequence, simulationTime, step, timestamp } = culet.lastFrame;
+    if (window.record.at(-1)?.sequence !== sequence) window.record.push({ sequence, simulationTime, step, timestamp });
+    requestAnimationFrame(look);
+  };
+  look();
+}"""
 READ_THE_CANVAS = "() => [culet.lastFrame, document.getElementById('picture').toDataURL('image/png')]"
 
 
@@ -103,6 +112,15 @@ class View:
             [after, int(Flags.FINAL)],
         )
         return self.look()
+
+    def record(self) -> None:
+        """From now on, note the headers of the frames that are on the canvas, looking with every animation frame."""
+        self.page.evaluate(RECORD)
+
+    @property
+    def recorded(self) -> list[dict[str, Any]]:
+        """The headers noted since `record`."""
+        return cast(list[dict[str, Any]], self.page.evaluate("() => window.record"))
 
     def change(self, act: Callable[[], object]) -> tuple[Seen, Seen]:
         """Do something that changes the picture: the finished pictures before and after."""
