@@ -8,7 +8,7 @@ import signal
 from e2e.server import Server
 from e2e.view import View, difference
 
-SNAPSHOT_AGE = 1.5
+SNAPSHOT_AGE = 2.0
 """Seconds of the fall that may be lost: the engine tells where a moving stone is once a second."""
 STOPPED = "The render process stopped"
 
@@ -47,8 +47,8 @@ def test_the_page_says_so_and_goes_on_with_the_same_scene(view: View, server: Se
     assert view.number("outOfOrder") == 0
 
 
-def test_a_stone_goes_on_falling_from_where_it_was(view: View, server: Server) -> None:
-    view.page.keyboard.press("p")
+def test_a_stone_goes_on_falling_from_where_it_was(bouncing: View, server: Server) -> None:
+    view = bouncing
     view.until("seconds => culet.lastFrame.simulationTime > seconds", SNAPSHOT_AGE + 1)
     kill_the_engine(view, server)
     last = view.look().frame

@@ -20,10 +20,9 @@ MOVING_STATUS = " \u00b7 ".join(
 )
 
 
-def test_frames_are_shown_in_order_while_the_stone_falls(view: View) -> None:
-    view.at_rest()
+def test_frames_are_shown_in_order_while_the_stone_falls(bouncing: View) -> None:
+    view = bouncing
     view.record()
-    view.page.keyboard.press("p")
     view.until("() => culet.framesShown > 60 && culet.lastFrame.simulationTime > 1.5")
     record = view.recorded
     assert len(record) > 20
@@ -35,9 +34,9 @@ def test_frames_are_shown_in_order_while_the_stone_falls(view: View) -> None:
     assert view.problems == []
 
 
-def test_the_status_line_tells_rate_cost_and_latency(view: View) -> None:
+def test_the_status_line_tells_rate_cost_and_latency(bouncing: View) -> None:
+    view = bouncing
     status = view.page.locator("#status")
-    view.page.keyboard.press("p")
     view.until("pattern => RegExp(pattern).test(document.getElementById('status').textContent)", MOVING_STATUS)
     view.page.keyboard.press("p")
     view.at_rest()
@@ -45,10 +44,9 @@ def test_the_status_line_tells_rate_cost_and_latency(view: View) -> None:
     assert "16 samples" in status.inner_text()
 
 
-def test_a_finished_picture_costs_a_small_part_of_a_moving_one(view: View, server: Server) -> None:
+def test_a_finished_picture_costs_a_small_part_of_a_moving_one(bouncing: View, server: Server) -> None:
+    view = bouncing
     spans = 2.0
-    view.page.keyboard.press("p")
-    view.until("() => culet.lastFrame.simulationTime > 0.1")
     began = server.cpu_seconds()
     server.live_for(spans)
     moving = server.cpu_seconds() - began
