@@ -96,3 +96,14 @@ def view_of(browser: Browser, server: Server) -> Iterator[ViewOf]:
 def view(view_of: ViewOf) -> View:
     """A page on a new session of the matte scene, whose picture shows every edit."""
     return view_of().open()
+
+
+@pytest.fixture
+def bouncing(view_of: ViewOf, server: Server) -> View:
+    """A page on a stone that falls, and bounces for long; the default one lies still after two seconds."""
+    scene: dict[str, Any] = {"floor": {"kind": "matte"}, "simulation": {"restitution": 0.97}}
+    answer = server.http.post("/api/sessions", json={"scene": scene})
+    view = view_of().open(f"?session={answer.json()['id']}")
+    view.page.keyboard.press("p")
+    view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.1")
+    return view

@@ -26,6 +26,15 @@ MILLISECONDS = 1e3
 OF_ONE_VIEWER = ("ack", "ping", "resize", "visibility")
 """Messages that change nothing in the session."""
 
+RECORD = """() => {
+  window.record = [];
+  const look = () => {
+    const { sequence, simulationTime, step, timestamp } = culet.lastFrame;
+    if (window.record.at(-1)?.sequence !== sequence) window.record.push({ sequence, simulationTime, step, timestamp });
+    requestAnimationFrame(look);
+  };
+  look();
+}"""
 READ_THE_CANVAS = "() => [culet.lastFrame, document.getElementById('picture').toDataURL('image/png')]"
 
 
@@ -47,6 +56,8 @@ class View:
     """Control messages of the session, in order."""
     complaints: list[str] = field(default_factory=list)
     """Errors and warnings in the console, and exceptions that nobody caught."""
+    refusals: set[int] = field(default_factory=set)
+    """Statuses of answers that the test is about; Chromium itself writes those above 400 to the console."""
     foreign: list[str] = field(default_factory=list)
     """Requests to anything but the server."""
 
@@ -79,6 +90,11 @@ class View:
         return cast(dict[str, Any], self.state["scene"])
 
     @property
+    def connection(self) -> str:
+        """connecting, open, waiting or closed."""
+        return cast(str, self.page.evaluate("() => culet.connection"))
+
+    @property
     def problems(self) -> list[str]:
         """What the page has complained of to its user."""
         return cast(list[str], self.page.evaluate("() => [...culet.problems]"))
@@ -103,6 +119,15 @@ class View:
             [after, int(Flags.FINAL)],
         )
         return self.look()
+
+    def record(self) -> None:
+        """From now on, note the headers of the frames that are on the canvas, looking with every animation frame."""
+        self.page.evaluate(RECORD)
+
+    @property
+    def recorded(self) -> list[dict[str, Any]]:
+        """The headers noted since `record`."""
+        return cast(list[dict[str, Any]], self.page.evaluate("() => window.record"))
 
     def change(self, act: Callable[[], object]) -> tuple[Seen, Seen]:
         """Do something that changes the picture: the finished pictures before and after."""
@@ -135,7 +160,8 @@ class View:
         chooser.value.set_files(file)
 
     def _logged(self, message: ConsoleMessage) -> None:
-        if message.type in ("error", "warning"):
+        expected = any(f"responded with a status of {status} " in message.text for status in self.refusals)
+        if message.type in ("error", "warning") and not expected:
             self.complaints.append(message.text)
 
     def _requested(self, request: Request) -> None:

@@ -5,8 +5,7 @@
     classic  (1.2 L)^1.2, the report's
     none     linear
 
-All four clip negative components, but for filmic, which moves them into the gamut first. These are the references of
-film.cl, in double precision.
+Negative components are clipped, but by filmic desaturated. These are the references of film.cl, in double precision.
 """
 
 from __future__ import annotations
@@ -38,15 +37,18 @@ def encode_srgb(linear: ArrayLike) -> NDArray[np.float64]:
 
 
 def _hable(x: NDArray[np.float64] | float) -> NDArray[np.float64]:
-    above = x * (SHOULDER * x + ANGLE * LINEAR) + TOE * TOE_NUMERATOR
+    """Published as (x (A x + C B) + D E) / (x (A x + B) + D F) - E / F; on one denominator D E cancels, and with it the
+    rounding that the difference leaves in the dark."""
+    foot = TOE_NUMERATOR / TOE_DENOMINATOR
+    above = x * (SHOULDER * (1 - foot) * x + LINEAR * (ANGLE - foot))
     below = x * (SHOULDER * x + LINEAR) + TOE * TOE_DENOMINATOR
-    return np.asarray(above / below - TOE_NUMERATOR / TOE_DENOMINATOR)
+    return np.asarray(above / below)
 
 
 def filmic_curve(luminance: ArrayLike) -> NDArray[np.float64]:
     """Luminance 0 and above to 0..1: 0 stays 0, FILMIC_WHITE and what is brighter become 1."""
     x = np.minimum(EXPOSURE_BIAS * np.asarray(luminance, dtype=np.float64), LINEAR_WHITE)
-    return np.maximum(_hable(x) / _hable(LINEAR_WHITE), 0)  # at 0 rounding leaves 1e-17
+    return np.asarray(_hable(x) / _hable(LINEAR_WHITE))
 
 
 def _srgb(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -55,16 +57,16 @@ def _srgb(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _filmic(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
     """The curve acts on luminance and the colour is scaled with it, so that bright fire keeps its hue, which a curve on
-    each component would turn towards yellow, cyan and magenta. What then does not fit is desaturated just enough."""
-    inside = desaturate(rgb)
-    luminance = (inside @ LUMINANCE)[..., None]
+    each component would turn towards yellow, cyan and magenta. What then is below 0 or above 1 is desaturated just
+    enough."""
+    luminance = np.maximum(rgb @ LUMINANCE, 0)[..., None]
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = np.where(luminance > 0, filmic_curve(luminance) / luminance, 0)
-    return encode_srgb(desaturate(scale * inside, ceiling=1))
+    return encode_srgb(desaturate(scale * rgb, ceiling=1))
 
 
 def _classic(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.minimum((1.2 * np.maximum(rgb, 0)) ** 1.2, 1)
+    return np.asarray(np.minimum(1.2 * np.clip(rgb, 0, 1), 1) ** 1.2)
 
 
 def _none(rgb: NDArray[np.float64]) -> NDArray[np.float64]:

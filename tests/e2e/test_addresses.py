@@ -1,0 +1,51 @@
+"""Addresses that lead to no session."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from e2e.conftest import ViewOf
+from e2e.server import Server
+from e2e.view import View
+
+
+@pytest.mark.parametrize(
+    ("session", "text"),
+    [
+        pytest.param("0" * 32, "There is no such session (any more)", id="unknown"),
+        pytest.param("<b>nonsense", "<b>nonsense is not the id of a session", id="not-an-id"),
+    ],
+)
+def test_an_address_without_a_session_says_so_and_offers_a_new_one(
+    view_of: ViewOf, server: Server, session: str, text: str
+) -> None:
+    view = view_of()
+    view.refusals.add(404)
+    view.page.goto(f"{server.url}/?session={session}")
+    obstacle = view.page.get_by_role("alertdialog")
+    obstacle.wait_for()
+    assert text in obstacle.inner_text()
+    obstacle.get_by_role("button", name="Start a new session").click()
+    view.until("() => window.culet && culet.framesShown > 0")
+    assert re.fullmatch("[0-9a-f]{32}", view.session)
+    assert server.session(view.session)["viewers"] == 1
+
+
+def test_a_session_that_ends_while_it_is_watched_says_so(view: View, server: Server) -> None:
+    assert server.http.delete(f"/api/sessions/{view.session}").status_code == 204
+    obstacle = view.page.get_by_role("alertdialog")
+    obstacle.wait_for()
+    assert "There is no such session (any more)" in obstacle.inner_text()
+    assert view.connection == "closed"
+
+
+def test_a_preset_that_does_not_exist_is_named_with_those_that_do(view_of: ViewOf, server: Server) -> None:
+    view = view_of()
+    view.refusals.add(404)
+    view.page.goto(f"{server.url}/?preset=ruby")
+    obstacle = view.page.get_by_role("alertdialog")
+    obstacle.wait_for()
+    for name in ("ruby", "default", "classic"):
+        assert name in obstacle.inner_text()

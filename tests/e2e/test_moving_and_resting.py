@@ -1,0 +1,66 @@
+"""The stream while the stone falls, and when there is nothing more to show."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from e2e.conftest import SMALL
+from e2e.server import Server
+from e2e.view import View
+
+MOVING_STATUS = " \u00b7 ".join(
+    (
+        r"^\d+\.\d frames/s",
+        r"server [\d.]+ ms \(simulate [\d.]+, render [\d.]+, encode [\d.]+\)",
+        r"round trip [\d.]+ ms",
+        f"{SMALL['width']}\u00d7{SMALL['height']}",
+        "1 sample",
+        "1 viewer$",
+    )
+)
+
+
+def test_frames_are_shown_in_order_while_the_stone_falls(bouncing: View) -> None:
+    view = bouncing
+    view.record()
+    view.until("() => culet.framesShown > 60 && culet.lastFrame.simulationTime > 1.5")
+    record = view.recorded
+    assert len(record) > 20
+    for before, after in pairwise(record):
+        for clock in ("sequence", "simulationTime", "timestamp"):
+            assert after[clock] >= before[clock], f"{clock} went back"
+        assert after["step"] > before["step"]
+    assert view.number("outOfOrder") == 0
+    assert view.problems == []
+
+
+def test_the_status_line_tells_rate_cost_and_latency(bouncing: View) -> None:
+    view = bouncing
+    status = view.page.locator("#status")
+    view.until("pattern => RegExp(pattern).test(document.getElementById('status').textContent)", MOVING_STATUS)
+    view.page.keyboard.press("p")
+    view.at_rest()
+    view.until("() => document.getElementById('status').textContent.startsWith('still picture')")
+    assert "16 samples" in status.inner_text()
+
+
+def test_a_finished_picture_costs_a_small_part_of_a_moving_one(bouncing: View, server: Server) -> None:
+    view = bouncing
+    spans = 2.0
+    began = server.cpu_seconds()
+    server.live_for(spans)
+    moving = server.cpu_seconds() - began
+
+    view.page.keyboard.press("p")
+    view.until("() => !culet.state.falling")
+    view.at_rest()
+    before = server.metrics()
+    began = server.cpu_seconds()
+    server.live_for(spans)
+    resting = server.cpu_seconds() - began
+    after = server.metrics()
+    for name in ("engine_frames_rendered", "engine_refinements"):
+        assert after[name] == before[name], "nothing is rendered when nothing changes"
+    assert after["engine_frames_repeated"] > before["engine_frames_repeated"], "but the last frame is sent again"
+    assert resting < 0.3 * moving, "measured 0.09, of which looking at the metrics is most"
+    assert view.number("outOfOrder") == 0
