@@ -131,13 +131,14 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
     assert left["default"] == {"lights"}
     assert left["tinted-blue"] == {"lights", "absorption"}
     assert features_of(Scene.read(OWN["bare"]), stone) == Features(
-        Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], dispersion=0, absorption=0, fresnel=0,
+        Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], dispersion=0, absorption=0, fresnel=0, end=0,
         camera_inside=0,
     )  # fmt: skip
 
 
 def test_options_name_what_is_decided_and_nothing_else() -> None:
-    assert Features().options == ["-DGEOMETRY=1"]
-    assert Features(floor=2, lights=0).options == ["-DGEOMETRY=1", "-DFLOOR=2", "-DLIGHTS=0"]
-    assert Features(floor=2, lights=0).without("floor").options == ["-DGEOMETRY=1", "-DLIGHTS=0"]
-    assert Features(Geometry.MESH, floor=2).general == Features(Geometry.MESH)
+    structure = ["-DSPECTRAL=0", "-DPOLARISED=0"]
+    assert Features().options == ["-DGEOMETRY=1", *structure]
+    assert Features(floor=2, lights=0).options == ["-DGEOMETRY=1", "-DFLOOR=2", "-DLIGHTS=0", *structure]
+    assert Features(floor=2, lights=0).without("floor").options == ["-DGEOMETRY=1", "-DLIGHTS=0", *structure]
+    assert Features(Geometry.MESH, floor=2, spectral=1).general == Features(Geometry.MESH, spectral=1)

@@ -48,9 +48,9 @@ def is_coloured(scene: Scene) -> bool:
 
 
 def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArray[np.void]:
-    """(N,) one row a chain. `common`: the channels share one index; else each has its own, unless the scene is spectral.
+    """(N,) one row a chain. `common`: the channels share one index; else each has its own.
 
-    Where it is, `bands` wavelengths for each of the four groups of pixels, moved within their strata from sample to
+    Where the scene is spectral, `bands` wavelengths for each of the four groups of pixels, moved within their strata from sample to
     sample.
     """
     if not is_spectral(scene):

@@ -20,8 +20,9 @@ from culet.rendering.shadows import shadow_planes
 from culet.rendering.tree import tree_of
 from culet.scene.model import ImageEnvironment, Scene
 
+
 class Inputs:
-    """Buffers of one scene, in the order of the kernels' arguments; all but the chains are the same for every sample."""
+    """Buffers of one scene, in the order of the kernels' arguments; of them only struct and chains differ by sample."""
 
     def __init__(
         self,

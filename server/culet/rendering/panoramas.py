@@ -1,7 +1,7 @@
 """Skies as pictures of all directions: the studio's own, made by code, and those read from files.
 
-A panorama is (height, width, 3) float32 linear radiance, twice as wide as high: the zenith is above, -z at the left edge,
-+x a quarter of the way to the right. So has it Mitsuba's `envmap`, and, turned, most files of the kind.
+A panorama is (height, width, 3) float32 linear radiance, twice as wide as high: the zenith is above, -z at the left
+edge, +x a quarter of the way to the right. So has it Mitsuba's `envmap`, and, turned, most files of the kind.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ def directions(height: int) -> NDArray[np.float64]:
     phi = (np.arange(2 * height) + 0.5) * np.pi / height
     sine = np.sin(theta)[:, None]
     return np.stack(
-        [sine * np.sin(phi), np.broadcast_to(np.cos(theta)[:, None], (height, 2 * height)), -sine * np.cos(phi)], axis=-1
+        [sine * np.sin(phi), np.broadcast_to(np.cos(theta)[:, None], (height, 2 * height)), -sine * np.cos(phi)],
+        axis=-1,
     )
 
 
@@ -56,7 +57,7 @@ def light_box(height: int = STUDIO_HEIGHT) -> Panorama:
 def ring_lights(height: int = STUDIO_HEIGHT) -> Panorama:
     """Three thin bright rings about the vertical, as around a lens: many small lights for much fire."""
     elevation = np.degrees(np.arcsin(directions(height)[..., 1]))
-    rings = sum(_smooth(-np.abs(elevation - centre), -2.5, -1.5) for centre in (25, 50, 75))
+    rings = np.max([_smooth(-np.abs(elevation - centre), -2.5, -1.5) for centre in (25, 50, 75)], axis=0)
     return np.repeat((0.02 + 6 * rings)[..., None], 3, axis=-1).astype(np.float32)
 
 

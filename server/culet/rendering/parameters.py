@@ -35,7 +35,8 @@ def layout(real: Real) -> np.dtype[np.void]:
             ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
             ("reach", r), ("cutoff", r), ("panorama_turn", r), ("centre", r, 3), ("absorption", r, 3),
             ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
-            ("lamp_rim", r, MAX_LAMPS), ("lamp_slope", r, MAX_LAMPS), ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
+            ("lamp_rim", r, MAX_LAMPS), ("lamp_slope", r, MAX_LAMPS),
+            ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
             ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
             ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("max_bounces", i),
             ("width", i), ("height", i), ("chains", i), ("panorama_width", i), ("panorama_height", i), ("sample", i),
@@ -112,8 +113,8 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
 
 
 def _set_lamps(p: NDArray[np.void], studio: StudioEnvironment) -> None:
-    """A lamp's share is smoothstep((rim - x) / (rim - full)), x = 1 - cosine = 2 sin^2(angle / 2), its values at the rim
-    and where the lamp is at its full."""
+    """A lamp's share is smoothstep((rim - x) / (rim - full)); x = 1 - cosine = 2 sin^2(angle / 2), and rim and full are
+    its values at the lamp's rim and where it has its full radiance."""
     for number, lamp in enumerate(studio.lamps):
         rim, full = 2 * np.sin(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])) / 2) ** 2
         p["lamp"][number] = np.array(lamp.direction) / np.linalg.norm(lamp.direction)

@@ -92,7 +92,7 @@ def _tent(u: float) -> float:
 class Picture:
     """A scene seen at a size: sums of linear radiance on the device, one more sample of each pixel at a time.
 
-    Samples are summed in two halves, the even and the odd ones: how far the halves are apart tells the error of the whole.
+    Samples are summed in two halves, the even and the odd ones: how far apart they are tells the error of the whole.
     """
 
     def __init__(

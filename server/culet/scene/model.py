@@ -89,8 +89,8 @@ def _form_of_material(value: object) -> str | None:
 
 
 MaterialName = Literal[
-    "diamond", "diamond-turri", "moissanite", "cubic-zirconia", "sapphire", "ruby", "emerald", "spinel", "yag", "quartz",
-    "strontium-titanate", "rutile", "bk7", "classic",
+    "diamond", "diamond-turri", "moissanite", "cubic-zirconia", "sapphire", "ruby", "emerald", "spinel", "yag",
+    "quartz", "strontium-titanate", "rutile", "bk7", "classic",
 ]  # fmt: skip
 """Those of optics/materials.py, which has their sources."""
 
