@@ -50,8 +50,8 @@ def is_coloured(scene: Scene) -> bool:
 def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArray[np.void]:
     """(N,) one row a chain. `common`: the channels share one index; else each has its own.
 
-    A spectral scene has `bands` wavelengths for each of the four groups of pixels instead; they move within their strata
-    from sample to sample.
+    A spectral scene has `bands` wavelengths for each of the four groups of pixels instead; they move within their
+    strata from sample to sample.
     """
     if not is_spectral(scene):
         table = np.zeros(1 if common and scene.optics.estimator == "chain" else 3, layout(real))
