@@ -12,6 +12,7 @@ unique. The method of multipliers (Hestenes 1969) does not mind: p = p_before - 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from culet.simulation.body import RigidBody
@@ -23,29 +24,55 @@ from culet.simulation.state import Triple
 STIFFNESS = 1e3
 """rho in units of the mass. Larger: fewer iterations, more rounding."""
 ITERATIONS = 5
+ATTEMPTS = 4
+AXES: tuple[Triple, Triple, Triple] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def refine(
     motion: Motion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float], friction: float
 ) -> None:
-    """Replace the impulses by those that the states they show ask for; keep them where the states turn out wrong."""
-    rho = STIFFNESS * body.mass
-    rows, right, bonds = _mass_matrix(motion, body), [*motion.momentum, *motion.angular_momentum], []
-    for index, (point, target) in enumerate(zip(points, targets, strict=True)):
-        (a, b, c), (ix, iy, iz) = point.normal, point.impulse
+    """Replace the impulses by those that the states which they show ask for.
+
+    A contact that would have to pull is let go of, one that would need more friction than there is slips, and the rest
+    is solved again; after a few attempts the impulses are what was found, put back onto their cones.
+    """
+    mass_matrix, momenta = _mass_matrix(motion, body), [*motion.momentum, *motion.angular_momentum]
+    impulses = [point.impulse for point in points]
+    for _ in range(ATTEMPTS):
+        solved = _solved(mass_matrix, momenta, points, targets, friction, impulses, STIFFNESS * body.mass)
+        if solved is None:
+            return
+        impulses = [_on_cone(point, impulse, friction) for point, impulse in zip(points, solved, strict=True)]
+        if impulses == solved:
+            break
+    for point, impulse in zip(points, impulses, strict=True):
+        point.impulse = impulse
+
+
+def _solved(
+    mass_matrix: Matrix,
+    momenta: list[float],
+    points: Sequence[Contact],
+    targets: Sequence[float],
+    friction: float,
+    impulses: Sequence[Triple],
+    rho: float,
+) -> list[Triple] | None:
+    right, bonds = momenta[:], []
+    for index, (point, target, (ix, iy, iz)) in enumerate(zip(points, targets, impulses, strict=True)):
+        a, b, c = point.normal
         normal = ix * a + iy * b + iz * c
         if normal <= 0:
             continue
         sx, sy, sz = ix - normal * a, iy - normal * b, iz - normal * c
-        slipping = friction == 0 or (sx * sx + sy * sy + sz * sz) >= (friction * normal * (1 - 1e-9)) ** 2
-        if slipping:
+        if friction == 0 or sx * sx + sy * sy + sz * sz >= (friction * normal * (1 - 1e-9)) ** 2:
             push = (ix / normal, iy / normal, iz / normal)
             bonds.append((index, _lever(point.arm, push), _lever(point.arm, point.normal), target, normal))
         else:
-            for axis, part in (((1.0, 0.0, 0.0), ix), ((0.0, 1.0, 0.0), iy), ((0.0, 0.0, 1.0), iz)):
-                along = axis[0] * a + axis[1] * b + axis[2] * c
+            for axis, part, along in zip(AXES, (ix, iy, iz), (a, b, c), strict=True):
                 lever = _lever(point.arm, axis)
                 bonds.append((index, lever, lever, target * along, part))
+    rows = [row[:] for row in mass_matrix]
     for _, out, back, target, _ in bonds:
         for i, factor in enumerate(out):
             if factor != 0:
@@ -54,7 +81,7 @@ def refine(
                 right[i] += stiff * target
     system = inverse(rows)
     if system is None:
-        return
+        return None
     parts = [part for *_, part in bonds]
     for _ in range(ITERATIONS):
         loaded = right[:]
@@ -65,22 +92,25 @@ def refine(
             part - rho * (sum([x * y for x, y in zip(back, w, strict=True)]) - target)
             for (_, _, back, target, _), part in zip(bonds, parts, strict=True)
         ]
-    _accept(points, [(index, out, part) for (index, out, *_), part in zip(bonds, parts, strict=True)], friction)
+    found = [(0.0, 0.0, 0.0)] * len(points)
+    for (index, out, *_), part in zip(bonds, parts, strict=True):
+        x, y, z = found[index]
+        found[index] = (x + out[0] * part, y + out[1] * part, z + out[2] * part)
+    return found
 
 
-def _accept(points: Sequence[Contact], found: list[tuple[int, list[float], float]], friction: float) -> None:
-    impulses: dict[int, Triple] = {}
-    for index, out, part in found:
-        x, y, z = impulses.get(index, (0.0, 0.0, 0.0))
-        impulses[index] = (x + out[0] * part, y + out[1] * part, z + out[2] * part)
-    for index, (x, y, z) in impulses.items():
-        a, b, c = points[index].normal
-        normal = x * a + y * b + z * c
-        slip = (x - normal * a) ** 2 + (y - normal * b) ** 2 + (z - normal * c) ** 2
-        if normal < 0 or slip > (friction * normal * (1 + 1e-6)) ** 2 + 1e-300:
-            return
-    for index, impulse in impulses.items():
-        points[index].impulse = impulse
+def _on_cone(point: Contact, impulse: Triple, friction: float) -> Triple:
+    """The impulse if it is one that the contact can give; else with less friction, or none at all."""
+    (x, y, z), (a, b, c) = impulse, point.normal
+    normal = x * a + y * b + z * c
+    if normal <= 0:
+        return (0.0, 0.0, 0.0)
+    sx, sy, sz = x - normal * a, y - normal * b, z - normal * c
+    slip, limit = math.sqrt(sx * sx + sy * sy + sz * sz), friction * normal
+    if slip <= limit * (1 + 1e-9):
+        return impulse
+    part = limit / slip
+    return (normal * a + part * sx, normal * b + part * sy, normal * c + part * sz)
 
 
 def _lever(arm: Triple, force: Triple) -> list[float]:

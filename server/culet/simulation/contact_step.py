@@ -23,10 +23,14 @@ from culet.simulation.contact import TOUCH, Contact, closing_speed, contacts_of
 from culet.simulation.free_rotation import Integrator, turned
 from culet.simulation.impact import limited
 from culet.simulation.impulses import solve
-from culet.simulation.motion import Motion, gaps, kinetic_energy, pushed_out, sphere_centre_gap
+from culet.simulation.motion import Motion, gaps, kinetic_energy, pushed_out, speed, sphere_centre_gap, stopped
 
 MAX_ROUNDS = 6
 """Of adding vertices that arrive within the step, or of shortening it."""
+
+REST = 1e-6
+"""Of the speed that gravity gives in the step: a stone that the contacts leave with less is held by them, and what is
+left is the solver's rounding, which would let it creep down a slope by 1e-8 R a second."""
 
 Vertex = tuple[int, int]
 """Surface and vertex."""
@@ -80,7 +84,8 @@ def _kicked_and_stopped(
     px, py, pz = motion.momentum
     kicked = motion._replace(momentum=(px, py - body.mass * gravity * length, pz))
     targets = [-point.gap / length if point.gap > TOUCH else 0.0 for point in points]
-    return solve(kicked, body, points, targets, friction)
+    solved = solve(kicked, body, points, targets, friction)
+    return stopped(solved) if speed(solved, body) <= REST * gravity * length else solved
 
 
 def _resisted(motion: Motion, body: RigidBody, moment: float) -> Motion:

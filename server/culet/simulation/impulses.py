@@ -28,7 +28,7 @@ PASSES = 8
 LAST_PASSES = 200
 """Of the last round: where the contacts' states do not settle, as with friction far above 1."""
 ROUNDS = 6
-STALLED = 1e-6
+STALLED = 1e-8
 """Of the largest impulse: a smaller change that passes no longer reduce is two vertices that push against each other
 along the edge between them, more and more: it moves nothing."""
 TOLERANCE = 1e-10
@@ -48,7 +48,25 @@ def solve(
             break
         if round_ < ROUNDS - 1:
             refine(motion, body, points, targets, friction)
+    else:
+        if friction > 0:
+            return _finished_without_friction(motion, body, points, targets)
     return with_impulses(motion, points)
+
+
+def _finished_without_friction(
+    motion: Motion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float]
+) -> Motion:
+    """Where friction far above 1 keeps the contacts from agreeing (Painlevé): a further push along the normals.
+
+    Without friction the problem is convex and has an answer, and more pressure leaves the impulses within the disc.
+    """
+    so_far = [point.impulse for point in points]
+    moving = solve(with_impulses(motion, points), body, points, targets, 0)
+    for point, (x, y, z) in zip(points, so_far, strict=True):
+        a, b, c = point.impulse
+        point.impulse = (a + x, b + y, c + z)
+    return moving
 
 
 def _converged(

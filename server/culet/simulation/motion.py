@@ -58,6 +58,11 @@ def speed(motion: Motion, body: RigidBody) -> float:
     )
 
 
+def stopped(motion: Motion) -> Motion:
+    """At rest in the same place."""
+    return motion._replace(momentum=(0.0, 0.0, 0.0), angular_momentum=(0.0, 0.0, 0.0))
+
+
 def pushed_out(motion: Motion, body: RigidBody) -> Motion:
     """Moved straight out of whatever surface it reaches into; its velocity knows nothing of it.
 

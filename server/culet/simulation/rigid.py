@@ -22,7 +22,7 @@ from culet.simulation.contact_step import contact_step
 from culet.simulation.flight import fly
 from culet.simulation.free_rotation import INTEGRATORS, Integrator
 from culet.simulation.impact import impact
-from culet.simulation.motion import Motion, gaps, pushed_out, sphere_centre_gap
+from culet.simulation.motion import Motion, gaps, pushed_out, sphere_centre_gap, stopped
 from culet.simulation.state import RigidState, Touch, Triple
 from culet.simulation.support import is_supported
 
@@ -35,6 +35,8 @@ MAX_CONTACT_TURN = 0.1
 """rad in one contact step: of second order in it are what lifts a rolling stone and what slows it down."""
 SLEEP_SPEED = 1e-6
 """sqrt(g R). On a stable support, a slower stone is at rest: it would move on by less than 1e-6 R."""
+SUPPORT_REACH = 10 * TOUCH
+"""R. Of the facet that a stone at rest lies on three vertices touch; the others may be a little above the floor."""
 ROUNDING = 1e-9
 """Of the speed of the fastest point: vertices that close in more slowly are sliding or turning along the surface."""
 
@@ -67,9 +69,9 @@ def step(state: RigidState, settings: SimulationSettings, body: RigidBody) -> Ri
                 motion = impact(motion, body, touching, settings.restitution, settings.friction)
                 impacts += 1
                 continue
-            if fastest <= scales.sleep_speed and is_supported(touching):
-                motion = motion._replace(momentum=(0.0, 0.0, 0.0), angular_momentum=(0.0, 0.0, 0.0))
-                asleep = settings.sleeping
+            slow = settings.sleeping and fastest <= scales.sleep_speed
+            if slow and is_supported(contacts(motion, body, SUPPORT_REACH)):
+                motion, asleep = stopped(motion), True
                 break
             time = min(scales.contact_step, MAX_CONTACT_TURN / math.hypot(*omega) if any(omega) else math.inf)
             time = min(max(time, settings.time_step / MAX_CONTACT_STEPS), left)

@@ -1,0 +1,158 @@
+"""Rest: on a stable facet, flat, without drift, asleep; and awake again when something happens."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+
+from culet.errors import InputError
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.scene.model import StoneSettings
+from culet.simulation.rotation import normalised, rotate_back
+from culet.simulation.simulation import MAX_SPEED, Simulation
+from culet.simulation.surfaces import FLOOR, WALLS
+from simulation.solids import UPRIGHT, about, advance, lowest, nearest, rigid, spin_of
+
+TABLE_DOWN = (0.0, 1.0, 0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def brilliant() -> Stone:
+    return stone_of(StoneSettings(), {})
+
+
+def stable_normals(stone: Stone) -> NDArray[np.float64]:
+    """(F, 3) outward normals of the facets on which a stone rests by itself: above which its centre of mass is.
+
+    `compute_stable_poses` works on triangles and rounds normals to 3 decimals; it is asked for the set only.
+    """
+    mesh = trimesh.Trimesh(stone.vertices, stone.triangles, process=False)
+    transforms, _ = trimesh.poses.compute_stable_poses(mesh, center_mass=np.zeros(3), threshold=1e-9)
+    return -transforms[:, 2, :3]  # the direction that the pose turns down
+
+
+def dropped(stone: Stone, rng: np.random.Generator, **settings: object) -> Simulation:
+    """From a random height, turned and spun at random, until it sleeps."""
+    orientation = normalised(tuple(rng.normal(size=4).tolist()))
+    height, spin = float(rng.uniform(0.5, 3)), tuple((4 * rng.normal(size=3)).tolist())
+    moving = rigid(stone, (0.0, height, 0.0), orientation, spin=spin, rolling_resistance=0.01, **settings)
+    while not moving.state.asleep and moving.state.time < 60:
+        moving.step()
+    return moving
+
+
+def check_rest(moving: Simulation, stone: Stone, stable: NDArray[np.float64]) -> None:
+    assert moving.state.asleep
+    down = np.array(rotate_back(moving.state.orientation, (0.0, -1.0, 0.0)))
+    facets = stone.planes[:, :3]
+    tilt = np.linalg.norm(facets - down, axis=1).min()
+    assert math.degrees(tilt) < 0.1
+    assert np.linalg.norm(stable - down, axis=1).min() < 2e-3, "a facet that carries the stone"
+    assert -1e-4 < nearest(moving) < 1e-5
+    assert spin_of(moving) == (0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    "drops", [pytest.param(50, id="50"), pytest.param(500, id="500", marks=pytest.mark.validation)]
+)
+def test_a_dropped_brilliant_sleeps_on_a_stable_facet(brilliant: Stone, drops: int) -> None:
+    stable, rng = stable_normals(brilliant), np.random.default_rng(12)
+    for _ in range(drops):
+        check_rest(dropped(brilliant, rng), brilliant, stable)
+
+
+def test_other_stones_sleep_on_a_stable_facet_too(box: Stone, double_cone: Stone) -> None:
+    rng = np.random.default_rng(5)
+    for stone in (box, double_cone):
+        stable = stable_normals(stone)
+        for _ in range(5):
+            check_rest(dropped(stone, rng), stone, stable)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_stone_at_rest_that_may_not_sleep_does_not_move_for_a_minute(brilliant: Stone, seed: int) -> None:
+    asleep = dropped(brilliant, np.random.default_rng(seed))
+    start = asleep.state
+    awake = rigid(brilliant, start.position, start.orientation, sleeping=False, rolling_resistance=0, time_step=1 / 60)
+    path = advance(awake, 60)
+    drift = max(math.dist(state.position, start.position) for state in path)
+    turned = max(math.dist(state.orientation, start.orientation) for state in path)
+    assert not path[-1].asleep
+    assert drift < 1e-6
+    assert turned < 1e-6
+
+
+def test_a_stone_balanced_on_an_edge_does_not_sleep(box: Stone) -> None:
+    """It may stand there, as a pencil may on its tip, but it is not at rest."""
+    angle = math.atan2(3, 6)  # half edges 6/7 and 3/7: the diagonal is upright
+    moving = rigid(box, (0.0, -1 + 3 / 7 * math.sqrt(5), 0.0), about((0.0, 0.0, 1.0), math.pi / 2 - angle))
+    assert nearest(moving) == pytest.approx(0, abs=1e-9)
+    advance(moving, 0.1)
+    assert not moving.state.asleep
+
+
+def test_asleep_only_time_passes(brilliant: Stone) -> None:
+    moving = rigid(brilliant, (0.0, -1 + float(brilliant.vertices[:, 1].max()), 0.0), TABLE_DOWN)
+    moving.step()
+    first = moving.state
+    assert first.asleep
+    advance(moving, 1)
+    assert (moving.state.position, moving.state.orientation) == (first.position, first.orientation)
+    assert moving.state.time == pytest.approx(1 + 1 / 120)
+
+
+def test_a_push_wakes_the_stone_and_gives_it_the_impulse(box: Stone) -> None:
+    moving = rigid(box, (0.0, lowest(box), 0.0))
+    advance(moving, 0.1)
+    assert moving.settled
+    at = moving.state.position
+    moving.push((0.5, 0.0, 0.0), (at[0] - 6 / 7, at[1], at[2] + 0.1))
+    assert not moving.settled
+    assert moving.state.momentum == (0.5, 0, 0)
+    assert moving.state.angular_momentum == pytest.approx((0, 0.05, 0), abs=1e-16)  # r x p
+    advance(moving, 3)
+    assert moving.state.asleep
+    assert moving.state.position[0] > 1e-3
+
+
+@pytest.mark.parametrize("impulse", [(math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, 3 * MAX_SPEED)])
+def test_a_push_that_makes_no_sense_is_refused(box: Stone, impulse: tuple[float, float, float]) -> None:
+    moving = rigid(box, (0.0, lowest(box), 0.0))
+    before = moving.state
+    with pytest.raises(InputError, match="push"):
+        moving.push(impulse, (0.0, 0.0, 0.0))
+    assert moving.state is before
+
+
+def test_walls_that_appear_wake_the_stone_and_put_it_inside(box: Stone) -> None:
+    moving = rigid(box, (0.0, lowest(box), -12.0))
+    advance(moving, 0.1)
+    assert moving.state.asleep
+    moving.surround((FLOOR, *WALLS))
+    assert not moving.state.asleep
+    moving.step()
+    assert nearest(moving) > -1e-9
+    assert moving.state.momentum == pytest.approx((0, 0, 0), abs=1e-9)  # moved, not pushed
+
+
+def test_the_same_walls_do_not_wake_it(box: Stone) -> None:
+    moving = rigid(box, (0.0, lowest(box), 0.0))
+    advance(moving, 0.1)
+    moving.surround((FLOOR,))
+    assert moving.settled
+
+
+def test_walls_stop_a_stone_that_is_thrown_at_them(brilliant: Stone) -> None:
+    moving = rigid(
+        brilliant, (0.0, 2.0, 0.0), UPRIGHT, (FLOOR, *WALLS), velocity=(9, 2, -12), spin=(3, 1, 2),
+        rolling_resistance=0.01,
+    )  # fmt: skip
+    while not moving.state.asleep and moving.state.time < 60:
+        moving.step()
+        assert nearest(moving) > -1e-5
+    assert moving.state.asleep
