@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from culet.study.cases import CASES, FEATURE_CASES
 from engine.peer import TETRAHEDRON, connected, running_engine
 
-COMMANDS = ["render", "simulate", "serve", "gateway", "engine", "view", "record"]
+COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record"]
 TINY = ("--width", "48", "--height", "27")
 
 
@@ -101,6 +102,30 @@ def test_bad_input_is_one_line_and_exit_code_1(
 @pytest.mark.parametrize("arguments", [["render", "--width", "0"], ["render", "--widht", "9"], ["view"], ["dance"]])
 def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
     assert culet(*arguments).returncode == 2
+
+
+def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_path: Path) -> None:
+    out = tmp_path / "bench.jsonl"
+    for _ in range(2):
+        run = culet("bench", *TINY, "--repeats", "1", "-o", out)
+        assert run.returncode == 0, run.stderr
+    shown = culet("bench", *TINY, "--repeats", "1", "--features").stdout.decode()
+    rows = {line.strip().split("  ")[0]: line.split() for line in shown.splitlines()}
+    lines = [json.loads(line) for line in out.read_text().splitlines()]
+    assert [line["width"] for line in lines] == [48, 48], "a second run is appended"
+    assert lines[0]["machine"]["device"] in shown
+    assert [case["name"] for case in lines[0]["cases"]] == list(CASES)
+    for case in lines[0]["cases"]:
+        assert 0 < case["fastest"] <= case["seconds"]
+        assert str(case["segments"]) in rows[case["name"]], "the same work, whatever the time"
+    assert set(FEATURE_CASES) <= set(rows)
+    for feature in ("floor", "walls", "sky"):
+        without, idle = map(int, rows[feature][-2:])
+        assert without < idle, "a program without the feature is smaller"
+
+
+def test_a_benchmark_that_could_not_be_kept_is_not_begun(tmp_path: Path) -> None:
+    assert "cannot write" in refused(culet("bench", "-o", tmp_path / "missing" / "bench.jsonl"))
 
 
 def test_a_path_is_written_step_by_step(tmp_path: Path) -> None:

@@ -28,6 +28,8 @@ app = typer.Typer(
 
 BAND_ROWS = 64
 """Of a picture, between two looks at the progress bar."""
+REPORT_COLUMNS = 110
+"""Of tables that go to a file or a pipe."""
 
 Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")]
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
@@ -113,6 +115,61 @@ def simulate(
             path = record_path(settings, stone, seconds, advance)
         write(path, out)
         typer.echo(f"{out}: {len(path.time)} states, {path.time[-1]:g} s")
+
+
+@app.command()
+def bench(
+    width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 1280,
+    height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 720,
+    repeats: Annotated[int, typer.Option(min=1, max=1000, help="Frames of each scene; the median counts.")] = 9,
+    features: Annotated[
+        bool, typer.Option("--features", help="Also what each feature of a scene costs: absent, idle, in use.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="FILE", help="Append the figures and the machine's, one line of JSON."),
+    ] = None,
+) -> None:
+    """Measure the time of a frame of named scenes on this machine, the scenes taken in turns."""
+    from rich.console import Console
+
+    from culet.rendering.renderer import Renderer
+    from culet.study.bench import measure_cases, measure_features
+    from culet.study.bench import record as record_line
+    from culet.study.cases import FEATURE_CASES
+    from culet.study.tables import case_table, feature_table
+
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=REPORT_COLUMNS)
+    with errors_in_one_line(), _appending(out) as append:
+        renderer = Renderer()
+        with Console(stderr=True).status("measuring"):
+            timings = measure_cases(renderer, width, height, repeats)
+        console.print(f"{renderer.describe()['device']}, {width} x {height}, one sample a pixel, median of {repeats}")
+        console.print(case_table(timings))
+        if features:
+            costs = []
+            with _progress("compiling and measuring features") as advance:
+                for cost in measure_features(renderer, width, height, repeats):
+                    costs.append(cost)
+                    advance(len(costs) / len(FEATURE_CASES))
+            console.print(feature_table(costs))
+        append(record_line(renderer, width, height, timings))
+
+
+@contextlib.contextmanager
+def _appending(out: Path | None) -> Iterator[Callable[[str], None]]:
+    """Call it with a line for the file, or for nowhere; InputError before the work if the file cannot be written."""
+    if out is None:
+        yield lambda _line: None
+        return
+    try:
+        file = out.open("a", encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
+    with file:
+        yield lambda line: print(line, file=file)
 
 
 @contextlib.contextmanager
