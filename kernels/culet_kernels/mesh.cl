@@ -7,8 +7,8 @@
 #define CULET_MESH
 #include "hull.cl"
 
-#ifndef TREE_WIDTH // children of a node, triangles of a leaf: 4, 8 or 16
-#define TREE_WIDTH 8
+#ifndef TREE_WIDTH // children of a node, triangles of a leaf: 8 or 16
+#define TREE_WIDTH 16
 #endif
 #ifndef TREE_STACK // (TREE_WIDTH - 1) x the tree's depth + 1, at most
 #define TREE_STACK 128
@@ -19,6 +19,20 @@ typedef JOIN(MASK, TREE_WIDTH) maskW;
 typedef JOIN(int, TREE_WIDTH) intW;
 static inline realW load_wide(__global const real *from, int row) { return JOIN(vload, TREE_WIDTH)(row, from); }
 
+// One bit for each component of a comparison. Eight bytes of 0 or 1 are gathered in the top byte of a product.
+static inline uint byte_bits(uchar8 bytes) {
+  return (uint)(((as_ulong(bytes) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
+}
+static inline uint mask_bits(maskW mask) {
+#if TREE_WIDTH == 16
+  const uchar16 bytes = as_uchar16(convert_char16(mask));
+  return byte_bits(bytes.lo) | byte_bits(bytes.hi) << 8;
+#else
+  return byte_bits(as_uchar8(convert_char8(mask)));
+#endif
+}
+static inline int lowest_bit(uint bits) { return popcount((bits & -bits) - 1); }
+
 // Part of a triangle's extent, or of R along a ray, within which rounding may place a hit on the wrong side of an edge or
 // of the ray's start. Neighbours overlap by this much, which closes the cracks between them.
 #if IS_DOUBLE
@@ -28,7 +42,8 @@ static inline realW load_wide(__global const real *from, int row) { return JOIN(
 #endif
 
 typedef struct {
-  __global const real *boxes;   // for each node the children's lower x, y, z and upper x, y, z, TREE_WIDTH of each
+  // For each node the children's boxes and those of their normals: lower x, y, z and upper x, y, z, TREE_WIDTH of each.
+  __global const real *boxes;
   __global const int *links;    // for each child the node, or ~leaf
   __global const real *corners; // for each leaf one corner, two edges and the facet's normal, TREE_WIDTH of each
 } tree_t;
@@ -59,16 +74,17 @@ static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) 
   const realW t = (bx * qx + by * qy + bz * qz) * inverse;
   const maskW hits = faces & (u >= -OVERLAP) & (v >= -OVERLAP) & (u + v <= 1 + OVERLAP) &
                      (t >= probe->start - OVERLAP) & (t < probe->limit);
-  if (!any(hits)) return;
-  int hit[TREE_WIDTH];
+  uint hit = mask_bits(hits);
+  if (hit == 0) return;
   real distance[TREE_WIDTH];
-  JOIN(vstore, TREE_WIDTH)(JOIN(convert_int, TREE_WIDTH)(hits), 0, hit);
   JOIN(vstore, TREE_WIDTH)(t, 0, distance);
-  for (int k = 0; k < TREE_WIDTH; k++)
-    if (hit[k] && distance[k] < probe->limit) {
-      probe->limit = distance[k];
-      probe->triangle = leaf * TREE_WIDTH + k;
+  for (; hit != 0; hit &= hit - 1) {
+    const int place = lowest_bit(hit);
+    if (distance[place] < probe->limit) {
+      probe->limit = distance[place];
+      probe->triangle = leaf * TREE_WIDTH + place;
     }
+  }
 }
 
 static inline real away_from_zero(real x) { return fabs(x) < PARALLEL ? copysign(PARALLEL, x) : x; }
@@ -80,8 +96,18 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
   int size = 1;
   stack[0] = 0;
   nearness[0] = probe->start;
-  real inverse[3];
-  for (int k = 0; k < 3; k++) inverse[k] = 1 / away_from_zero(probe->direction[k]);
+  // Along each axis a box is entered at one of its two sides and left at the other, by the direction's sign. Boxes are a
+  // little larger than what they hold, by more than these operations round (rendering/tree.py).
+  real inverse[3], offset[3];
+  int first_side[3];
+  // Of the normals in a box the component that faces the ray most, or, inside, is turned away most.
+  int most_facing[3];
+  for (int k = 0; k < 3; k++) {
+    inverse[k] = 1 / away_from_zero(probe->direction[k]);
+    offset[k] = -probe->origin[k] * inverse[k];
+    first_side[k] = inverse[k] < 0 ? 3 + k : k;
+    most_facing[k] = side * probe->direction[k] < 0 ? 9 + k : 6 + k;
+  }
   while (size > 0) {
     size--;
     if (nearness[size] > probe->limit) continue;
@@ -90,31 +116,27 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
       probe_leaf(tree, ~node, side, probe);
       continue;
     }
-    __global const real *rows = tree.boxes + node * 6 * TREE_WIDTH;
-    realW near = (realW)(probe->start - OVERLAP), far = (realW)(probe->limit);
+    __global const real *rows = tree.boxes + node * 12 * TREE_WIDTH;
+    realW near = (realW)(probe->start - OVERLAP), far = (realW)(probe->limit), facing = (realW)(0);
     for (int k = 0; k < 3; k++) {
-      const realW lower = (load_wide(rows, k) - probe->origin[k]) * inverse[k];
-      const realW upper = (load_wide(rows, 3 + k) - probe->origin[k]) * inverse[k];
-      near = fmax(near, fmin(lower, upper));
-      far = fmin(far, fmax(lower, upper));
+      facing = fma(load_wide(rows, most_facing[k]), (realW)(-side * probe->direction[k]), facing);
+      near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(inverse[k]), (realW)(offset[k])));
+      far = fmin(far, fma(load_wide(rows, 3 + 2 * k - first_side[k]), (realW)(inverse[k]), (realW)(offset[k])));
     }
-    // The far side is moved by the rounding of its three operations (Ize, Robust BVH Ray Traversal, 2013).
-    const maskW enters = near <= far * (1 + 4 * OVERLAP) + OVERLAP;
-    if (!any(enters)) continue;
-    int enter[TREE_WIDTH];
+    uint entered = mask_bits((near <= far) & (facing > 0));
+    if (entered == 0) continue;
     real distance[TREE_WIDTH];
-    JOIN(vstore, TREE_WIDTH)(JOIN(convert_int, TREE_WIDTH)(enters), 0, enter);
     JOIN(vstore, TREE_WIDTH)(near, 0, distance);
     const int base = size;
-    for (int k = 0; k < TREE_WIDTH; k++) {
-      if (!enter[k]) continue;
+    for (; entered != 0; entered &= entered - 1) {
+      const int child = lowest_bit(entered);
       int place = size++; // sorted, the nearest on top
-      for (; place > base && nearness[place - 1] < distance[k]; place--) {
+      for (; place > base && nearness[place - 1] < distance[child]; place--) {
         stack[place] = stack[place - 1];
         nearness[place] = nearness[place - 1];
       }
-      stack[place] = tree.links[node * TREE_WIDTH + k];
-      nearness[place] = distance[k];
+      stack[place] = tree.links[node * TREE_WIDTH + child];
+      nearness[place] = distance[child];
     }
   }
 }

@@ -15,12 +15,16 @@ from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
 
-WIDTH = 8
+WIDTH = 16
 """Children of a node, and triangles of a leaf: TREE_WIDTH of mesh.cl."""
 STACK = 128
 """Nodes that a ray may have waiting: TREE_STACK of mesh.cl."""
 BINS = 16
 """Places at which a split is tried, along the longest side."""
+
+MARGIN = 4e-6
+"""R by which boxes are larger than what they hold: single precision rounds coordinates of up to 1, and the products of
+a ray's crossing with a box's side, by 6e-8 each; the triangles' own overlap is 2e-6."""
 
 Array = NDArray[np.float64]
 NOWHERE = (1e15, -2e15, 3e15)
@@ -32,7 +36,8 @@ class Tree:
     """Nodes in breadth-first order, the root first."""
 
     boxes: Array
-    """(N, 6, WIDTH): lower x, y, z and upper x, y, z of each child."""
+    """(N, 12, WIDTH): of each child the lower x, y, z and upper x, y, z of its box, and the same of its normals: a
+    child whose triangles all face the wrong way need not be looked into."""
     links: NDArray[np.int32]
     """(N, WIDTH): the child's node, or ~leaf."""
     corners: Array
@@ -117,15 +122,19 @@ def _areas(lower: Array, upper: Array) -> Array:
 def _collapse(root: _Branch, stone: Stone, corners: Array) -> tuple[Tree, int]:
     """The wide tree, and its depth in nodes."""
     boxes, links, leaves, depth = [], [], [np.empty(0, np.int64)], 0
+    turned = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-300)
     level = [root]
     numbered = 1
     while level:
         depth += 1
         below: list[_Branch] = []
         for node in level:
-            box, link = np.tile(np.array([*NOWHERE, *NOWHERE])[:, None], WIDTH), np.full(WIDTH, ~0, np.int32)
+            box, link = np.tile(np.array([*NOWHERE, *NOWHERE, *[0] * 6])[:, None], WIDTH), np.full(WIDTH, ~0, np.int32)
             for place, child in enumerate(_adopt(node)):
-                box[:3, place], box[3:, place] = child.lower, child.upper
+                box[:3, place], box[3:6, place] = child.lower - MARGIN, child.upper + MARGIN
+                of_child = turned[child.triangles]
+                box[6:9, place], box[9:, place] = of_child.min(axis=0) - MARGIN, of_child.max(axis=0) + MARGIN
                 if child.children is None:
                     link[place] = ~len(leaves)
                     leaves.append(child.triangles)
