@@ -45,4 +45,4 @@ class FreeTop:
         """(3,) rad/s, in the body's principal axes."""
         sn, cn, dn, _ = ellipj(self.rate * time + self._start, self.parameter)
         w = self._signs * self._amplitude * np.array([cn, sn, dn])
-        return w[::-1] if self._swapped else w
+        return np.asarray(w[::-1] if self._swapped else w, np.float64)

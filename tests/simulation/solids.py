@@ -57,7 +57,8 @@ def spin_of(moving: Simulation) -> Triple:
 def about(axis: Triple, angle: float) -> Quaternion:
     """The turn by an angle (radians) about a unit axis."""
     half = angle / 2
-    return normalised((math.cos(half), *(math.sin(half) * c for c in axis)))
+    sine = math.sin(half)
+    return normalised((math.cos(half), sine * axis[0], sine * axis[1], sine * axis[2]))
 
 
 def lowest(stone: Stone) -> float:
@@ -82,7 +83,8 @@ def random_body(stone: Stone, rng: np.random.Generator) -> tuple[RigidBody, Moti
         if kind == 2:
             down = down + 1e-3 * rng.normal(size=3)
         q = np.array([1 - down[1], down[2], 0.0, -down[0]]) if down[1] < 1 else np.array([0.0, 1.0, 0.0, 0.0])
-    orientation = normalised(tuple(q.tolist()))
+    w, x, y, z = q.tolist()
+    orientation = normalised((w, x, y, z))
     motion = Motion((0.0, 0.0, 0.0), orientation, tuple(rng.normal(size=3).tolist()), (0.0, 0.0, 0.0))
     omega = tuple((3 * rng.normal(size=3)).tolist())
     depth = float(gaps(motion, body, FLOOR).min())

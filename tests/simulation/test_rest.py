@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -33,14 +34,14 @@ def stable_normals(stone: Stone) -> NDArray[np.float64]:
     """
     mesh = trimesh.Trimesh(stone.vertices, stone.triangles, process=False)
     transforms, _ = trimesh.poses.compute_stable_poses(mesh, center_mass=np.zeros(3), threshold=1e-9)
-    return -transforms[:, 2, :3]  # the direction that the pose turns down
+    return np.asarray(-transforms[:, 2, :3], np.float64)  # the direction that the pose turns down
 
 
-def dropped(stone: Stone, rng: np.random.Generator, **settings: object) -> Simulation:
+def dropped(stone: Stone, rng: np.random.Generator) -> Simulation:
     """From a random height, turned and spun at random, until it sleeps."""
     orientation = normalised(tuple(rng.normal(size=4).tolist()))
     height, spin = float(rng.uniform(0.5, 3)), tuple((4 * rng.normal(size=3)).tolist())
-    moving = rigid(stone, (0.0, height, 0.0), orientation, spin=spin, rolling_resistance=0.01, **settings)
+    moving = rigid(stone, (0.0, height, 0.0), orientation, spin=spin, rolling_resistance=0.01, time_step=1 / 60)
     while not moving.state.asleep and moving.state.time < 60:
         moving.step()
     return moving
@@ -74,7 +75,7 @@ def test_other_stones_sleep_on_a_stable_facet_too(box: Stone, double_cone: Stone
             check_rest(dropped(stone, rng), stone, stable)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.validation) for seed in range(2, 8))])
 def test_a_stone_at_rest_that_may_not_sleep_does_not_move_for_a_minute(brilliant: Stone, seed: int) -> None:
     asleep = dropped(brilliant, np.random.default_rng(seed))
     start = asleep.state
@@ -108,16 +109,16 @@ def test_asleep_only_time_passes(brilliant: Stone) -> None:
 
 def test_a_push_wakes_the_stone_and_gives_it_the_impulse(box: Stone) -> None:
     moving = rigid(box, (0.0, lowest(box), 0.0))
-    advance(moving, 0.1)
-    assert moving.settled
-    at = moving.state.position
+    resting = advance(moving, 0.1)[-1]
+    assert resting.asleep
+    at = resting.position
     moving.push((0.5, 0.0, 0.0), (at[0] - 6 / 7, at[1], at[2] + 0.1))
-    assert not moving.settled
     assert moving.state.momentum == (0.5, 0, 0)
     assert moving.state.angular_momentum == pytest.approx((0, 0.05, 0), abs=1e-16)  # r x p
-    advance(moving, 3)
-    assert moving.state.asleep
-    assert moving.state.position[0] > 1e-3
+    assert not moving.settled
+    end = advance(moving, 3)[-1]
+    assert end.asleep
+    assert end.position[0] > 1e-3
 
 
 @pytest.mark.parametrize("impulse", [(math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, 3 * MAX_SPEED)])
@@ -132,9 +133,9 @@ def test_a_push_that_makes_no_sense_is_refused(box: Stone, impulse: tuple[float,
 def test_walls_that_appear_wake_the_stone_and_put_it_inside(box: Stone) -> None:
     moving = rigid(box, (0.0, lowest(box), -12.0))
     advance(moving, 0.1)
-    assert moving.state.asleep
+    asleep = moving.state
     moving.surround((FLOOR, *WALLS))
-    assert not moving.state.asleep
+    assert moving.state == replace(asleep, asleep=False)
     moving.step()
     assert nearest(moving) > -1e-9
     assert moving.state.momentum == pytest.approx((0, 0, 0), abs=1e-9)  # moved, not pushed

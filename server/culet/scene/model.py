@@ -337,10 +337,11 @@ class Simulation(Model):
     rolling_resistance: Annotated[float, Field(ge=0, le=1)] = Field(
         0.01, description="Lever arm of the floor's resistance to rolling, R (rigid)."
     )
-    integrator: Literal["rkmk4", "rk4", "midpoint", "splitting", "euler"] = Field(
+    integrator: Literal["rkmk4", "rk4", "midpoint", "splitting", "symmetric_top", "euler"] = Field(
         "rkmk4",
         description="How a free rotation is followed (rigid): Munthe-Kaas or classical Runge-Kutta, both of fourth "
-        "order; Lie midpoint or splitting, of second; the report's Euler, of first.",
+        "order; Lie midpoint or two splittings, of second (symmetric_top is exact for a body of revolution); the "
+        "report's Euler, of first.",
     )
     bounce_speed: Annotated[float, Field(ge=1e-6, le=1)] = Field(
         0.02, description="A slower impact does not bounce, in sqrt(g R) (rigid)."

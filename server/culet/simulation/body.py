@@ -55,10 +55,29 @@ class RigidBody:
         """Directions in the stone's axes with their moments, the smallest first."""
         return principal_axes(self.inertia)
 
-    def fastest_turn(self, angular_momentum: Triple) -> float:
-        """Upper bound of the angular speed, rad/s, however the stone is turned."""
+    def fastest_turn(self, orientation: Quaternion, angular_momentum: Triple) -> float:
+        """The highest angular speed, rad/s, that a free rotation from here passes through, or a little more.
+
+        |omega|^2 = sum x_i / I_i^2 where the squares x_i = L_i^2 >= 0 have sum x_i = L^2 and sum x_i / I_i = 2 E: a
+        linear programme, whose maximum has no more than two x_i that are not 0. |L| / I1 would be 10^6 times too much
+        for a needle that turns over.
+        """
         x, y, z = angular_momentum
-        return math.sqrt(x * x + y * y + z * z) / self.principal_axes[0].moment
+        squared = x * x + y * y + z * z
+        if squared == 0:
+            return 0.0
+        wx, wy, wz = self.angular_velocity_at(orientation, angular_momentum)
+        twice_energy = x * wx + y * wy + z * wz
+        moments = [axis.moment for axis in self.principal_axes]
+        fastest = wx * wx + wy * wy + wz * wz
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            difference = 1 / moments[i] - 1 / moments[j]
+            if difference > 0:
+                share = (twice_energy - squared / moments[j]) / difference
+                if -1e-9 * squared <= share <= (1 + 1e-9) * squared:
+                    share = min(max(share, 0.0), squared)
+                    fastest = max(fastest, share / moments[i] ** 2 + (squared - share) / moments[j] ** 2)
+        return math.sqrt(fastest)
 
     def velocity(self, state: RigidState) -> Triple:
         """Of the centre of mass, R/s."""

@@ -26,7 +26,7 @@ def fly(motion: Motion, body: RigidBody, gravity: float, time: float, integrator
 
     The stone must be outside the surfaces (`pushed_out`); it is outside at the end, at a touch by less than TOUCH.
     """
-    omega = body.fastest_turn(motion.angular_momentum)
+    omega = body.fastest_turn(motion.orientation, motion.angular_momentum)
     turning = omega * body.hull.radius
     part = time
     for surface in body.surfaces:

@@ -19,11 +19,15 @@ import math
 from collections.abc import Callable
 
 from culet.simulation.body import RigidBody
+from culet.simulation.principal_axes import PrincipalAxis
 from culet.simulation.rotation import euler_step, normalised, product, rotate_back
 from culet.simulation.state import Quaternion, Triple
 
 MAX_TURN = 0.125
 """rad. A longer step is divided. Larger: less work at high spin, less exact (by the fourth power)."""
+STIFF = 20.0
+"""Ratio of the largest to the smallest moment. Beyond, a Runge-Kutta step's error of the axis, divided by the smallest
+moment, becomes a spin that was never there; `symmetric_top` takes over, which cannot make that error."""
 MAX_DIVISIONS = 64
 """Of one step. A stone that turns by more than MAX_TURN times this is drawn at random anyway; see `turned`."""
 
@@ -71,16 +75,50 @@ def splitting(body: RigidBody, q: Quaternion, angular_momentum: Triple, h: float
     axes = body.principal_axes
     for axis, part in ((0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)):
         direction, moment = axes[axis]
-        x, y, z = rotate_back(q, angular_momentum)
-        along = x * direction[0] + y * direction[1] + z * direction[2]
-        half = along / moment * part * h / 2
-        sine = math.sin(half)
-        q = product(q, (math.cos(half), sine * direction[0], sine * direction[1], sine * direction[2]))
+        q = product(q, _turn(direction, _along_axis(q, angular_momentum, direction) / moment * part * h))
     return normalised(q)
 
 
+def symmetric_top(body: RigidBody, q: Quaternion, angular_momentum: Triple, h: float) -> Quaternion:
+    """Exact for a body with two equal moments; for others the rest is split off, by `splitting`'s turns. Second order.
+
+    With 1/I the same across an axis, the motion is a turn about L at L / I, and one about the axis at what is left.
+    """
+    smallest, middle, largest = body.principal_axes
+    if 1 / smallest.moment - 1 / middle.moment > 1 / middle.moment - 1 / largest.moment:
+        axis, one, other = smallest, middle, largest
+    else:
+        axis, one, other = largest, smallest, middle
+    across = (1 / one.moment + 1 / other.moment) / 2
+    rest = 1 / one.moment - across
+    q = _top_turn(q, angular_momentum, axis, across, h / 2)
+    if rest * math.hypot(*angular_momentum) * h > 1e-15:
+        for turn, part in ((one, 0.5), (other, -1.0), (one, 0.5)):
+            along = _along_axis(q, angular_momentum, turn.direction)
+            q = product(q, _turn(turn.direction, along * rest * part * h))
+    return normalised(_top_turn(q, angular_momentum, axis, across, h / 2))
+
+
+def _top_turn(q: Quaternion, angular_momentum: Triple, axis: PrincipalAxis, across: float, time: float) -> Quaternion:
+    along = _along_axis(q, angular_momentum, axis.direction)
+    q = product(q, _turn(axis.direction, along * (1 / axis.moment - across) * time))
+    length = math.hypot(*angular_momentum)
+    return product(_turn(_times(angular_momentum, 1 / length), length * across * time), q) if length > 0 else q
+
+
+def _along_axis(q: Quaternion, angular_momentum: Triple, direction: Triple) -> float:
+    x, y, z = rotate_back(q, angular_momentum)
+    return x * direction[0] + y * direction[1] + z * direction[2]
+
+
+def _turn(direction: Triple, angle: float) -> Quaternion:
+    sine = math.sin(angle / 2)
+    return (math.cos(angle / 2), sine * direction[0], sine * direction[1], sine * direction[2])
+
+
 INTEGRATORS: dict[str, Integrator] = {
-    "rkmk4": rkmk4, "rk4": rk4, "midpoint": midpoint, "splitting": splitting, "euler": euler,
+    "rkmk4": rkmk4, "rk4": rk4, "midpoint": midpoint, "splitting": splitting,
+    "symmetric_top": symmetric_top, "euler": euler,
 }  # fmt: skip
 
 
@@ -92,9 +130,11 @@ def turned(body: RigidBody, q: Quaternion, angular_momentum: Triple, time: float
     """
     if angular_momentum == (0.0, 0.0, 0.0):
         return q
-    divisions = math.ceil(body.fastest_turn(angular_momentum) * time / MAX_TURN)
+    divisions = math.ceil(body.fastest_turn(q, angular_momentum) * time / MAX_TURN)
     if divisions > MAX_DIVISIONS:
         return _about_angular_momentum(body, q, angular_momentum, time)
+    if body.principal_axes[2].moment > STIFF * body.principal_axes[0].moment:
+        integrator = symmetric_top
     for _ in range(max(divisions, 1)):
         q = integrator(body, q, angular_momentum, time / max(divisions, 1))
     return q
@@ -104,9 +144,7 @@ def _about_angular_momentum(body: RigidBody, q: Quaternion, angular_momentum: Tr
     length = math.hypot(*angular_momentum)
     axis = _times(angular_momentum, 1 / length)
     x, y, z = body.angular_velocity_at(q, angular_momentum)
-    half = (x * axis[0] + y * axis[1] + z * axis[2]) * time / 2
-    sine = math.sin(half)
-    return normalised(product((math.cos(half), sine * axis[0], sine * axis[1], sine * axis[2]), q))
+    return normalised(product(_turn(axis, (x * axis[0] + y * axis[1] + z * axis[2]) * time), q))
 
 
 def _gibbs_rate(body: RigidBody, q: Quaternion, angular_momentum: Triple, u: Triple) -> Triple:

@@ -54,7 +54,7 @@ def speed(motion: Motion, body: RigidBody) -> float:
     """Upper bound of how fast any point of the stone moves, R/s."""
     px, py, pz = motion.momentum
     return math.sqrt(px * px + py * py + pz * pz) / body.mass + body.hull.radius * body.fastest_turn(
-        motion.angular_momentum
+        motion.orientation, motion.angular_momentum
     )
 
 

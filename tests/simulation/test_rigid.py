@@ -1,0 +1,247 @@
+"""The model `rigid` as a whole: the same bits, the same drop in other units, and its behaviour at every extreme."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import math
+import struct
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+from culet.geometry.load import stone_of
+from culet.geometry.stone import MassProperties, Stone
+from culet.scene.model import StoneSettings
+from culet.simulation.clock import FixedStepClock
+from culet.simulation.simulation import Simulation
+from culet.simulation.state import RigidState
+from culet.simulation.surfaces import FLOOR, WALLS, Surface
+from simulation.conftest import stone_of as stone_of_mesh
+from simulation.solids import UPRIGHT, about, advance, nearest, rigid
+
+ROOM = (FLOOR, *WALLS)
+TILTED = about((0.6, 0.0, 0.8), 0.7)
+
+
+@pytest.fixture(scope="module")
+def brilliant() -> Stone:
+    return stone_of(StoneSettings(), {})
+
+
+@pytest.fixture
+def exact_box(box: Stone) -> Stone:
+    """Corners and tensor in closed form: trimesh's sums may round differently on another processor."""
+    corners = np.array(list(itertools.product((-6 / 7, 6 / 7), (-3 / 7, 3 / 7), (-2 / 7, 2 / 7))))
+    return replace(box, vertices=corners, mass=MassProperties(box.mass.volume, np.diag([13, 40, 45]) / 147))
+
+
+def digest(path: list[RigidState]) -> str:
+    sha = hashlib.sha256()
+    for state in path:
+        numbers = (state.time, *state.position, *state.orientation, *state.momentum, *state.angular_momentum)
+        sha.update(struct.pack("<14d3q", *numbers, state.step, state.impacts, state.asleep))
+    return sha.hexdigest()
+
+
+def test_a_drop_is_the_same_bits_everywhere(exact_box: Stone) -> None:
+    """Flight, impacts, sliding, rolling and sleep. A change of this hash is a change of the model."""
+    moving = rigid(exact_box, (0.0, 2.0, 0.0), TILTED, spin=(1, 2, 3), rolling_resistance=0.01, time_step=1 / 60)
+    path = advance(moving, 8)
+    assert path[-1].impacts > 3
+    assert path[-1].asleep
+    assert digest(path) == "ed7d0ff6655435f534c1ae82f36e29e3384f67ee1b36e5f0d5f926b9497d92fc"
+
+
+@pytest.mark.parametrize("frames", [[1 / 60], [1 / 7], [0.001, 0.08, 0.033]])
+def test_frames_and_pauses_do_not_change_the_path(box: Stone, frames: list[float]) -> None:
+    settings: dict[str, Any] = {"spin": (1, 2, 3), "time_step": 1 / 60}
+    path = advance(rigid(box, orientation=TILTED, **settings), 3)
+    moving, clock = rigid(box, orientation=TILTED, **settings), FixedStepClock(1 / 60)
+    for elapsed in itertools.cycle(frames):
+        for _ in range(clock.advance(elapsed)):
+            moving.step()
+            assert moving.state == path[moving.state.step - 1]
+        clock.restart()
+        if moving.state.step >= 150:
+            break
+
+
+@pytest.mark.parametrize("at", [1, 110, 140, 200])
+def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Stone, at: int) -> None:
+    whole, other = (rigid(box, orientation=TILTED, spin=(1, 2, 3)) for _ in range(2))
+    for _ in range(at):
+        whole.step()
+    other.restore(json.loads(json.dumps(whole.snapshot(), allow_nan=False)))
+    assert digest(advance(other, 1)) == digest(advance(whole, 1))
+
+
+def scaled_drop(stone: Stone, time: float, mass: float, impacts: int) -> list[tuple[float, ...]]:
+    """A drop where a second is `time` of ours and the mass `mass` times as large: poses up to so many impacts."""
+    moving = rigid(
+        stone, (0.0, 2.0, 0.0), TILTED, ROOM, gravity=9.81 * time**2, spin=(1 * time, 2 * time, 3 * time),
+        velocity=(0.5 * time, 0, 0), time_step=1 / 60 / time, mass=2 * mass,
+    )  # fmt: skip
+    path: list[tuple[float, ...]] = []
+    while moving.state.impacts <= impacts and moving.state.step < 240:  # 4 s: until it rolls
+        moving.step()
+        path.append((*moving.state.position, *moving.state.orientation))
+    return path
+
+
+@pytest.mark.parametrize(("time", "mass"), [(0.25, 1.0), (16.0, 2.0**-20)])
+def test_the_same_drop_in_units_of_powers_of_two_is_the_same_to_the_bit(
+    brilliant: Stone, time: float, mass: float
+) -> None:
+    assert scaled_drop(brilliant, time, mass, 1000) == scaled_drop(brilliant, 1, 1, 1000)
+
+
+@pytest.mark.parametrize(("time", "mass"), [(1.7, 1.0), (0.3, 1.0), (1.0, 3e5), (7.0, 1e-7)])
+def test_the_same_drop_in_any_units_agrees_up_to_its_second_impact(brilliant: Stone, time: float, mass: float) -> None:
+    other, ours = scaled_drop(brilliant, time, mass, 1), scaled_drop(brilliant, 1, 1, 1)
+    length = min(len(other), len(ours)) - 1
+    assert length > 40
+    assert np.array(other[:length]) == pytest.approx(np.array(ours[:length]), abs=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 25.4])
+def test_the_same_drop_of_a_stone_in_another_unit_of_length_agrees(unit: float) -> None:
+    mesh = trimesh.creation.cone(radius=1, height=1.3, sections=16)
+    ours = stone_of_mesh("cone", mesh)
+    other = stone_of_mesh("cone", trimesh.Trimesh(mesh.vertices * unit, mesh.faces))
+    paths = [np.array(scaled_drop(stone, 1, 1, 1)) for stone in (ours, other)]
+    length = min(map(len, paths)) - 1
+    assert paths[1][:length] == pytest.approx(paths[0][:length], abs=1e-9)
+
+
+def test_a_stone_that_is_not_convex_touches_with_its_hull(ring: Stone) -> None:
+    moving = rigid(ring, orientation=TILTED, spin=(1, 2, 3), rolling_resistance=0.02)
+    while not moving.state.asleep and moving.state.time < 60:
+        moving.step()
+        assert nearest(moving) > -1e-5
+    assert moving.state.asleep
+
+
+def needle() -> Stone:
+    return stone_of_mesh("needle", trimesh.creation.box((1000, 1, 1)))
+
+
+def wafer() -> Stone:
+    return stone_of_mesh("wafer", trimesh.creation.cylinder(radius=1, height=1e-3, sections=32))
+
+
+def tetrahedron() -> Stone:
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], float)
+    return stone_of_mesh("tetrahedron", trimesh.convex.convex_hull(corners))
+
+
+def near_sphere() -> Stone:
+    return stone_of_mesh("near-sphere", trimesh.creation.icosphere(4))
+
+
+SHAPES = {"needle": needle, "wafer": wafer, "tetrahedron": tetrahedron, "near-sphere": near_sphere}
+
+EXTREMES: dict[str, dict[str, Any]] = {
+    "no gravity": {"gravity": 0, "velocity": (0, -3, 0)},
+    "gravity of 1e6": {"gravity": 1e6},
+    "gravity of 1e6 in steps of 0.25 s": {"gravity": 1e6, "time_step": 0.25},
+    "almost no mass": {"mass": 1e-9},
+    "huge mass": {"mass": 1e9},
+    "clay": {"restitution": 0},
+    "superball": {"restitution": 1},
+    "ice": {"friction": 0},
+    "glue": {"friction": 1e3},
+    "superball of glue": {"friction": 1e3, "restitution": 1},
+    "longest step": {"time_step": 0.25},
+    "shortest step": {"time_step": 1e-4},
+    "a radian a step": {"spin": (60, 90, 40)},
+    "a hundred radians a step": {"spin": (6000, 9000, 4000)},
+    "fastest spin": {"spin": (1e9, 1e9, -1e9)},
+    "thrown at a wall": {"velocity": (0, 0, -1e4)},
+    "fastest throw": {"velocity": (1e9, -1e9, -1e9)},
+}
+
+
+def energy_bound(moving: Simulation) -> float:
+    """Rounding, and the rotation's fourth order."""
+    return 1e-6 * (abs(moving.energy()) + moving.body.mass * moving.settings.gravity)
+
+
+def check_extreme(moving: Simulation, steps: int) -> None:
+    """Finite, in the room, and never with more energy than before."""
+    last, start = moving.energy(), moving.energy()
+    allowed = energy_bound(moving)
+    for _ in range(steps):
+        moving.step()
+        state = moving.state
+        numbers = (*state.position, *state.orientation, *state.momentum, *state.angular_momentum)
+        assert all(math.isfinite(number) for number in numbers)
+        assert abs(sum(c * c for c in state.orientation) - 1) < 1e-12
+        assert nearest(moving) > -1e-4
+        assert moving.energy() <= last + allowed
+        last = moving.energy()
+    assert last <= start + allowed
+
+
+@pytest.mark.parametrize("name", EXTREMES)
+def test_extremes_stay_finite_in_the_room_and_within_their_energy(brilliant: Stone, name: str) -> None:
+    moving = rigid(brilliant, orientation=TILTED, surfaces=ROOM, **{"spin": (1, 2, 3)} | EXTREMES[name])
+    check_extreme(moving, 24 if moving.settings.time_step > 1e-3 else 1000)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("restitution", [0, 0.6, 1])
+def test_extreme_shapes_stay_finite_in_the_room_and_within_their_energy(shape: str, restitution: float) -> None:
+    stone = SHAPES[shape]()
+    check_extreme(rigid(stone, (0.0, 1.0, 0.0), TILTED, ROOM, spin=(1, 2, 3), restitution=restitution), 180)
+
+
+@pytest.mark.parametrize("depth", [0.1, 1.0, 50.0])
+def test_a_start_below_the_floor_comes_up_without_speed(brilliant: Stone, depth: float) -> None:
+    moving = rigid(brilliant, (0.0, -1 - depth, 0.0), TILTED)
+    moving.step()
+    assert nearest(moving) > -1e-9
+    assert moving.state.position[1] <= 0
+    assert max(map(abs, moving.body.velocity(moving.state))) < 9.81 / 120 * 1.1
+
+
+def test_a_start_in_a_corner_of_three_planes_comes_out_and_rests(brilliant: Stone) -> None:
+    corner: tuple[Surface, ...] = (FLOOR, Surface((1.0, 0.0, 0.0), -1.0), Surface((0.0, 0.0, 1.0), -1.0))
+    moving = rigid(brilliant, (-1.5, -1.5, -1.5), TILTED, corner, rolling_resistance=0.01)
+    moving.step()
+    assert nearest(moving) > -1e-9
+    top = moving.energy()
+    while not moving.state.asleep and moving.state.time < 30:
+        moving.step()
+        assert nearest(moving) > -1e-5
+        assert moving.energy() <= top + 1e-9
+        top = max(moving.energy(), -1e9)
+    assert moving.state.asleep
+
+
+@pytest.mark.parametrize("friction", [1.0, 1.5, 3.0, 1e3])
+@pytest.mark.parametrize("angle", [0.3, 0.8, 1.2])
+def test_painleves_rod_gets_a_bounded_impulse(friction: float, angle: float) -> None:
+    """A rod that slides on its end against the lean: with mu > 4/3 there is no answer, or two (Painlevé 1895)."""
+    rod = stone_of_mesh("rod", trimesh.creation.box((100, 1, 1)))
+    orientation = about((0.0, 0.0, 1.0), angle)
+    lift = nearest(rigid(rod, orientation=orientation))
+    for speed in (5.0, -5.0):
+        sliding = rigid(
+            rod, (0.0, 4.0 - lift, 0.0), orientation, friction=friction, velocity=(speed, 0, 0), restitution=0,
+            time_step=1 / 240,
+        )  # fmt: skip
+        check_extreme(sliding, 60)
+
+
+def test_the_integrator_can_be_chosen(box: Stone) -> None:
+    ends = set()
+    for integrator in ("rkmk4", "rk4", "midpoint", "splitting", "euler"):
+        moving = rigid(box, (0.0, 50.0, 0.0), UPRIGHT, spin=(1, 2, 3), integrator=integrator, time_step=1 / 30)
+        advance(moving, 1)
+        ends.add(moving.state.orientation)
+    assert len(ends) == 5
