@@ -77,4 +77,5 @@ def test_a_broken_mesh_is_refused_with_what_is_wrong(
     toast.wait_for()
     assert complaint in toast.inner_text()
     assert view.scene == before
-    view.change_by("m")  # the session goes on
+    view.page.keyboard.press("m")
+    view.until("() => culet.state.scene.floor.kind === 'mirror'")  # the session goes on

@@ -111,7 +111,8 @@ def test_a_scene_that_cannot_be_used_is_refused_with_the_reason(
     toast.wait_for()
     assert re.search(complaint, toast.inner_text()), toast.inner_text()
     assert view.scene == before
-    view.change_by("w")  # the session goes on
+    view.page.keyboard.press("w")
+    view.until("() => culet.state.walls")  # the session goes on
     toast.get_by_role("button", name="Dismiss").click()
     assert toast.count() == 0
 

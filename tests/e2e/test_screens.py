@@ -45,7 +45,8 @@ def test_a_phone_shows_picture_status_and_a_folded_panel(view_of: ViewOf) -> Non
         assert inside(box(heading))
     page.get_by_role("button", name="Stone and surroundings").tap()
     checkbox = page.get_by_role("checkbox", name="Mirror")
-    view.change(checkbox.tap)
+    checkbox.tap()
+    view.until("() => culet.state.mirror")
     assert checkbox.is_checked()
     assert view.scene["floor"]["kind"] == "mirror"
     assert [message["type"] for message in view.sent] == ["toggle_mirror"]
