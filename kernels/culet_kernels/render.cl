@@ -83,7 +83,7 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
     clear(&pools.outside);
     for (int number = 0; number < scene->chains; number++) {
       const chain_t chain = chains[number];
-      const uint seed = ((scene->sample * 64 + number) * 8191 + tile_row) * 8191 + tile_column;
+      const uint seed = ((scene->sample * 256 + number) * 8191 + tile_row) * 8191 + tile_column;
       const task_t task = {chain, {CHANNELS == 3 ? 0 : number, CHANNELS}, seed * 0x9e3779b9u};
       const hits_t *seen = hits + (GROUPS == 1 ? 0 : chain.group);
       if (seen->count > 0) trace(world, &tile, &pools, task, seen);

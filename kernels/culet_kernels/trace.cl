@@ -38,13 +38,21 @@ static inline void scale_weights(packetL *packet, realL factor) {
   for (int k = 0; k < WEIGHTS; k++) packet->weight[k] *= factor;
 }
 
-// What a packet's weight is in a pixel's sum over the three channels. Polarised light may come to more than the weight,
-// at most twice it.
-static inline realL over_channels(task_t task, const packetL *packet) {
+// What a packet's weight is in a pixel's sum over the three channels.
+static inline realL summed_weight(task_t task, const packetL *packet) {
   if (WEIGHTS == 3) return packet->weight[0] + packet->weight[1] + packet->weight[2];
   if (SPECTRAL)
     return (fabs(task.chain.share[0]) + fabs(task.chain.share[1]) + fabs(task.chain.share[2])) * packet->weight[0];
   return CHANNELS * packet->weight[0];
+}
+
+// The most that a packet's weight can be in a pixel's sum over the three channels. Boundaries to come may turn polarisation
+// into intensity.
+static inline realL over_channels(task_t task, const packetL *packet) {
+  const realL weight = summed_weight(task, packet);
+  if (!POLARISED) return weight;
+  const polarisationL p = packet->polarisation;
+  return weight * (1 + sqrt(p.q * p.q + p.u * p.u + p.v * p.v));
 }
 
 // Adds a packet's radiance, and the weight that it loses, to its pixels.
