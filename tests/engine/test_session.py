@@ -42,7 +42,7 @@ def test_how_often_it_is_looked_at_does_not_change_the_way_of_the_stone() -> Non
 
 
 def test_time_is_the_pictures_not_the_last_steps() -> None:
-    assert fallen(0.05).shown.simulation_time == pytest.approx(0.05 - 1 / 30, abs=1e-9)  # drawn one step behind
+    assert fallen(0.05).shown.simulation_time == pytest.approx(0.05 - 1 / 120, abs=1e-9)  # drawn one step behind
 
 
 def test_a_long_pause_between_frames_is_slow_motion_and_no_leap() -> None:

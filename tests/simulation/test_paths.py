@@ -69,9 +69,20 @@ def test_the_sphere_holds_the_resting_stone_off_the_floor(path: Path) -> None:
 
 
 def test_a_start_inside_the_floor_is_recorded_as_penetration(box: Stone) -> None:
-    inside = record(Scene().moved((0, -0.25, 0), (1, 0, 0, 0)), box, 0.1)
+    inside = record(preset("classic").moved((0, -0.25, 0), (1, 0, 0, 0)), box, 0.1)
     assert inside.penetration[0] == 0.25
     assert inside.penetration[1] == 0
+
+
+def test_the_rigid_model_records_its_own_vertices_at_floor_and_walls(box: Stone) -> None:
+    scene = Scene.read({"walls": {"kind": "matte"}, "simulation": {"spin": [0, 0, 0]}})
+    behind = record(scene.moved((0, 2, -7.9), (1, 0, 0, 0)), box, 0.1)
+    assert behind.penetration[0] == pytest.approx(2 / 7 - 0.1)  # the wall is at z = -8
+    assert behind.penetration[1:].max() < 1e-9
+    resting = record(scene.moved((0, -4 / 7, 0), (1, 0, 0, 0)), box, 0.1)
+    assert resting.asleep[-1]
+    assert resting.contacts[-1] == 4
+    assert resting.clearance[-1] == pytest.approx(0, abs=1e-12)
 
 
 def test_a_time_between_two_steps_ends_at_the_earlier(box: Stone) -> None:

@@ -319,7 +319,7 @@ class Simulation(Model):
     """How the stone moves."""
 
     model: Literal["rigid", "classic"] = Field(
-        "classic",
+        "rigid",
         description="rigid: the stone's own corners against floor and walls; classic: the report's sphere against "
         "the floor.",
     )
@@ -335,7 +335,7 @@ class Simulation(Model):
     restitution: Annotated[float, Field(ge=0, le=1)] = 0.6
     friction: Annotated[float, Field(ge=0, le=1e3)] = Field(0.3, description="Coulomb's coefficient (rigid).")
     rolling_resistance: Annotated[float, Field(ge=0, le=1)] = Field(
-        0.01, description="Lever arm of the floor's resistance to rolling, R (rigid)."
+        0.02, description="Lever arm of the floor's resistance to rolling, R (rigid)."
     )
     integrator: Literal["rkmk4", "rk4", "midpoint", "splitting", "symmetric_top", "euler"] = Field(
         "rkmk4",
@@ -365,7 +365,9 @@ class Simulation(Model):
     random_torque_speed: Annotated[float, Field(ge=0, le=1e6)] = Field(
         2, description="An impact is hard above this rebound speed, R/s (classic)."
     )
-    time_step: Annotated[float, Field(ge=1e-4, le=0.25)] = Field(1 / 30, description="Seconds.")
+    time_step: Annotated[float, Field(ge=1e-4, le=0.25)] = Field(
+        1 / 120, description="Seconds. A picture is drawn between two steps, so a longer one cuts bounces off."
+    )
     seed: Annotated[int, Field(ge=0, le=2**53 - 1)] = 0
 
 

@@ -27,7 +27,7 @@ CLASSIC = Scene(
     camera=Camera(position=(0, 2, 13), target=(0, 1.4, 0), fov_degrees=45),
     optics=Optics(fresnel="schlick", estimator="classic", max_bounces=12),
     film=Film(tone_map="classic"),
-    simulation=Simulation(inertia="cone"),
+    simulation=Simulation(model="classic", inertia="cone", time_step=1 / 30),
 )
 """The report's own scene, to its constants: material, estimator, tone map and simulation."""
 
