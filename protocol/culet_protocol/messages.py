@@ -88,7 +88,7 @@ class ToggleWalls(Message):
 
 
 class PatchScene(Message):
-    """Change parts of the scene: a JSON merge patch (RFC 7396)."""
+    """Change parts of the scene: a JSON merge patch (RFC 7396), but an object of another `kind` is replaced."""
 
     type: Literal["patch_scene"] = "patch_scene"
     patch: dict[str, Any]

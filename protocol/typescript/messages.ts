@@ -82,7 +82,7 @@ export interface ToggleWalls {
   type: "toggle_walls";
 }
 
-/** Change parts of the scene: a JSON merge patch (RFC 7396). */
+/** Change parts of the scene: a JSON merge patch (RFC 7396), but an object of another `kind` is replaced. */
 export interface PatchScene {
   type: "patch_scene";
   patch: JsonObject;

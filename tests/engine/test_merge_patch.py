@@ -31,3 +31,19 @@ def test_neither_argument_is_changed() -> None:
     target, patch = {"a": {"b": 1}}, {"a": {"c": 2, "b": None}}
     merge_patch(target, patch)
     assert (target, patch) == ({"a": {"b": 1}}, {"a": {"c": 2, "b": None}})
+
+
+STUDIO = {"floor": {"kind": "none"}, "environment": {"kind": "studio", "lamps": [1]}}
+
+
+@pytest.mark.parametrize(
+    ("patch", "expected"),
+    [
+        ({"environment": {"kind": "light"}}, STUDIO | {"environment": {"kind": "light"}}),
+        ({"environment": {"kind": "studio"}}, STUDIO),
+        ({"environment": {"lamps": []}}, STUDIO | {"environment": {"kind": "studio", "lamps": []}}),
+        ({"environment": {"kind": "half", "radiance": None}}, STUDIO | {"environment": {"kind": "half"}}),
+    ],
+)
+def test_an_object_of_another_kind_takes_the_place_of_the_one_before(patch: object, expected: object) -> None:
+    assert merge_patch(STUDIO, patch) == expected

@@ -127,6 +127,12 @@ async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -
     assert changed.status_code == 200
     scene: dict[str, Any] = (await gateway.http.get(path)).json()["scene"]
     assert (scene["floor"]["kind"], scene["lights"]) == ("none", [])
+    for environment in (
+        {"kind": "light"},
+        {"kind": "constant", "radiance": [1, 2, 3]},
+    ):  # from a studio
+        changed = await gateway.http.patch(path, json={"environment": environment})
+        assert changed.json()["scene"]["environment"] == environment
 
     assert (await gateway.http.delete(path)).status_code == 204
     for method, body in (("GET", None), ("PATCH", {}), ("DELETE", None)):

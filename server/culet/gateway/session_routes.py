@@ -81,7 +81,11 @@ async def patch_session(
     patch: Annotated[dict[str, Any], Body(examples=[{"floor": {"kind": "matte"}}])],
     gateway: ThisGateway,
 ) -> SessionAnswer:
-    """Change parts of a session's scene by a JSON merge patch (RFC 7396)."""
+    """Change parts of a session's scene by a JSON merge patch (RFC 7396).
+
+    One thing is not as there: an object of another `kind`, such as `{"environment": {"kind": "light"}}`, replaces the
+    one before instead of being merged into it.
+    """
     finite(patch)
     session = gateway.sessions.get(session_id)
     await gateway.sessions.apply(session, PatchScene(patch=patch))
