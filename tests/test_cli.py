@@ -88,6 +88,9 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
         (["-"], b'{"colour": "red"}', "colour"),
         (["--preset", "ruby"], b"", "classic"),
         (["--mesh", "nowhere.obj"], b"", "nowhere.obj"),
+        (["--sky", "nowhere.exr"], b"", "cannot read nowhere.exr"),
+        (["--sky", "/dev/null"], b"", "expected a sky as .exr, .hdr or .png"),
+        (["-"], b'{"environment": {"kind": "image", "image": "sunset"}}', "environment.image"),
         (["-", "--preset", "classic"], b"{}", "both"),
     ],
 )
@@ -124,6 +127,15 @@ def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_pa
         assert without < idle, "a program without the feature is smaller"
 
 
+def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:
+    out, sky = tmp_path / "gem.npy", tmp_path / "sky.png"
+    Image.new("RGB", (16, 8), (255, 0, 255)).save(sky)
+    scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "image", "image": "aset", "scale": 2}}
+    run = culet("render", "-", "-o", out, *TINY, "--sky", sky, stdin=json.dumps(scene).encode())
+    assert run.returncode == 0, run.stderr
+    assert np.load(out).mean((0, 1)) == pytest.approx([2, 0, 2], abs=1e-6)  # measured 0; the scale is the scene's
+
+
 def test_a_benchmark_that_could_not_be_kept_is_not_begun(tmp_path: Path) -> None:
     assert "cannot write" in refused(culet("bench", "-o", tmp_path / "missing" / "bench.jsonl"))
 
@@ -134,7 +146,7 @@ def test_a_path_is_written_step_by_step(tmp_path: Path) -> None:
     assert run.returncode == 0, run.stderr
     header, *rows = out.read_text().splitlines()
     assert header.startswith("step,time,position_x")
-    assert len(rows) == 16  # the start, and 15 steps of 1/30 s
+    assert len(rows) == 61  # the start, and 60 steps of 1/120 s
 
 
 def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:

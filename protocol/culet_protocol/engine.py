@@ -1,7 +1,7 @@
 """What gateway (DEALER) and engine (ROUTER) say to each other.
 
 A message has two or three parts: an 8-byte request number (little-endian, 0 for what nobody asked for), JSON, and bytes
-where a request or reply carries some (an uploaded mesh, an encoded picture). Every request gets exactly one `Reply`.
+where a request or reply carries some (an uploaded file, an encoded picture). Every request gets exactly one `Reply`.
 An empty message, such as ZMQ_PROBE_ROUTER sends at every (re)connection, only makes the peer known: it gets what is
 told unasked from then on, a Heartbeat first.
 """
@@ -18,6 +18,7 @@ from culet_protocol.messages import Message, SessionEvent
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "exr"]
 MeshType = Literal["obj", "off", "stl", "ply", "glb"]
+SkyType = Literal["exr", "hdr", "png"]
 SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 
 
@@ -85,15 +86,22 @@ class PutMesh(Message):
     mesh: str
 
 
+class PutSky(Message):
+    """Read the panorama in the bytes and keep it under an id; the reply describes it."""
+
+    type: Literal["put_sky"] = "put_sky"
+    file_type: SkyType
+    sky: str
+
+
 class Status(Message):
     """Ask for the engine's counters and device."""
 
     type: Literal["status"] = "status"
 
 
-EngineRequest = Annotated[
-    OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | Status, Field(discriminator="type")
-]
+Request = OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | PutSky | Status
+EngineRequest = Annotated[Request, Field(discriminator="type")]
 
 
 class Reply(Message):
@@ -136,7 +144,5 @@ class Heartbeat(Message):
 
 EngineMessage = Annotated[Reply | SessionState | SessionProblem | Heartbeat, Field(discriminator="type")]
 
-engine_request: TypeAdapter[OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | Status] = (
-    TypeAdapter(EngineRequest)
-)
+engine_request: TypeAdapter[Request] = TypeAdapter(EngineRequest)
 engine_message: TypeAdapter[Reply | SessionState | SessionProblem | Heartbeat] = TypeAdapter(EngineMessage)

@@ -18,6 +18,7 @@ from culet_client.errors import ClientError
 if TYPE_CHECKING:
     from culet.geometry.stone import Stone
     from culet.scene import Scene
+    from culet.rendering.panoramas import Panorama
 
 app = typer.Typer(
     help="Dispersive gemstones, traced exactly on the processor and streamed to thin clients.",
@@ -53,6 +54,10 @@ MeshFile = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
 ]
 Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
+SkyFile = Annotated[
+    Path | None,
+    typer.Option("--sky", metavar="FILE", help="Panorama (.exr .hdr .png, twice as wide as high) as the scene's sky."),
+]
 SessionId = Annotated[
     str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
 ]
@@ -74,6 +79,7 @@ def render(
     preset: Preset = None,
     mesh: MeshFile = None,
 ) -> None:
+    sky: SkyFile = None,
     """Render a still picture into a file."""
     from culet.rendering.files import ENCODERS, write
     from culet.rendering.renderer import Renderer
@@ -82,7 +88,8 @@ def render(
         if out.suffix.lower().lstrip(".") not in ENCODERS:  # before the work, not after it
             raise InputError(f"out: expected a name that ends in .{', .'.join(ENCODERS)}; got {out.name!r}", "out")
         settings, stone = _subject(scene, preset, mesh)
-        picture = Renderer().picture(settings, stone, width, height)
+        settings, panorama = _with_sky(settings, sky)
+        picture = Renderer().picture(settings, stone, width, height, panorama=panorama)
         with _progress(f"rendering {out.name}") as advance:
             for part in picture.refine_in_bands(samples or settings.sampling.samples_per_pixel, BAND_ROWS):
                 advance(part)
@@ -290,6 +297,21 @@ def _subject(file: Path | None, preset: str | None, mesh: Path | None) -> tuple[
 
 
 def _json(file: Path | None) -> object:
+def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
+    """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
+    from culet.rendering.panoramas import read_panorama
+    from culet.scene.model import ImageEnvironment
+
+    if file is None:
+        return scene, None
+    try:
+        panorama = read_panorama(file.read_bytes(), file.suffix.lower().lstrip("."))
+    except OSError as error:
+        raise InputError(f"cannot read {file}: {error.strerror}", "sky") from error
+    image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
+    return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), panorama
+
+
     """What a JSON file holds; nothing named, the empty object."""
     if file is None:
         return {}

@@ -178,7 +178,9 @@ async def test_a_still_of_a_scene_is_what_was_asked_for(engine: EngineProcess) -
         ({"type": "render", "scene": {"camera": {"fov_degrees": float("nan")}}}, 422, "camera.fov_degrees"),
         ({"type": "render", "scene": {"stones": [{"mesh": "/etc/passwd"}]}}, 422, "stones.0.mesh"),
         ({"type": "open_session", "session": UNKNOWN, "scene": {"lamp": 1}}, 422, "lamp"),
+        ({"type": "render", "scene": {"environment": {"kind": "image", "image": "none"}}}, 422, "environment.image"),
         ({"type": "put_mesh", "file_type": "obj", "mesh": "a"}, 422, None),
+        ({"type": "put_sky", "file_type": "hdr", "sky": "a"}, 422, None),
     ],
 )
 async def test_bad_requests_get_a_reply_that_says_why(

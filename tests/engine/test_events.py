@@ -1,30 +1,29 @@
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from culet.engine import events
+from culet.engine.assets import Assets
 from culet.engine.session import Session
 from culet.errors import InputError, SceneError
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
-from culet.scene import Scene, StoneSettings
+from culet.scene import Scene
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent
 
-
-def make_stone(settings: StoneSettings) -> Stone:
-    return stone_of(settings, {})
+ASSETS = Assets({}, {"sunrise": np.full((4, 8, 3), 0.5, np.float32), "sunset": np.full((4, 8, 3), 0.25, np.float32)})
 
 
 def session(**scene: Any) -> Session:  # noqa: ANN401
     settings = Scene.read(scene)
-    return Session("0" * 32, settings, events.stone_for(settings, None, make_stone))
+    sky = events.sky_for(settings, None, ASSETS)
+    return Session("0" * 32, settings, events.stone_for(settings, None, ASSETS), sky=sky)
 
 
 def after(subject: Session, *happened: SessionEvent) -> Scene:
     for event in happened:
-        events.apply(subject, event, make_stone)
+        events.apply(subject, event, ASSETS)
     return subject.scene
 
 
@@ -94,6 +93,19 @@ def test_the_sky_switches_between_dark_and_light() -> None:
     assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
     assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
     assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
+
+
+def test_a_patched_sky_brings_its_panorama_and_another_edit_keeps_it() -> None:
+    subject = session(environment={"kind": "image", "image": "sunrise"})
+    sunrise, sunset = ASSETS.skies["sunrise"], ASSETS.skies["sunset"]
+    assert subject.shown.panorama is sunrise
+    after(subject, messages.PatchScene(patch={"environment": {"image": "sunset"}}))
+    assert subject.shown.panorama is sunset
+    after(subject, messages.PatchScene(patch={"environment": {"turn_degrees": 90}}))
+    after(subject, messages.ToggleMirror())
+    assert subject.shown.panorama is sunset
+    after(subject, messages.SetScene(scene={"environment": {"kind": "image", "image": "sunrise"}}))
+    assert subject.shown.panorama is sunrise
 
 
 def test_the_stone_falls_pauses_and_goes_back() -> None:
@@ -170,6 +182,8 @@ def test_a_new_scene_replaces_camera_and_stone() -> None:
         (messages.SetScene(scene={"floor": {"kind": "lava"}}), "floor.kind"),
         (messages.SetScene(scene={"stones": [{"mesh": "nowhere"}]}), "stones.0.mesh"),
         (messages.SetScene(scene={"stones": [{"mesh": "../etc/passwd"}]}), "stones.0.mesh"),
+        (messages.SetScene(scene={"environment": {"kind": "image", "image": "nowhere"}}), "environment.image"),
+        (messages.SetScene(scene={"environment": {"kind": "image", "image": "../sky"}}), "environment.image"),
     ],
 )
 def test_a_bad_scene_is_refused_by_field_and_changes_nothing(event: SessionEvent, field: str) -> None:

@@ -15,6 +15,7 @@ from culet.engine.limits import Limits
 from culet.engine.serve import Engine, encode_still
 from culet.errors import DeviceError
 from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet_protocol.frame import Flags
@@ -30,10 +31,12 @@ class FailingRenderer:
     def __init__(self) -> None:
         self.renderer = Renderer()
 
-    def picture(self, scene: Scene, stone: Stone | None, width: int, height: int) -> Picture:
+    def picture(
+        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+    ) -> Picture:
         if scene.environment.kind == "half":
             raise DeviceError("the kernel does not build")
-        return self.renderer.picture(scene, stone, width, height)
+        return self.renderer.picture(scene, stone, width, height, panorama=panorama)
 
     def describe(self) -> Mapping[str, Any]:
         return self.renderer.describe()

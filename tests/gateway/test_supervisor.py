@@ -25,7 +25,7 @@ from culet.gateway.settings import GatewaySettings
 from culet.gateway.supervisor import STARTS_BEFORE_GIVING_UP, Supervisor
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Orbit, ToggleFall
-from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, eventually
+from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, eventually, png
 
 
 class Served(NamedTuple):
@@ -112,10 +112,15 @@ async def test_a_killed_engine_comes_back_with_the_same_sessions(served: Served)
         assert (await served.http.get("/metrics")).text.count("culet_engine_processes_total 2") == 1
 
 
-async def test_a_falling_stone_from_an_upload_goes_on_falling_in_the_next_engine(served: Served) -> None:
+async def test_a_falling_stone_and_its_sky_from_uploads_go_on_in_the_next_engine(served: Served) -> None:
     upload = await served.http.post("/api/meshes", files={"file": ("stone.obj", TETRAHEDRON)})
+    sky = await served.http.post("/api/skies", files={"file": ("sky.png", png(8, 4, (200, 100, 50)))})
     lively = {"restitution": 1, "tangential_damping": 1, "angular_damping": 1, "random_torque": 0}
-    scene = {"stones": [{"mesh": upload.json()["id"], "position": [0, 3, 0]}], "simulation": lively}
+    scene = {
+        "stones": [{"mesh": upload.json()["id"], "position": [0, 3, 0]}],
+        "environment": {"kind": "image", "image": sky.json()["id"]},
+        "simulation": lively,
+    }
     session = (await served.http.post("/api/sessions", json={"scene": scene})).json()["id"]
     async with served.viewer(session) as viewer:
         await viewer.say(ToggleFall())

@@ -1,14 +1,18 @@
-"""POST /api/meshes: what is accepted can be rendered, what is not is named, and nothing is left on disk."""
+"""Uploads of meshes and skies: what is accepted can be rendered, what is not is named, nothing is left on disk."""
 
 from __future__ import annotations
 
+import io
 import tempfile
 from collections.abc import AsyncIterator
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
-from gateway.running import TETRAHEDRON, Endpoints, Gateway, gateway_before
+from culet.rendering.panoramas import STUDIO
+from gateway.running import TETRAHEDRON, Endpoints, Gateway, gateway_before, png
 
 
 def form(name: str, data: bytes) -> dict[str, tuple[str, bytes]]:
@@ -26,6 +30,67 @@ async def test_an_uploaded_mesh_is_described_and_can_be_rendered(gateway: Gatewa
     scene = {"stones": [{"mesh": mesh["id"]}]}
     picture = await gateway.http.post("/api/render", json={"scene": scene, "width": 32, "height": 18})
     assert picture.status_code == 200, picture.text
+
+
+def mean_colour(picture: bytes) -> list[float]:
+    return [float(c) for c in np.asarray(Image.open(io.BytesIO(picture)).convert("RGB"), float).mean((0, 1))]
+
+
+async def test_an_uploaded_sky_is_described_and_seen_in_stills_and_sessions(gateway: Gateway) -> None:
+    answer = await gateway.http.post("/api/skies", files=form("dusk.png", png(16, 8, (200, 100, 50))))
+    assert answer.status_code == 201, answer.text
+    sky = answer.json()
+    assert (sky["description"]["width"], sky["description"]["height"]) == (16, 8)
+    environment = {"kind": "image", "image": sky["id"]}
+    nothing_but_sky = {"stones": [], "floor": {"kind": "none"}, "environment": environment}
+    still = await gateway.http.post(
+        "/api/render", json={"scene": nothing_but_sky, "width": 32, "height": 18, "format": "png"}
+    )
+    assert still.status_code == 200, still.text
+    assert mean_colour(still.content) == pytest.approx([200, 100, 50], abs=1)  # measured 0
+    session = await gateway.session({"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "dark"}})
+    patched = await gateway.http.patch(f"/api/sessions/{session}", json={"environment": environment})
+    assert patched.status_code == 200, patched.text
+    async with gateway.viewer(session) as viewer:
+        assert mean_colour((await viewer.final()).payload) == pytest.approx([200, 100, 50], abs=3)  # measured 1
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "defect"),
+    [
+        ("empty.png", b"", "not a readable .png picture"),
+        ("text.hdr", b"sunny", "Radiance header"),
+        ("stone.obj", TETRAHEDRON, ".exr, .hdr, .png"),
+    ],
+)
+async def test_what_is_not_a_sky_is_refused_by_its_defect(
+    gateway: Gateway, name: str, data: bytes, defect: str
+) -> None:
+    answer = await gateway.http.post("/api/skies", files=form(name, data))
+    assert (answer.status_code, answer.json()["field"]) == (422, "file"), answer.text
+    assert defect in answer.json()["detail"]
+
+
+async def test_the_studios_skies_are_listed_and_all_can_be_rendered(gateway: Gateway) -> None:
+    skies = (await gateway.http.get("/api/skies")).json()["skies"]
+    assert {sky["name"] for sky in skies} == set(STUDIO)
+    for sky in skies:
+        scene = {"environment": {"kind": "image", "image": sky["name"]}}
+        answer = await gateway.http.post("/api/render", json={"scene": scene, "width": 16, "height": 9})
+        assert answer.status_code == 200, answer.text
+
+
+@pytest.mark.parametrize("image", ["nowhere", "../../etc/sky.png"])
+async def test_a_sky_that_nobody_uploaded_is_refused_by_field(gateway: Gateway, image: str) -> None:
+    scene = {"environment": {"kind": "image", "image": image}}
+    session = await gateway.session()
+    for answer in (
+        await gateway.http.post("/api/render", json={"scene": scene}),
+        await gateway.http.post("/api/sessions", json={"scene": scene}),
+        await gateway.http.patch(f"/api/sessions/{session}", json=scene),
+    ):
+        assert answer.status_code == 422, answer.text
+        assert answer.json()["field"].removeprefix("scene.") == "environment.image"
 
 
 @pytest.mark.parametrize(
@@ -70,7 +135,7 @@ async def test_a_mesh_over_the_limit_is_refused_and_nothing_stays_on_disk(
             yield b"v 0 0 0\n" * (1 << 13)
         yield b"\r\n--b--\r\n"
 
-    async with gateway_before(engine, web=tmp_path, max_mesh_bytes=1 << 21) as gateway:
+    async with gateway_before(engine, web=tmp_path, max_upload_bytes=1 << 21) as gateway:
         over = await gateway.http.post("/api/meshes", files=form("big.obj", b"#" * (1 << 21) + TETRAHEDRON))
         assert (over.status_code, over.json()["field"]) == (413, "file")
         headers = {"Content-Type": "multipart/form-data; boundary=b"}
@@ -82,8 +147,8 @@ async def test_a_mesh_over_the_limit_is_refused_and_nothing_stays_on_disk(
 
 
 async def test_of_uploads_kept_for_a_new_engine_the_oldest_go_first(engine: Endpoints, tmp_path: Path) -> None:
-    async with gateway_before(engine, web=tmp_path, max_kept_mesh_bytes=2 * len(TETRAHEDRON) + 10) as gateway:
+    async with gateway_before(engine, web=tmp_path, max_kept_upload_bytes=2 * len(TETRAHEDRON) + 10) as gateway:
         for comment in (b"#1\n", b"#2\n", b"#3\n"):
             answer = await gateway.http.post("/api/meshes", files=form("stone.obj", comment + TETRAHEDRON))
             assert answer.status_code == 201, answer.text
-        assert gateway.parts.meshes.kept_bytes == 2 * (len(TETRAHEDRON) + 3)
+        assert gateway.parts.uploads.kept_bytes == 2 * (len(TETRAHEDRON) + 3)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 
 BAND_PIXELS = 2**17
@@ -47,8 +48,10 @@ class Picture(Protocol):
 class Renderer(Protocol):
     """A device that draws scenes."""
 
-    def picture(self, scene: Scene, stone: Stone | None, width: int, height: int) -> Picture:
-        """An empty picture of the scene, its stone where the scene has it."""
+    def picture(
+        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+    ) -> Picture:
+        """An empty picture of the scene, its stone where the scene has it; `panorama` is that of its sky."""
 
     def describe(self) -> Mapping[str, Any]:
         """Device, driver and lanes."""

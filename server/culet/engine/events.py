@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Literal
 
 from pydantic import ValidationError
 
 from culet.engine import viewpoint
+from culet.engine.assets import Assets
 from culet.engine.merge_patch import merge_patch
-from culet.engine.session import Session
+from culet.engine.session import Session, Sky
 from culet.errors import InputError
 from culet.geometry.stone import Stone
-from culet.scene import Camera, Environment, Light, Plane, Scene, StoneSettings
+from culet.scene import Camera, Environment, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent, Target
 
-StoneMaker = Callable[[StoneSettings], Stone]
 
-
-def apply(session: Session, event: SessionEvent, make_stone: StoneMaker) -> None:
-    """Apply an event; `make_stone` is called (it may take a while) only if the stone's shape changes."""
+def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
+    """Apply an event; a stone is made (which may take a while) only if its shape changes."""
     match event:
         case messages.Orbit() | messages.Translate() | messages.Dolly():
             _move(session, event)
@@ -38,19 +36,27 @@ def apply(session: Session, event: SessionEvent, make_stone: StoneMaker) -> None
         case messages.ToggleWalls():
             session.change(_with_walls_toggled(session.scene))
         case messages.PatchScene():
-            _patch(session, event.patch, make_stone)
+            _patch(session, event.patch, assets)
         case messages.SetScene():
             scene = Scene.read(event.scene)
-            session.replace_stone(scene, stone_for(scene, session, make_stone), home=scene.camera)
+            stone, sky = stone_for(scene, session, assets), sky_for(scene, session, assets)
+            session.replace_stone(scene, stone, home=scene.camera, sky=sky)
 
 
-def stone_for(scene: Scene, session: Session | None, make_stone: StoneMaker) -> Stone | None:
+def stone_for(scene: Scene, session: Session | None, assets: Assets) -> Stone | None:
     """The shape of a scene's stone: the session's, if that is the same shape."""
     if not scene.stones:
         return None
     if session is not None and session.stone is not None and _shape(scene) == _shape(session.scene):
         return session.stone
-    return make_stone(scene.stones[0])
+    return assets.stone(scene.stones[0])
+
+
+def sky_for(scene: Scene, session: Session | None, assets: Assets) -> Sky:
+    """A scene's own sky: the session's, if that is the same."""
+    if session is not None and session.sky.environment == scene.environment:
+        return session.sky
+    return Sky(scene.environment, assets.panorama(scene.environment))
 
 
 def _move(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> None:
@@ -114,7 +120,7 @@ def _with_walls_toggled(scene: Scene) -> Scene:
     return scene.model_copy(update={"walls": walls})
 
 
-def _patch(session: Session, patch: dict[str, Any], make_stone: StoneMaker) -> None:
+def _patch(session: Session, patch: dict[str, Any], assets: Assets) -> None:
     """Apply a merge patch to the scene as it is now, and to the camera that a reset goes back to."""
     before = session.scene
     document = before.model_dump(mode="json")
@@ -123,10 +129,11 @@ def _patch(session: Session, patch: dict[str, Any], make_stone: StoneMaker) -> N
     if "camera" in patch:
         at_home = document | {"camera": home.model_dump(mode="json")}
         home = Scene.read(merge_patch(at_home, patch)).camera
+    sky = None if after.environment == before.environment else sky_for(after, session, assets)
     if _start(after) == _start(before):
-        session.change(after, home=home)
+        session.change(after, home=home, sky=sky)
     else:
-        session.replace_stone(after, stone_for(after, session, make_stone), home=home)
+        session.replace_stone(after, stone_for(after, session, assets), home=home, sky=sky)
 
 
 def _shape(scene: Scene) -> object:

@@ -23,11 +23,15 @@ class Limits:
     """33.5 Mpixel: 0.4 GB of float32 RGB."""
     live_pixels: int = 2560 * 1440
     """A larger frame that a viewer asks for is rendered this large, with the viewer's aspect ratio."""
-    meshes: int = 32
-    mesh_bytes: int = 64 * 2**20
+    uploads: int = 32
+    """Of each kind, mesh or sky, that are kept."""
+    upload_bytes: int = 64 * 2**20
+    """Of one file."""
+    kept_bytes: int = 2**30
+    """Of what all kept uploads of a kind take in memory; the latest one is kept in any case."""
+    read_seconds: float = 60
+    """For reading one upload."""
     mesh_triangles: int = 200_000
-    mesh_seconds: float = 60
-    """For reading one mesh."""
     shown_states: int = 600
     """Shown states of a session that can be rendered again: 10 s of motion at 60 frames/s."""
 

@@ -139,7 +139,7 @@ class Painter:
             self._refuse(live, shown, error)
 
     def _first_sample(self, shown: Shown, size: tuple[int, int]) -> Picture:
-        picture = self._renderer.picture(shown.scene, shown.stone, *size)
+        picture = self._renderer.picture(shown.scene, shown.stone, *size, panorama=shown.panorama)
         picture.refine(1)
         return picture
 

@@ -10,17 +10,18 @@ from functools import partial
 from typing import Any
 
 from culet.engine import events
+from culet.engine.assets import Assets
 from culet.engine.limits import Limits, check_still_size, live_size
 from culet.engine.live import LivePicture
-from culet.engine.meshes import MeshStore
 from culet.engine.painter import Painter
-from culet.engine.session import Session
+from culet.engine.session import Session, Sky
 from culet.engine.snapshot import Snapshot
 from culet.engine.still import SESSION_STILL_SAMPLES, Still, StillQueue
+from culet.engine.uploads import MESH, SKY, UploadStore
 from culet.errors import BusyError, InputError, NotFoundError
-from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
-from culet.scene import Scene, StoneSettings
+from culet.rendering.panoramas import Panorama
+from culet.scene import Scene
 from culet_protocol import engine as protocol
 
 STILL_SIZE = (640, 360)
@@ -51,7 +52,8 @@ class Requests:
         self._limits = limits
         self._device = device
         self._tell = tell
-        self._meshes = MeshStore(limits)
+        self._meshes, self._skies = UploadStore(MESH, limits), UploadStore(SKY, limits)
+        self._assets = Assets(self._meshes, self._skies)
         self._touched: dict[str, float] = {}
         self._subscriptions: set[bytes] = set()
         self._started = time.monotonic()
@@ -72,9 +74,9 @@ class Requests:
             case protocol.Render():
                 return await self._render(request)
             case protocol.PutMesh():
-                if data is None:
-                    raise InputError("expected the mesh's bytes as the third part of the message, got none")
-                return await self._meshes.put(request.mesh, request.file_type, data), None
+                return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
+            case protocol.PutSky():
+                return await self._skies.put(request.sky, request.file_type, _file(data)), None
             case _:
                 return self.status(), None
 
@@ -109,6 +111,7 @@ class Requests:
             "sessions_moving": sum(live.session.moving for live in pictures),
             "stills_waiting": len(self._stills),
             "meshes": len(self._meshes),
+            "skies": len(self._skies),
             **vars(self._painter.counters),
             "device": self._device,
         }
@@ -120,15 +123,15 @@ class Requests:
         scene = Scene.read(request.scene)
         snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
         self._make_room()
-        stone = await asyncio.to_thread(events.stone_for, scene, None, self._make_stone)
+        stone, sky = await asyncio.to_thread(self._made, scene)
         if request.session in pictures:  # opened twice at once
             return described(self._live(request.session))
         self._make_room()
         history = self._limits.shown_states
         if snapshot is None:
-            session = Session(request.session, scene, stone, history=history)
+            session = Session(request.session, scene, stone, sky=sky, history=history)
         else:
-            session = Session.restored(request.session, scene, stone, snapshot, history=history)
+            session = Session.restored(request.session, scene, stone, snapshot, sky=sky, history=history)
         pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
         self._painter.wake()
         return described(self._live(request.session))
@@ -153,7 +156,7 @@ class Requests:
     async def _control(self, request: protocol.Control) -> dict[str, Any]:
         live = self._live(request.session)
         session = live.session
-        apply = partial(events.apply, session, request.event, self._make_stone)
+        apply = partial(events.apply, session, request.event, self._assets)
         try:
             async with session.lock:
                 if request.event.type in ("patch_scene", "set_scene"):  # may make a stone: other sessions go on
@@ -175,27 +178,30 @@ class Requests:
     async def _render(self, request: protocol.Render) -> Answer:
         if (request.scene is None) == (request.session is None):
             raise InputError("expected either a scene or a session to render, got both or neither", "scene")
-        scene, stone, default_size, step = await self._subject(request)
+        scene, stone, panorama, default_size, step = await self._subject(request)
         width = default_size[0] if request.width is None else request.width
         height = default_size[1] if request.height is None else request.height
         check_still_size(width, height, self._limits)
         samples = scene.sampling.samples_per_pixel
         if request.session is not None:
             samples = max(samples, SESSION_STILL_SAMPLES)
-        still = Still(scene, stone, width, height, samples, request.format)
+        still = Still(scene, stone, width, height, samples, request.format, panorama)
         self._stills.put(still)
         self._painter.wake()
         data = await still.done
         return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
 
-    async def _subject(self, request: protocol.Render) -> tuple[Scene, Stone | None, tuple[int, int], int | None]:
+    async def _subject(
+        self, request: protocol.Render
+    ) -> tuple[Scene, Stone | None, Panorama | None, tuple[int, int], int | None]:
         if request.session is None:
             scene = Scene.read(request.scene)
-            return scene, await asyncio.to_thread(events.stone_for, scene, None, self._make_stone), STILL_SIZE, None
+            stone, sky = await asyncio.to_thread(self._made, scene)
+            return scene, stone, sky.panorama, STILL_SIZE, None
         live = self._live(request.session)
         async with live.session.lock:
             shown = live.session.recall(request.step)
-        return shown.scene, shown.stone, live.size, shown.step
+        return shown.scene, shown.stone, shown.panorama, live.size, shown.step
 
     def _live(self, session: str) -> LivePicture:
         try:
@@ -205,8 +211,14 @@ class Requests:
         self._touched[session] = time.monotonic()
         return live
 
-    def _make_stone(self, settings: StoneSettings) -> Stone:
-        return stone_of(settings, self._meshes)
+    def _made(self, scene: Scene) -> tuple[Stone | None, Sky]:
+        return events.stone_for(scene, None, self._assets), events.sky_for(scene, None, self._assets)
+
+
+def _file(data: bytes | None) -> bytes:
+    if data is None:
+        raise InputError("expected the file's bytes as the third part of the message, got none")
+    return data
 
 
 def described(live: LivePicture) -> dict[str, Any]:

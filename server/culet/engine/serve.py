@@ -87,7 +87,7 @@ class Engine:
         render_thread: ThreadPoolExecutor,
         encode: Callable[[Picture, str], bytes],
     ) -> None:
-        self._control = bind_control(context, control, limits.mesh_bytes)
+        self._control = bind_control(context, control, limits.upload_bytes)
         self._frames = bind_frames(context, frames)
         self._peers = Peers(self._control)
         self._tasks: set[asyncio.Task[None]] = set()

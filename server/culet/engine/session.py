@@ -8,15 +8,25 @@ from __future__ import annotations
 
 import asyncio
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from culet.engine.snapshot import LARGEST_FRACTION, Snapshot
 from culet.errors import InputError, NotFoundError
 from culet.geometry.stone import Stone
-from culet.scene import Camera, Scene
+from culet.rendering.panoramas import Panorama
+from culet.scene import Camera, Environment, Scene
 from culet.simulation import FixedStepClock, Simulation, surfaces_of
 from culet_protocol.engine import SessionState
+
+
+@dataclass(frozen=True, eq=False)
+class Sky:
+    """A session's own sky."""
+
+    environment: Environment
+    panorama: Panorama | None = None
+    """Of an environment that is an image."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +37,8 @@ class Shown:
     scene: Scene
     """With the live camera and the stone's pose."""
     stone: Stone | None
+    panorama: Panorama | None = field(compare=False)
+    """The one that the scene's environment names."""
     simulation_time: float
     """s."""
     moving: bool
@@ -35,7 +47,9 @@ class Shown:
 class Session:
     """Mutable; changed under `lock` only, since a change may wait for a thread that makes a stone."""
 
-    def __init__(self, name: str, scene: Scene, stone: Stone | None, *, history: int = 600) -> None:
+    def __init__(
+        self, name: str, scene: Scene, stone: Stone | None, *, sky: Sky | None = None, history: int = 600
+    ) -> None:
         self.name = name
         """32 hexadecimal digits."""
         self.key = bytes.fromhex(name)
@@ -49,15 +63,23 @@ class Session:
         self._advanced_at: float | None = None
         self._authored = scene
         self._camera = scene.camera
+        self.sky = sky or Sky(scene.environment)
         self._place(scene, stone)
         self.shown = self._look(step=1)
 
     @classmethod
     def restored(
-        cls, name: str, scene: Scene, stone: Stone | None, snapshot: Snapshot, *, history: int = 600
+        cls,
+        name: str,
+        scene: Scene,
+        stone: Stone | None,
+        snapshot: Snapshot,
+        *,
+        sky: Sky | None = None,
+        history: int = 600,
     ) -> Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
-        session = cls(name, scene, stone, history=history)
+        session = cls(name, scene, stone, sky=sky, history=history)
         session._authored = scene.model_copy(update={"camera": snapshot.home})
         session._clock.advance(snapshot.fraction * scene.simulation.time_step)
         session.falling = snapshot.falling and session._simulation is not None
@@ -87,19 +109,25 @@ class Session:
         """Whether time would change what is shown."""
         return self.falling and self._simulation is not None and not self._simulation.settled
 
-    def change(self, scene: Scene, *, home: Camera | None = None) -> None:
-        """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was."""
+    def change(self, scene: Scene, *, home: Camera | None = None, sky: Sky | None = None) -> None:
+        """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was.
+
+        `sky` belongs to a scene with another environment of its own.
+        """
         self._authored = scene.model_copy(update={"camera": home or self.home})
+        self.sky = sky or self.sky
         if self._simulation is not None:
             self._simulation.surround(surfaces_of(scene))
         self._camera = scene.camera
         self._show()
 
-    def replace_stone(self, scene: Scene, stone: Stone | None, *, home: Camera | None = None) -> None:
+    def replace_stone(
+        self, scene: Scene, stone: Stone | None, *, home: Camera | None = None, sky: Sky | None = None
+    ) -> None:
         """As `change`, with a stone that is new, or starts anew: at rest where the scene has it."""
         self._place(scene, stone)
         self._stop()
-        self.change(scene, home=home)
+        self.change(scene, home=home, sky=sky)
 
     def set_falling(self, falling: bool) -> None:
         """Start or pause free fall; InputError if there is nothing to fall."""
@@ -189,7 +217,7 @@ class Session:
             scene = scene.moved(*self._simulation.interpolated(fraction))
             before, after = self._simulation.previous.time, self._simulation.state.time
             time = before + (after - before) * fraction
-        return Shown(step, scene, self._stone, time, self.moving)
+        return Shown(step, scene, self._stone, self.sky.panorama, time, self.moving)
 
     def _place(self, scene: Scene, stone: Stone | None) -> None:
         self._stone = stone

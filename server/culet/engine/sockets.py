@@ -21,10 +21,10 @@ HEARTBEAT_MS = 2000
 JSON_BYTES = 2**20
 
 
-def bind_control(context: zmq.asyncio.Context, endpoint: str, mesh_bytes: int) -> zmq.asyncio.Socket:
-    """The ROUTER; a longer message than a mesh needs ends its sender's connection."""
+def bind_control(context: zmq.asyncio.Context, endpoint: str, upload_bytes: int) -> zmq.asyncio.Socket:
+    """The ROUTER; a longer message than an upload needs ends its sender's connection."""
     socket = context.socket(zmq.ROUTER)
-    socket.setsockopt(zmq.MAXMSGSIZE, mesh_bytes + JSON_BYTES)
+    socket.setsockopt(zmq.MAXMSGSIZE, upload_bytes + JSON_BYTES)
     socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that left is an error, by which it is forgotten
     return _bind(socket, endpoint)
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from culet.engine.drawing import Picture, Renderer, band_rows
 from culet.errors import BusyError
 from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 from culet_protocol.engine import Format
 
@@ -27,6 +28,7 @@ class Still:
     height: int
     samples: int
     format: Format
+    panorama: Panorama | None = None
     done: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
     picture: Picture | None = None
     bands: Iterator[None] | None = None
@@ -35,7 +37,7 @@ class Still:
 
     def paint(self, renderer: Renderer) -> Iterator[None]:
         """Render, yielding between bands. Runs in the render thread."""
-        self.picture = renderer.picture(self.scene, self.stone, self.width, self.height)
+        self.picture = renderer.picture(self.scene, self.stone, self.width, self.height, panorama=self.panorama)
         for _ in self.picture.refine_in_bands(self.samples, band_rows(self.width)):
             yield
 

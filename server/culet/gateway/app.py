@@ -14,13 +14,13 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from culet import __version__
-from culet.gateway import catalogue, health, problems, session_routes, stills
+from culet.gateway import catalogue, health, problems, session_routes, stills, upload_routes
 from culet.gateway.admission import Admission
 from culet.gateway.link import EngineLink
-from culet.gateway.meshes import Meshes
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Counters, Gateway
+from culet.gateway.uploads import Uploads
 
 log = logging.getLogger(__name__)
 
@@ -43,7 +43,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     )
     app.state.gateway = _gateway(settings)
     problems.install(app)
-    for routes in (stills, session_routes, catalogue, health):
+    for routes in (stills, session_routes, catalogue, upload_routes, health):
         app.include_router(routes.router)
 
     @app.get("/docs", include_in_schema=False)
@@ -62,7 +62,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         Admission,
         allowed_origins=settings.allowed_origins,
         max_body_bytes=settings.max_body_bytes,
-        own_limit={catalogue.MESHES_PATH},
+        own_limit=upload_routes.PATHS,
     )
     app.add_middleware(_CountAnswers, counters=app.state.gateway.counters)
     return app
@@ -91,8 +91,8 @@ def _log_failure(task: asyncio.Task[None]) -> None:
 
 
 def _gateway(settings: GatewaySettings) -> Gateway:
-    link, meshes = EngineLink(settings), Meshes(settings.max_kept_mesh_bytes)
-    return Gateway(settings, link, meshes, Sessions(settings, link, meshes), Counters())
+    link, uploads = EngineLink(settings), Uploads(settings.max_kept_upload_bytes)
+    return Gateway(settings, link, uploads, Sessions(settings, link, uploads), Counters())
 
 
 class _CountAnswers:

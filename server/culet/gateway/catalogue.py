@@ -1,26 +1,28 @@
-"""What there is to choose from: presets, materials, cuts; and uploads, which add to it."""
+"""What there is to choose from: presets, materials, cuts, skies."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 
-from culet.gateway.form import read_limited, uploaded_file
-from culet.gateway.parts import ThisGateway
-from culet.gateway.problems import answers
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.scene import PRESETS, Scene
 from culet.scene.model import BrilliantCut, Model
 
 router = APIRouter(tags=["catalogue"])
 
-MESHES_PATH = "/api/meshes"
 MATERIALS = {
     "diamond": "Diamond as measured: F. Peter, Z. Phys. 15, 358 (1923).",
     "classic": "The report's indices, which exaggerate the fire.",
 }
 CUTS = {"brilliant": "A round brilliant by its proportions."}
+SKIES = {
+    "light-box": "A photographer's light box: bright above, softer at the sides, dark below.",
+    "ring-lights": "Three thin bright rings, as around a lens: much fire.",
+    "aset": "The Angular Spectrum Evaluation Tool's colours by elevation: green, red, blue.",
+}
+"""Made by the renderer, which the gateway does not load; a test compares the names."""
 
 
 class Preset(Model):
@@ -66,11 +68,17 @@ class Cuts(Model):
     cuts: tuple[Cut, ...]
 
 
-class MeshAnswer(Model):
-    """An accepted upload; `stones[0].mesh` in a scene takes the id."""
+class Sky(Model):
+    """A named panorama; `environment.image` of a scene takes the name."""
 
-    id: str
-    description: dict[str, Any]
+    name: str
+    summary: str
+
+
+class Skies(Model):
+    """All named panoramas."""
+
+    skies: tuple[Sky, ...]
 
 
 @router.get("/api/presets")
@@ -99,29 +107,7 @@ async def cuts() -> Cuts:
     return Cuts(cuts=tuple(Cut(name=name, summary=summary, proportions=proportions) for name, summary in CUTS.items()))
 
 
-@router.post(
-    MESHES_PATH,
-    status_code=201,
-    responses=answers(413, 422, 429, 503),
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "content": {
-                "multipart/form-data": {
-                    "schema": {
-                        "type": "object",
-                        "required": ["file"],
-                        "properties": {"file": {"type": "string", "contentMediaType": "application/octet-stream"}},
-                    }
-                }
-            },
-        }
-    },
-)
-async def upload_mesh(request: Request, gateway: ThisGateway) -> MeshAnswer:
-    """Upload a mesh as the form field `file`: .obj, .off, .stl, .ply or .glb. The answer says what was found in it."""
-    limit = gateway.settings.max_mesh_bytes
-    body = await read_limited(request.stream(), limit)
-    file = uploaded_file(body, request.headers.get("content-type"), limit)
-    mesh, description = await gateway.meshes.put(gateway.link, file)
-    return MeshAnswer(id=mesh, description=description)
+@router.get("/api/skies")
+async def skies() -> Skies:
+    """Panoramas of the studio; POST adds others."""
+    return Skies(skies=tuple(Sky(name=name, summary=summary) for name, summary in SKIES.items()))

@@ -48,7 +48,7 @@ def uploaded_file(body: bytes, content_type: str | None, limit: int) -> Uploaded
             if len(content) > limit:
                 raise TooLargeError(f"file: expected at most {limit} bytes, got {len(content)}", "file")
             return UploadedFile(disposition.get_filename() or "", content)
-    raise InputError("expected a form field named file with the mesh in it", "file")
+    raise InputError("expected a form field named file with the upload in it", "file")
 
 
 def _header(text: str) -> Message:

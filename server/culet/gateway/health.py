@@ -44,7 +44,7 @@ async def metrics(gateway: ThisGateway) -> Response:
         *_metric("culet_frames_received_total", "counter", "Frames from the engine.", gateway.link.frames_received),
         *_metric("culet_frames_sent_total", "counter", "Frames sent to viewers.", counters.frames_sent),
         *_metric("culet_frame_bytes_sent_total", "counter", "Bytes of those frames.", counters.bytes_sent),
-        *_metric("culet_mesh_bytes_kept", "gauge", "Bytes of uploads kept.", gateway.meshes.kept_bytes),
+        *_metric("culet_upload_bytes_kept", "gauge", "Bytes of uploads kept.", gateway.uploads.kept_bytes),
         "# HELP culet_http_answers_total HTTP answers by status.",
         "# TYPE culet_http_answers_total counter",
         *(f'culet_http_answers_total{{status="{code}"}} {n}' for code, n in sorted(counters.answers.items())),

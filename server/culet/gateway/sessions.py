@@ -12,8 +12,8 @@ from typing import Any
 
 from culet.errors import BusyError, CuletError, NotFoundError
 from culet.gateway.link import EngineLink
-from culet.gateway.meshes import Meshes
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.uploads import Uploads, uploads_of
 from culet.gateway.viewer import DEFAULT_SIZE, Viewer
 from culet_protocol import engine as to_engine
 from culet_protocol.engine import SessionProblem, SessionState
@@ -64,10 +64,10 @@ class Session:
 class Sessions:
     """All sessions of this gateway."""
 
-    def __init__(self, settings: GatewaySettings, link: EngineLink, meshes: Meshes) -> None:
+    def __init__(self, settings: GatewaySettings, link: EngineLink, uploads: Uploads) -> None:
         self._settings = settings
         self._link = link
-        self._meshes = meshes
+        self._uploads = uploads
         self._sessions: dict[str, Session] = {}
         self._viewer_numbers = itertools.count(1)
         link.on_frame = self._on_frame
@@ -220,8 +220,8 @@ class Sessions:
     async def _on_up(self, new_process: bool) -> None:
         if new_process:
             sessions = list(self._sessions.values())
-            needed = {mesh for session in sessions for mesh in meshes_of(session.scene)}
-            await self._meshes.restore(self._link, needed)
+            needed = {name for session in sessions for name in uploads_of(session.scene)}
+            await self._uploads.restore(self._link, needed)
             for session in sessions:
                 try:
                     await self._reopen(session)
@@ -230,7 +230,7 @@ class Sessions:
         for session in self._sessions.values():
             session.tell(Engine(status="up"))
         if new_process:
-            await self._meshes.restore(self._link, None)
+            await self._uploads.restore(self._link, None)
 
     async def _reopen(self, session: Session) -> None:
         """Give a session, as last heard of, to an engine that does not know it."""
@@ -242,8 +242,3 @@ class Sessions:
         )
         session.demand = (0.0, *DEFAULT_SIZE)
         await self.update_demand(session)
-
-
-def meshes_of(scene: dict[str, Any]) -> set[str]:
-    """Ids of the uploads that a scene names."""
-    return {stone["mesh"] for stone in scene.get("stones", ()) if stone.get("mesh")}

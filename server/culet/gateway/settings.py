@@ -29,10 +29,10 @@ class GatewaySettings:
     max_viewers: int = 32
     """Of one session."""
     max_body_bytes: int = MEBIBYTE
-    """Of a request body that is not a mesh."""
-    max_mesh_bytes: int = 64 * MEBIBYTE
-    """Of an uploaded mesh file."""
-    max_kept_mesh_bytes: int = 256 * MEBIBYTE
+    """Of a request body that is not an upload."""
+    max_upload_bytes: int = 64 * MEBIBYTE
+    """Of an uploaded file."""
+    max_kept_upload_bytes: int = 256 * MEBIBYTE
     """Of all uploads kept to be given to a restarted engine; the oldest go first."""
     request_seconds: float = 10
     """An engine that lives but does not answer a small request for so long is reported as unavailable."""

@@ -6,9 +6,9 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from culet.gateway.link import EngineLink
-from culet.gateway.meshes import Meshes
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.uploads import Uploads
 
 
 @dataclass
@@ -32,6 +32,6 @@ class Gateway:
 
     settings: GatewaySettings
     link: EngineLink
-    meshes: Meshes
+    uploads: Uploads
     sessions: Sessions
     counters: Counters

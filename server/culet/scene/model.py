@@ -412,12 +412,12 @@ _ENVIRONMENT_KINDS = frozenset(
 
 def _field(location: tuple[int | str, ...]) -> str:
     """The place in the JSON: without the names that pydantic gives to the alternatives of a union."""
-    parts: list[str] = []
-    for part in map(str, location):
-        alternative = part.startswith("<") or (part in _ENVIRONMENT_KINDS and parts[-1:] == ["environment"])
-        if not alternative:
-            parts.append(part)
-    return ".".join(parts)
+    parts = [str(part) for part in location]
+    return ".".join(
+        part
+        for before, part in zip(["", *parts], parts, strict=False)
+        if not (part.startswith("<") or (part in _ENVIRONMENT_KINDS and before == "environment"))
+    )
 
 
 def scene_error(error: ValidationError) -> SceneError:

@@ -1,0 +1,28 @@
+"""What scenes name: the uploads that an engine has read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama, panorama_of
+from culet.scene import Environment, StoneSettings
+from culet.scene.model import ImageEnvironment
+
+
+@dataclass(frozen=True)
+class Assets:
+    """By the ids of the uploads."""
+
+    meshes: Mapping[str, Stone]
+    skies: Mapping[str, Panorama]
+
+    def stone(self, settings: StoneSettings) -> Stone:
+        """The stone's shape, which may take a while to make; SceneError for an unknown id, MeshError for no shape."""
+        return stone_of(settings, self.meshes)
+
+    def panorama(self, environment: Environment) -> Panorama | None:
+        """The picture of a sky that is one; SceneError for an unknown id."""
+        return panorama_of(environment, self.skies) if isinstance(environment, ImageEnvironment) else None

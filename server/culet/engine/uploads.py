@@ -1,0 +1,142 @@
+"""Uploaded meshes and skies: read in a process of their own and kept, the least recently used forgotten first."""
+
+from __future__ import annotations
+
+import asyncio
+import pickle
+import re
+import sys
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from culet.engine.limits import Limits
+from culet.errors import BusyError, InputError, MeshError, TooLargeError
+from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
+
+WAITING = 8
+"""Uploads of a kind that may wait to be read: each holds its bytes in memory."""
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Kind(Generic[T]):
+    """What is uploaded."""
+
+    name: str
+    """As upload_reader knows it."""
+    error: type[InputError]
+    """For a file that cannot be read at all."""
+    describe: Callable[[T], dict[str, Any]]
+    """What an uploader is told."""
+
+
+class UploadStore(Mapping[str, T]):
+    """What was read of the uploads of one kind, by their id."""
+
+    def __init__(self, kind: Kind[T], limits: Limits) -> None:
+        self._kind = kind
+        self._limits = limits
+        self._kept: OrderedDict[str, _Read[T]] = OrderedDict()
+        self._turn = asyncio.Lock()
+        self._waiting = 0
+
+    def __getitem__(self, name: str) -> T:
+        found = self._kept[name]
+        self._kept.move_to_end(name)
+        return found.content
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._kept)
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    async def put(self, name: str, file_type: str, data: bytes) -> dict[str, Any]:
+        """Read a file and keep what it holds under a name; what was found in it, or InputError, BusyError."""
+        kind = self._kind.name
+        if not re.fullmatch(r"[A-Za-z0-9_-]{1,64}", name):
+            raise InputError(f"{kind}: expected 1 to 64 letters, digits, - or _ as its id, got {name!r}", kind)
+        if len(data) > self._limits.upload_bytes:
+            raise TooLargeError(f"expected a {kind} of at most {self._limits.upload_bytes} bytes, got {len(data)}")
+        if self._waiting >= WAITING:
+            raise BusyError(f"{WAITING} uploads ({kind}) are waiting to be read")
+        self._waiting += 1
+        try:
+            async with self._turn:
+                read = await self._read(data, file_type)
+        finally:
+            self._waiting -= 1
+        self._kept[name] = read
+        self._kept.move_to_end(name)
+        while len(self._kept) > self._limits.uploads or self._over_memory():
+            self._kept.popitem(last=False)
+        return {kind: name, **self._kind.describe(read.content)}
+
+    def _over_memory(self) -> bool:
+        return len(self._kept) > 1 and sum(read.size for read in self._kept.values()) > self._limits.kept_bytes
+
+    async def _read(self, data: bytes, file_type: str) -> _Read[T]:
+        """What the file holds, read by a process that can be ended, so that no frame waits for it."""
+        kind, limits = self._kind, self._limits
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "culet.engine.upload_reader", kind.name, file_type, str(limits.mesh_triangles),
+            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+        )  # fmt: skip
+        try:
+            async with asyncio.timeout(limits.read_seconds):
+                answer, complaint = await process.communicate(data)
+        except TimeoutError:
+            raise kind.error(f"the {kind.name} could not be read in {limits.read_seconds:g} s") from None
+        finally:
+            if process.returncode is None:
+                process.kill()
+                await process.wait()
+        if process.returncode != 0:
+            last = complaint.decode(errors="replace").strip().rpartition("\n")[2]
+            raise kind.error(
+                f"the {kind.name} ended the process that read it: {last or f'exit code {process.returncode}'}"
+            )
+        content = pickle.loads(answer)  # noqa: S301 - written by our own process, which read data and ran none
+        if isinstance(content, InputError):
+            raise content
+        return _Read(content, len(answer))
+
+
+@dataclass(frozen=True)
+class _Read(Generic[T]):
+    content: T
+    size: int
+    """Bytes, as pickled: what it takes in memory, nearly."""
+
+
+def described_mesh(stone: Stone) -> dict[str, Any]:
+    """A mesh in figures, and what was found in it."""
+    return {
+        "vertices": len(stone.vertices),
+        "triangles": len(stone.triangles),
+        "facets": len(stone.planes),
+        "convex": bool(stone.convex),
+        "volume": float(stone.mass.volume),
+        "findings": list(stone.findings),
+    }
+
+
+def described_sky(panorama: Panorama) -> dict[str, Any]:
+    """A sky in figures, and what was found in it."""
+    height, width, _ = panorama.shape
+    findings = []
+    if width != 2 * height:
+        findings.append(f"{width} x {height} pixels are stretched over all directions, which need twice the width.")
+    if not np.any(panorama):
+        findings.append("All of it is black.")
+    return {"width": width, "height": height, "largest_radiance": float(panorama.max()), "findings": findings}
+
+
+MESH = Kind("mesh", MeshError, described_mesh)
+SKY = Kind("sky", InputError, described_sky)

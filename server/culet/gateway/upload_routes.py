@@ -1,0 +1,61 @@
+"""POST /api/meshes and POST /api/skies: what scenes may then name by the id of the answer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, Request
+
+from culet.gateway.form import read_limited, uploaded_file
+from culet.gateway.parts import ThisGateway
+from culet.gateway.problems import answers
+from culet.gateway.uploads import MESH, SKY, Kind
+from culet.scene.model import Model
+
+router = APIRouter(tags=["uploads"])
+
+MESHES_PATH, SKIES_PATH = "/api/meshes", "/api/skies"
+PATHS = frozenset({MESHES_PATH, SKIES_PATH})
+"""They count the bytes of bodies themselves, by a limit of their own."""
+
+_FORM: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "contentMediaType": "application/octet-stream"}},
+                }
+            }
+        },
+    }
+}
+
+
+class UploadAnswer(Model):
+    """An accepted upload; `stones[0].mesh` or `environment.image` of a scene takes the id."""
+
+    id: str
+    description: dict[str, Any]
+
+
+@router.post(MESHES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
+async def upload_mesh(request: Request, gateway: ThisGateway) -> UploadAnswer:
+    """Upload a mesh as the form field `file`: .obj, .off, .stl, .ply or .glb. The answer says what was found in it."""
+    return await _taken(MESH, request, gateway)
+
+
+@router.post(SKIES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
+async def upload_sky(request: Request, gateway: ThisGateway) -> UploadAnswer:
+    """Upload an equirectangular picture of a sky as the form field `file`: .exr or .hdr (linear) or .png (sRGB)."""
+    return await _taken(SKY, request, gateway)
+
+
+async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> UploadAnswer:
+    limit = gateway.settings.max_upload_bytes
+    body = await read_limited(request.stream(), limit)
+    file = uploaded_file(body, request.headers.get("content-type"), limit)
+    name, description = await gateway.uploads.put(gateway.link, kind, file)
+    return UploadAnswer(id=name, description=description)
