@@ -17,8 +17,8 @@ from culet_client.errors import ClientError
 
 if TYPE_CHECKING:
     from culet.geometry.stone import Stone
-    from culet.scene import Scene
     from culet.rendering.panoramas import Panorama
+    from culet.scene import Scene
 
 app = typer.Typer(
     help="Dispersive gemstones, traced exactly on the processor and streamed to thin clients.",
@@ -53,11 +53,11 @@ Preset = Annotated[str | None, typer.Option(help="Start from a named scene inste
 MeshFile = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
 ]
-Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
 SkyFile = Annotated[
     Path | None,
     typer.Option("--sky", metavar="FILE", help="Panorama (.exr .hdr .png, twice as wide as high) as the scene's sky."),
 ]
+Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
 SessionId = Annotated[
     str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
 ]
@@ -78,8 +78,8 @@ def render(
     ] = None,
     preset: Preset = None,
     mesh: MeshFile = None,
-) -> None:
     sky: SkyFile = None,
+) -> None:
     """Render a still picture into a file."""
     from culet.rendering.files import ENCODERS, write
     from culet.rendering.renderer import Renderer
@@ -296,7 +296,6 @@ def _subject(file: Path | None, preset: str | None, mesh: Path | None) -> tuple[
     return scene, stone_of(scene.stones[0], meshes) if scene.stones else None
 
 
-def _json(file: Path | None) -> object:
 def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
     from culet.rendering.panoramas import read_panorama
@@ -312,6 +311,7 @@ def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), panorama
 
 
+def _json(file: Path | None) -> object:
     """What a JSON file holds; nothing named, the empty object."""
     if file is None:
         return {}
