@@ -109,8 +109,11 @@ def simulate(
     ),
     preset: Preset = None,
     mesh: MeshFile = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw height, energy and angular speed over time too: .png")
+    ] = None,
 ) -> None:
-    """Let the stone fall and write its path, step by step: position, orientation, velocities, energy."""
+    """Let the stone fall and write its path, step by step: position, orientation, velocities, energy, contacts."""
     from culet.simulation.paths import record as record_path
     from culet.simulation.paths import write
 
@@ -121,6 +124,10 @@ def simulate(
         with _progress("simulating") as advance:
             path = record_path(settings, stone, seconds, advance)
         write(path, out)
+        if plot is not None:
+            from culet.simulation.plot import plot as draw
+
+            draw(path, plot)
         typer.echo(f"{out}: {len(path.time)} states, {path.time[-1]:g} s")
 
 
