@@ -76,7 +76,7 @@ class ToggleMirror(Message):
 
 
 class ToggleEnvironment(Message):
-    """Switch the sky between dark and light."""
+    """Switch between a light sky and the scene's own, or a dark one if that is light itself."""
 
     type: Literal["toggle_environment"] = "toggle_environment"
 

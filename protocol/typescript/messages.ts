@@ -72,7 +72,7 @@ export interface ToggleMirror {
   type: "toggle_mirror";
 }
 
-/** Switch the sky between dark and light. */
+/** Switch between a light sky and the scene's own, or a dark one if that is light itself. */
 export interface ToggleEnvironment {
   type: "toggle_environment";
 }

@@ -1,3 +1,4 @@
+import json
 import math
 from typing import Any
 
@@ -7,6 +8,7 @@ import pytest
 from culet.engine import events
 from culet.engine.assets import Assets
 from culet.engine.session import Session
+from culet.engine.snapshot import Snapshot
 from culet.errors import InputError, SceneError
 from culet.scene import Scene
 from culet_protocol import messages
@@ -88,11 +90,39 @@ def kinds(scene: Scene) -> tuple[str, str]:
     return scene.floor.kind, scene.walls.kind
 
 
-def test_the_sky_switches_between_dark_and_light() -> None:
-    subject = session(environment={"kind": "constant"})
+@pytest.mark.parametrize(
+    "own", [{}, {"environment": {"kind": "dark"}}, {"environment": {"kind": "image", "image": "sunset"}}]
+)
+def test_the_sky_switches_between_light_and_the_scenes_own(own: dict[str, Any]) -> None:
+    subject = session(**own)
+    before = subject.shown
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
+    assert after(subject, messages.ToggleEnvironment()).environment == before.scene.environment
+    assert subject.shown.panorama is before.panorama
+
+
+def test_a_scene_that_is_light_itself_switches_to_dark() -> None:
+    subject = session(environment={"kind": "light"})
     assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
     assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
-    assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
+
+
+def test_a_new_sky_is_the_scenes_own_from_then_on() -> None:
+    subject = session()
+    after(subject, messages.ToggleEnvironment(), messages.PatchScene(patch={"environment": {"kind": "half"}}))
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "half"
+
+
+def test_a_switched_sky_survives_in_another_engine() -> None:
+    subject = session()
+    own = subject.scene.environment
+    after(subject, messages.ToggleEnvironment())
+    snapshot = Snapshot.read(json.loads(subject.snapshot().model_dump_json()))
+    assert snapshot.environment is not None
+    sky = events.own_sky(snapshot.environment, ASSETS)
+    other = Session.restored(subject.name, subject.scene, subject.stone, snapshot, sky=sky)
+    assert after(other, messages.ToggleEnvironment()).environment == own
 
 
 def test_a_patched_sky_brings_its_panorama_and_another_edit_keeps_it() -> None:

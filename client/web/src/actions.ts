@@ -59,7 +59,7 @@ export const ACTIONS: readonly Action[] = [
   plain("fall", "P", "Fall or pause", "toggle_fall"),
   plain("reset_stone", "R", "Put the stone back", "reset_stone"),
   plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
-  plain("sky", "L", "Dark or light sky", "toggle_environment"),
+  plain("sky", "L", "Light sky, or the scene's own", "toggle_environment"),
   plain("walls", "W", "Walls", "toggle_walls"),
   letter("download", "S", "Save the picture (.tga)", { kind: "download" }),
 ];

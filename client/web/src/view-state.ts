@@ -66,7 +66,7 @@ export function describeChange(before: ViewState, after: ViewState): string {
   if (before.scene && after.scene) {
     if (before.falling !== after.falling) said.push(after.falling ? "the stone falls" : "the stone is paused");
     if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");
-    if (before.light !== after.light) said.push(after.light ? "light sky" : "dark sky");
+    if (before.light !== after.light) said.push(after.light ? "light sky" : "the scene's own sky");
     if (before.walls !== after.walls) said.push(after.walls ? "walls shown" : "walls hidden");
   }
   if (before.viewers !== after.viewers) said.push(viewersText(after.viewers));

@@ -32,7 +32,7 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
         case messages.ToggleMirror():
             session.change(_with_mirror_toggled(session.scene))
         case messages.ToggleEnvironment():
-            session.change(_with_environment_toggled(session.scene))
+            session.change(_with_environment_toggled(session))
         case messages.ToggleWalls():
             session.change(_with_walls_toggled(session.scene))
         case messages.PatchScene():
@@ -53,10 +53,17 @@ def stone_for(scene: Scene, session: Session | None, assets: Assets) -> Stone | 
 
 
 def sky_for(scene: Scene, session: Session | None, assets: Assets) -> Sky:
-    """A scene's own sky: the session's, if that is the same."""
+    """A scene's own sky, or the session's if the scene is under that one."""
     if session is not None and session.sky.environment == scene.environment:
         return session.sky
-    return Sky(scene.environment, assets.panorama(scene.environment))
+    return own_sky(scene.environment, assets)
+
+
+def own_sky(environment: Environment, assets: Assets) -> Sky:
+    """The other sky than the light one: the environment, or, if that is light itself, the dark."""
+    if environment.kind == "light":
+        return Sky(DarkEnvironment(kind="dark"))
+    return Sky(environment, assets.panorama(environment))
 
 
 def _move(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> None:
@@ -106,10 +113,10 @@ def _with_mirror_toggled(scene: Scene) -> Scene:
     return scene.model_copy(update={"floor": Plane(kind=kind), "walls": walls})
 
 
-def _with_environment_toggled(scene: Scene) -> Scene:
-    dark = scene.environment.kind == "dark"
-    environment: Environment = LightEnvironment(kind="light") if dark else DarkEnvironment(kind="dark")
-    return scene.model_copy(update={"environment": environment})
+def _with_environment_toggled(session: Session) -> Scene:
+    light = session.scene.environment.kind == "light"
+    environment: Environment = session.sky.environment if light else LightEnvironment(kind="light")
+    return session.scene.model_copy(update={"environment": environment})
 
 
 def _with_walls_toggled(scene: Scene) -> Scene:

@@ -21,7 +21,7 @@ from culet.engine.uploads import MESH, SKY, UploadStore
 from culet.errors import BusyError, InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
-from culet.scene import Scene
+from culet.scene import Environment, Scene
 from culet_protocol import engine as protocol
 
 STILL_SIZE = (640, 360)
@@ -123,7 +123,8 @@ class Requests:
         scene = Scene.read(request.scene)
         snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
         self._make_room()
-        stone, sky = await asyncio.to_thread(self._made, scene)
+        own = scene.environment if snapshot is None else snapshot.environment
+        stone, sky = await asyncio.to_thread(self._made, scene, own)
         if request.session in pictures:  # opened twice at once
             return described(self._live(request.session))
         self._make_room()
@@ -196,7 +197,7 @@ class Requests:
     ) -> tuple[Scene, Stone | None, Panorama | None, tuple[int, int], int | None]:
         if request.session is None:
             scene = Scene.read(request.scene)
-            stone, sky = await asyncio.to_thread(self._made, scene)
+            stone, sky = await asyncio.to_thread(self._made, scene, scene.environment)
             return scene, stone, sky.panorama, STILL_SIZE, None
         live = self._live(request.session)
         async with live.session.lock:
@@ -211,8 +212,9 @@ class Requests:
         self._touched[session] = time.monotonic()
         return live
 
-    def _made(self, scene: Scene) -> tuple[Stone | None, Sky]:
-        return events.stone_for(scene, None, self._assets), events.sky_for(scene, None, self._assets)
+    def _made(self, scene: Scene, environment: Environment | None) -> tuple[Stone | None, Sky]:
+        sky = events.own_sky(environment or scene.environment, self._assets)
+        return events.stone_for(scene, None, self._assets), sky
 
 
 def _file(data: bytes | None) -> bytes:

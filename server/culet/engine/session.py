@@ -22,7 +22,7 @@ from culet_protocol.engine import SessionState
 
 @dataclass(frozen=True, eq=False)
 class Sky:
-    """A session's own sky."""
+    """A session's own sky: what a switch from the light one goes back to."""
 
     environment: Environment
     panorama: Panorama | None = None
@@ -64,6 +64,7 @@ class Session:
         self._authored = scene
         self._camera = scene.camera
         self.sky = sky or Sky(scene.environment)
+        """Its environment is the scene's, or was, before the scene was put under the light one."""
         self._place(scene, stone)
         self.shown = self._look(step=1)
 
@@ -189,6 +190,7 @@ class Session:
             fraction=min(self._clock.fraction, LARGEST_FRACTION),
             falling=self.falling,
             home=self.home,
+            environment=self.sky.environment,
             step=self.shown.step,
             sequence=self.sequence,
         )

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from culet.errors import InputError
-from culet.scene import Camera
+from culet.scene import Camera, Environment
 
 NUMBER_GAP = 1000
 """Steps and frames that an engine may have shown after its last snapshot: one second's at the highest rate, 240, and
@@ -28,6 +28,8 @@ class Snapshot(BaseModel):
     """How far between its last two states the simulation was shown."""
     falling: bool
     home: Camera
+    environment: Environment | None = None
+    """The session's own, which it goes back to from the light one; None if that is the scene's."""
     step: Annotated[int, Field(ge=1, lt=2**63)]
     sequence: Annotated[int, Field(ge=0, lt=2**63)]
 

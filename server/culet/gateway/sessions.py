@@ -220,7 +220,9 @@ class Sessions:
     async def _on_up(self, new_process: bool) -> None:
         if new_process:
             sessions = list(self._sessions.values())
-            needed = {name for session in sessions for name in uploads_of(session.scene)}
+            needed = {
+                name for session in sessions for name in uploads_of(session.scene) | uploads_of(session.snapshot or {})
+            }
             await self._uploads.restore(self._link, needed)
             for session in sessions:
                 try:
