@@ -20,7 +20,12 @@ UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
 def simulation(stone: Stone, position: Triple = (0.0, 4.0, 0.0), **settings: object) -> Simulation:
-    return Simulation(SimulationSettings.model_validate({"model": "classic", "time_step": 1 / 30} | settings), stone, position, UPRIGHT)
+    return Simulation(
+        SimulationSettings.model_validate({"model": "classic", "time_step": 1 / 30} | settings),
+        stone,
+        position,
+        UPRIGHT,
+    )
 
 
 def states(moving: Simulation, count: int) -> list[RigidState]:

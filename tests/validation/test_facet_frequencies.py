@@ -1,0 +1,89 @@
+"""On which facets dropped brilliants come to rest, here and in MuJoCo, an independent engine.
+
+MuJoCo's contacts are soft and have no coefficient of restitution, and its plane takes three contacts of a mesh at most;
+so both drop without restitution, MuJoCo's stone onto a thick box. Install it with `pip install mujoco`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.scene.model import StoneSettings
+from culet.simulation.rotation import normalised, rotate, rotate_back
+from culet.simulation.state import Quaternion, Triple
+from simulation.solids import rigid
+
+pytestmark = pytest.mark.validation
+DROPS = 200
+FRICTION = 0.3
+
+Drop = tuple[float, Quaternion, Triple]
+"""Height, orientation, and angular velocity in the stone's axes."""
+
+
+def drops(count: int) -> list[Drop]:
+    rng = np.random.default_rng(31)
+    found = []
+    for _ in range(count):
+        w, x, y, z = rng.normal(size=4).tolist()
+        a, b, c = (3 * rng.normal(size=3)).tolist()
+        found.append((float(rng.uniform(0.5, 2)), normalised((w, x, y, z)), (a, b, c)))
+    return found
+
+
+def facet(stone: Stone, down: Triple) -> str:
+    """What the stone lies on, by the height of the facet's normal over the girdle."""
+    height = float(stone.planes[np.argmax(stone.planes[:, :3] @ down), 1])
+    return "table" if height > 0.99 else "crown" if height > 0.05 else "girdle" if height > -0.05 else "pavilion"
+
+
+def rest_here(stone: Stone, drop: Drop) -> str:
+    height, orientation, spin = drop
+    moving = rigid(
+        stone, (0.0, height, 0.0), orientation, spin=rotate(orientation, spin), restitution=0, friction=FRICTION,
+        rolling_resistance=0.005, time_step=1 / 60,
+    )  # fmt: skip
+    while not moving.state.asleep and moving.state.time < 60:
+        moving.step()
+    return facet(stone, rotate_back(moving.state.orientation, (0.0, -1.0, 0.0)))
+
+
+def rests_in_mujoco(stone: Stone, tried: list[Drop]) -> list[str]:
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed; it is an optional comparison")
+    vertices = " ".join(f"{c:.17g}" for c in stone.vertices.ravel())
+    moments = " ".join(f"{2 * moment:.17g}" for moment in np.diag(stone.mass.inertia))
+    model = mujoco.MjModel.from_xml_string(f"""
+        <mujoco><option gravity="0 -9.81 0" timestep="0.002" cone="elliptic" impratio="10"/>
+        <asset><mesh name="stone" vertex="{vertices}"/></asset>
+        <worldbody><geom type="box" size="50 5 50" pos="0 -6 0" friction="{FRICTION} 0.0 0.0" condim="3"/>
+        <body name="stone"><freejoint/>
+        <inertial pos="0 0 0" mass="2" diaginertia="{moments}"/>
+        <geom type="mesh" mesh="stone" friction="{FRICTION} 0.0 0.0" condim="3"/></body></worldbody></mujoco>""")
+    found = []
+    for height, orientation, spin in tried:
+        data = mujoco.MjData(model)
+        data.qpos[:] = (0, height, 0, *orientation)
+        data.qvel[3:] = spin
+        quiet = 0
+        while data.time < 60 and quiet < 250:
+            mujoco.mj_step(model, data)
+            quiet = quiet + 1 if np.abs(data.qvel).max() < 1e-2 else 0
+        w, x, y, z = data.qpos[3:].tolist()
+        found.append(facet(stone, rotate_back((w, x, y, z), (0.0, -1.0, 0.0))))
+    return found
+
+
+def test_the_facets_are_those_of_mujoco_as_often() -> None:
+    stone, tried = stone_of(StoneSettings(), {}), drops(DROPS)
+    theirs, ours = Counter(rests_in_mujoco(stone, tried)), Counter(rest_here(stone, drop) for drop in tried)
+    print(f"here {dict(ours)}, MuJoCo {dict(theirs)}")
+    assert set(ours) <= {"table", "pavilion"}
+    share, other = ours["table"] / DROPS, theirs["table"] / DROPS
+    spread = math.sqrt((share * (1 - share) + other * (1 - other)) / DROPS)
+    assert abs(share - other) < 3 * spread
