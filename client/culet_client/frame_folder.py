@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from dataclasses import fields
 from pathlib import Path
@@ -45,6 +46,9 @@ class FrameFolder:
 
 
 def header(frame: Frame) -> dict[str, Any]:
-    """The header's fields, as JSON's types."""
+    """The header's fields, as JSON's types; an error that is not known is null."""
     named = {field.name: getattr(frame, field.name) for field in fields(frame) if field.name != "payload"}
-    return named | {"session": frame.session.hex(), "codec": frame.codec.name, "flags": int(frame.flags)}
+    error = None if math.isnan(frame.error) else frame.error
+    return named | {
+        "session": frame.session.hex(), "codec": frame.codec.name, "flags": int(frame.flags), "error": error,
+    }  # fmt: skip

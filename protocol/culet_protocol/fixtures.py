@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import struct
 import zlib
 from dataclasses import fields, replace
@@ -45,12 +46,12 @@ def _png(width: int, height: int, rgb: bytes) -> bytes:
 MOVING = Frame(
     session=bytes(range(16)), codec=Codec.JPEG, flags=Flags.MOVING, sequence=7, width=16, height=8, samples=1, step=42,
     simulation_time=1.4375, timestamp=1_760_000_000.5, simulate_ms=0.125, render_ms=31.5, encode_ms=1.75, cut=0.03125,
-    payload=JPEG,
+    error=math.nan, payload=JPEG,
 )  # fmt: skip
 STILL = Frame(
     session=bytes(range(240, 256)), codec=Codec.PNG, flags=Flags.FINAL, sequence=0xFFFFFFFF, width=4, height=2,
     samples=1024, step=2**53 + 1, simulation_time=0, timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5,
-    encode_ms=18.25, cut=0, payload=_png(4, 2, b"\x10\x80\xf0"),
+    encode_ms=18.25, cut=0, error=0.015625, payload=_png(4, 2, b"\x10\x80\xf0"),
 )  # fmt: skip
 """Its sequence is the last before it wraps; its step is the first integer that a double cannot hold."""
 
@@ -58,7 +59,7 @@ STILL = Frame(
 def _with(frame: Frame, field: str, value: bytes | int) -> bytes:
     """The frame's bytes with one field of the header overwritten."""
     packed = frame.pack()
-    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (76, "I")}[field]
+    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (80, "I")}[field]
     return packed[:offset] + struct.pack("<" + form, value) + packed[offset + struct.calcsize(form) :]
 
 
@@ -76,7 +77,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
         "truncated_payload": (marked[:-1], f"{len(JPEG)} bytes", f"{len(JPEG) - 1}"),
         "trailing_byte": (marked + b"\0", f"{len(JPEG)} bytes", f"{len(JPEG) + 1}"),
         "wrong_magic": (_with(MOVING, "magic", b"NOPE"), "CULT", "NOPE"),
-        "wrong_version": (_with(MOVING, "version", 2), "version 1", "2"),
+        "wrong_version": (_with(MOVING, "version", 1), "version 2", "1"),
         "wrong_codec": (_with(MOVING, "codec", 9), "1 (JPEG)", "9"),
         "wrong_length": (_with(MOVING, "length", 5), "5 bytes", f"{len(JPEG)}"),
     }
@@ -89,6 +90,7 @@ def _fields(frame: Frame) -> dict[str, Any]:
     values = {field.name: getattr(frame, field.name) for field in fields(frame)}
     values["session"] = frame.session.hex()
     values["step"] = str(frame.step)  # JSON readers turn numbers into doubles
+    values["error"] = None if math.isnan(frame.error) else frame.error  # JSON has no NaN
     values["payload"] = len(frame.payload)
     return values
 

@@ -12,7 +12,7 @@ from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
 MAGIC = b"CULT"
-HEADER_VERSION = 1
+HEADER_VERSION = 2
 
 
 class Codec(IntEnum):
@@ -61,6 +61,7 @@ FIELDS = (
     HeaderField("render_ms", "f", "milliseconds spent on rendering"),
     HeaderField("encode_ms", "f", "milliseconds spent on tone mapping and encoding"),
     HeaderField("cut", "f", "mean weight of what the cut-off dropped, 0 to 1"),
+    HeaderField("error", "f", "estimated root mean square error, in radiance; NaN if it is not known"),
     HeaderField("length", "I", "bytes of payload that follow"),
 )
 
@@ -86,6 +87,7 @@ class Frame:
     render_ms: float
     encode_ms: float
     cut: float
+    error: float
     payload: bytes
 
     def pack(self) -> bytes:
@@ -95,7 +97,7 @@ class Frame:
         header = LAYOUT.pack(
             self.session, MAGIC, HEADER_VERSION, self.codec, self.flags, self.sequence & 0xFFFFFFFF, self.width,
             self.height, self.samples, self.step, self.simulation_time, self.timestamp, self.simulate_ms,
-            self.render_ms, self.encode_ms, self.cut, len(self.payload),
+            self.render_ms, self.encode_ms, self.cut, self.error, len(self.payload),
         )  # fmt: skip
         return header + self.payload
 
@@ -106,7 +108,7 @@ class Frame:
             raise FrameError(f"a frame has at least {HEADER_SIZE} bytes, got {len(message)}")
         (
             session, magic, version, codec, flags, sequence, width, height, samples, step, simulation_time, timestamp,
-            simulate_ms, render_ms, encode_ms, cut, length,
+            simulate_ms, render_ms, encode_ms, cut, error, length,
         ) = LAYOUT.unpack_from(message)  # fmt: skip
         if magic != MAGIC:
             raise FrameError(f"a frame is marked {MAGIC!r}, got {magic!r}")
@@ -121,5 +123,5 @@ class Frame:
             raise FrameError(f"expected codec {', '.join(f'{c} ({c.name})' for c in Codec)}, got {codec}") from None
         return cls(
             session, codec, Flags(flags), sequence, width, height, samples, step, simulation_time, timestamp,
-            simulate_ms, render_ms, encode_ms, cut, payload,
+            simulate_ms, render_ms, encode_ms, cut, error, payload,
         )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import itertools
+import math
 import time
 from pathlib import Path
 from typing import Any
@@ -45,6 +46,8 @@ async def test_a_picture_at_rest_is_refined_to_its_end_and_then_costs_nothing(en
             frames.append(await watcher.next())
         assert [frame.samples for frame in frames] == [1, 2, 4, 8, 16]
         assert len({frame.step for frame in frames}) == 1
+        assert math.isnan(frames[0].error), "of one sample nothing is known"
+        assert all(0 < frame.error < 1 for frame in frames[1:])
         assert len({frame.sequence for frame in frames}) == 5
         before = await peer.status()
         repeated = await watcher.next()  # a second later, since it could have been lost

@@ -1,7 +1,7 @@
 import { Flag, parseFrame } from "@culet/protocol/frame";
 import { expect, it, test } from "vitest";
 import { FrameRate } from "./frame-rate";
-import { milliseconds, statusText } from "./status-text";
+import { milliseconds, significant, statusText } from "./status-text";
 import { bytes } from "./testing/fixtures";
 
 const frame = parseFrame(bytes("jpeg.bin")); // 0.125 + 31.5 + 1.75 ms
@@ -17,6 +17,21 @@ test("a finished picture is called still, one that is late is not", () => {
   const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
   expect(statusText({ ...status, frame: { ...frame, flags: Flag.FINAL, samples: 64 } })).toMatch(/^still picture/);
   expect(statusText({ ...status, frame: { ...frame, flags: 0 } })).toMatch(/^0\.0 frames\/s/);
+});
+
+test("what is known of the error is said", () => {
+  const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
+  expect(Number.isNaN(frame.error)).toBe(true); // the golden frame moves
+  expect(statusText({ ...status, frame: { ...frame, error: 0.01234 } })).toContain(" \u00b7 error 0.012 \u00b7 16");
+});
+
+test.each([
+  [0, "0"],
+  [0.5, "0.5"],
+  [0.00026, "0.00026"],
+  [0.0000123, "1.2e-5"],
+])("an error of %d is written %s", (value, text) => {
+  expect(significant(value)).toBe(text);
 });
 
 test("before the first frame it says that it waits", () => {

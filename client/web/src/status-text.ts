@@ -15,6 +15,11 @@ export function milliseconds(value: number): string {
   return value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(2);
 }
 
+/** Two significant digits, without an exponent as long as a reader can count the zeros. */
+export function significant(value: number): string {
+  return value === 0 || value >= 1e-4 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
+}
+
 export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
   const parts: string[] = [];
   if (frame) {
@@ -28,6 +33,7 @@ export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Sta
   } else parts.push("waiting for the first picture");
   if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
   if (frame) {
+    if (!Number.isNaN(frame.error)) parts.push(`error ${significant(frame.error)}`);
     parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
   }
   parts.push(viewersText(viewers));

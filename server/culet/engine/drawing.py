@@ -44,6 +44,9 @@ class Picture(Protocol):
     def cut(self) -> float:
         """Mean weight of what the cut-off dropped."""
 
+    def error_estimate(self) -> float:
+        """Root mean square error of the radiance, by reading all samples back; NaN below two samples."""
+
 
 class Renderer(Protocol):
     """A device that draws scenes."""

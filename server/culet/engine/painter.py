@@ -190,8 +190,10 @@ class Painter:
     async def _publish(self, live: LivePicture, picture: Picture, shown: Shown) -> None:
         """Tone-map in the render thread, then encode and send while the next frame is rendered."""
         started = time.perf_counter()
-        rgb, cut = await self._in_render_thread(lambda: (picture.rgb(), picture.cut()))
-        frame = _Unencoded(rgb, shown, picture.samples, picture.seconds, cut, live.final, time.perf_counter() - started)
+        rgb, cut, error = await self._in_render_thread(_developed, picture)
+        frame = _Unencoded(
+            rgb, shown, picture.samples, picture.seconds, cut, error, live.final, time.perf_counter() - started
+        )
         if live.publishing is not None:
             await live.publishing  # one frame at a time, so that they leave in order
         live.publishing = asyncio.create_task(self._encode_and_send(live, frame))
@@ -237,6 +239,7 @@ class _Unencoded:
     samples: int
     render_seconds: float
     cut: float
+    error: float
     final: bool
     tone_map_seconds: float
 
@@ -259,8 +262,14 @@ class _Unencoded:
             render_ms=self.render_seconds * 1e3,
             encode_ms=encode_seconds * 1e3,
             cut=self.cut,
+            error=self.error,
             payload=payload,
         ).pack()
+
+
+def _developed(picture: Picture) -> tuple[NDArray[np.uint8], float, float]:
+    """Pixels, cut weight and estimated error; the last costs nothing for the single sample of a moving picture."""
+    return picture.rgb(), picture.cut(), picture.error_estimate()
 
 
 def _proceed(bands: Iterator[object]) -> bool:

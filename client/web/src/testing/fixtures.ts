@@ -9,7 +9,8 @@ function path(file: string): URL {
 
 export interface FrameCase {
   file: string;
-  fields?: Record<string, number | string>;
+  /** As JSON has them: null for NaN. */
+  fields?: Record<string, number | string | null>;
   expected?: string;
   got?: string;
 }
