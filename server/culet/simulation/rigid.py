@@ -27,10 +27,8 @@ from culet.simulation.state import RigidState, Touch, Triple
 from culet.simulation.support import is_supported
 
 MAX_EVENTS = 256
-"""Flights, impacts and contact steps in one fixed step. What is left of the step then is dropped: the stone moves more
-slowly, which takes spins and speeds of thousands a second near a surface."""
-MAX_CONTACT_STEPS = 64
-"""Of one fixed step. Where sqrt(R / g) would ask for more, contact steps are longer; they stay stable, not exact."""
+"""Flights, impacts and contact steps in one fixed step. What is left of the step then is dropped, and the stone moves
+more slowly: that takes spins of thousands of rad/s near a surface, or 1e5 times the gravity."""
 MAX_CONTACT_TURN = 0.1
 """rad in one contact step: of second order in it are what lifts a rolling stone and what slows it down."""
 SLEEP_SPEED = 1e-6
@@ -74,7 +72,7 @@ def step(state: RigidState, settings: SimulationSettings, body: RigidBody) -> Ri
                 motion, asleep = stopped(motion), True
                 break
             time = min(scales.contact_step, MAX_CONTACT_TURN / math.hypot(*omega) if any(omega) else math.inf)
-            time = min(max(time, settings.time_step / MAX_CONTACT_STEPS), left)
+            time = min(time, left)
             if closing >= -scales.gravity * time:
                 motion, taken = contact_step(
                     motion,
