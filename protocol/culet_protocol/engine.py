@@ -1,9 +1,9 @@
 """What gateway (DEALER) and engine (ROUTER) say to each other.
 
 A message has two or three parts: an 8-byte request number (little-endian, 0 for what nobody asked for), JSON, and bytes
-where a request or reply carries some (an uploaded file, an encoded picture). Every request gets exactly one `Reply`.
-An empty message, such as ZMQ_PROBE_ROUTER sends at every (re)connection, only makes the peer known: it gets what is
-told unasked from then on, a Heartbeat first.
+where a request or reply carries some (an uploaded file, an encoded picture). Every request gets exactly one `Reply`,
+but for one that is cancelled. An empty message, such as ZMQ_PROBE_ROUTER sends at every (re)connection, only makes the
+peer known: it gets what is told unasked from then on, a Heartbeat first.
 """
 
 from __future__ import annotations
@@ -94,13 +94,20 @@ class PutSky(Message):
     sky: str
 
 
+class Cancel(Message):
+    """Nobody waits any more for the request of that number: it need not be done, and gets no reply then."""
+
+    type: Literal["cancel"] = "cancel"
+    request: Annotated[int, Field(ge=0, lt=2**64)]
+
+
 class Status(Message):
     """Ask for the engine's counters and device."""
 
     type: Literal["status"] = "status"
 
 
-Request = OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | PutSky | Status
+Request = OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | PutSky | Cancel | Status
 EngineRequest = Annotated[Request, Field(discriminator="type")]
 
 

@@ -237,7 +237,12 @@ def gateway(
 
 
 @app.command()
-def engine(control: Control, frames: Frames) -> None:
+def engine(
+    control: Control,
+    frames: Annotated[
+        list[str], typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames; repeatable, for several at once.")
+    ],
+) -> None:
     """Run the render process alone: sessions, simulation and frames over ZeroMQ."""
     from culet.engine.serve import run
 

@@ -45,7 +45,7 @@ class FailingRenderer:
 async def test_a_scene_that_cannot_be_rendered_is_a_problem_of_its_session_alone(tmp_path: Path) -> None:
     control, frames = f"ipc://{tmp_path}/control", f"ipc://{tmp_path}/frames"
     context, stopping, thread = zmq.asyncio.Context(), asyncio.Event(), ThreadPoolExecutor(1)
-    engine = Engine(context, control, frames, Limits(), FailingRenderer(), thread, encode_still)
+    engine = Engine(context, control, [frames], Limits(), FailingRenderer(), thread, encode_still)
     running = asyncio.create_task(engine.run_until(stopping))
     peer = Peer(context, control)
     try:

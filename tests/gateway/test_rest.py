@@ -12,7 +12,8 @@ import pytest
 from PIL import Image
 
 from culet.scene import Scene
-from gateway.running import FOREIGN, Endpoints, Gateway, eventually, gateway_before
+from culet_client import FrameSubscription
+from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
 SMALL = {"width": 64, "height": 36}
 JSON = {"Content-Type": "application/json"}
@@ -218,6 +219,41 @@ async def test_sessions_that_nobody_uses_expire(engine: Endpoints, tmp_path: Pat
             await eventually(one_left)
             assert_problem(await gateway.http.get(f"/api/sessions/{idle}"), 404)
             assert (await gateway.http.get(f"/api/sessions/{watched}")).status_code == 200
+
+
+async def test_a_session_that_only_a_native_viewer_watches_does_not_expire(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, session_idle_seconds=0.3) as gateway:
+        watched, idle = await gateway.session(), await gateway.session()
+        with FrameSubscription(engine.frames, watched) as subscription:
+            await asyncio.to_thread(subscription.receive, PATIENCE)
+
+            async def one_left() -> bool:
+                return len(gateway.parts.sessions) == 1
+
+            await eventually(one_left)
+            shown = await asyncio.to_thread(subscription.receive, PATIENCE)
+            assert shown.session.hex() == watched
+            assert (await gateway.http.get(f"/api/sessions/{watched}")).status_code == 200
+            assert_problem(await gateway.http.get(f"/api/sessions/{idle}"), 404)
+
+        async def none_left() -> bool:
+            return len(gateway.parts.sessions) == 0
+
+        await eventually(none_left)
+
+
+async def test_a_still_whose_client_left_is_not_rendered(gateway: Gateway) -> None:
+    large = {"scene": {"sampling": {"samples_per_pixel": 4096}}, "width": 1920, "height": 1080}  # minutes
+    with pytest.raises(httpx.ReadTimeout):
+        await gateway.http.post("/api/render", json=large, timeout=0.5)
+
+    async def none_waits() -> bool:
+        return (await gateway.engine_status())["stills_waiting"] == 0
+
+    await eventually(none_waits)
+    small = await gateway.http.post("/api/render", json={"width": 16, "height": 9})
+    assert small.status_code == 200
+    assert 'culet_http_answers_total{status="499"} 1' in (await gateway.http.get("/metrics")).text
 
 
 async def test_too_many_stills_at_once_are_refused(gateway: Gateway) -> None:

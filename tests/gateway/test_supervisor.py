@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-import shutil
 import signal
 import socket
 import subprocess
@@ -23,6 +22,7 @@ from culet.errors import EngineUnavailableError, InputError
 from culet.gateway.listener import Listener
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.supervisor import STARTS_BEFORE_GIVING_UP, Supervisor
+from culet_client import FrameSubscription
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Orbit, ToggleFall
 from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, eventually, png
@@ -57,8 +57,8 @@ async def served(tmp_path: Path) -> AsyncIterator[Served]:
 
 
 @contextlib.contextmanager
-def _serve(web: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    command = [sys.executable, "-m", "culet", "serve", "--port", "0", "--web", str(web)]
+def _serve(web: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    command = [sys.executable, "-m", "culet", "serve", "--port", "0", "--web", str(web), *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout
@@ -176,18 +176,32 @@ async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches(
     assert not alive(engine)
 
 
-async def test_an_engine_does_not_outlive_a_killed_parent(served: Served) -> None:
+async def test_frames_are_published_where_native_viewers_want_them_and_to_the_page(tmp_path: Path) -> None:
+    elsewhere = f"ipc://{tmp_path}/f"
+    with _serve(tmp_path, "--frames", elsewhere) as (process, url):
+        async with httpx.AsyncClient(base_url=url, timeout=PATIENCE) as http:
+            session = (await http.post("/api/sessions")).json()["id"]
+            with FrameSubscription(elsewhere, session) as subscription:
+                frame = await asyncio.to_thread(subscription.receive, PATIENCE)
+            assert frame.session.hex() == session
+            async with Served(process, http).viewer(session) as viewer:
+                assert (await viewer.frame()).session.hex() == session
+
+
+async def test_an_engine_does_not_outlive_a_killed_parent(served: Served, tmp_path: Path) -> None:
     engine = served.engine()
     assert engine
     command = Path(f"/proc/{engine}/cmdline").read_text()  # noqa: ASYNC240 - procfs does not block
     left_behind = Path(command.split("ipc://")[1].partition("\0")[0]).parent
     served.process.kill()
     await ended(engine)
-    shutil.rmtree(left_behind)  # a killed process cannot tidy up
+    assert left_behind.exists(), "a killed process cannot tidy up"
+    with _serve(tmp_path):
+        assert not left_behind.exists(), "the next one does"
 
 
 async def test_an_engine_that_never_starts_is_given_up() -> None:
-    supervisor = Supervisor("ipc://unused", "ipc://unused", command=["false"])
+    supervisor = Supervisor(["false"])
     with pytest.raises(EngineUnavailableError, match=r"ended 4 times in a row, last with code 1"):
         await supervisor.run()
     assert supervisor.starts == STARTS_BEFORE_GIVING_UP
@@ -196,7 +210,7 @@ async def test_an_engine_that_never_starts_is_given_up() -> None:
 async def test_an_engine_that_does_not_listen_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("culet.gateway.supervisor.STOP_SECONDS", 0.2)
     deaf = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"
-    supervisor = Supervisor("ipc://unused", "ipc://unused", command=[sys.executable, "-c", deaf])
+    supervisor = Supervisor([sys.executable, "-c", deaf])
     running = asyncio.create_task(supervisor.run())
 
     async def started() -> bool:

@@ -77,6 +77,8 @@ class Requests:
                 return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
             case protocol.PutSky():
                 return await self._skies.put(request.sky, request.file_type, _file(data)), None
+            case protocol.Cancel():
+                return {}, None
             case _:
                 return self.status(), None
 
@@ -230,6 +232,7 @@ def described(live: LivePicture) -> dict[str, Any]:
         "session": session.name,
         "scene": session.scene.model_dump(mode="json"),
         "falling": session.falling,
+        "watched": live.watched,
         "step": session.shown.step,
         "simulation_time": session.shown.simulation_time,
         "pose": session.pose(),

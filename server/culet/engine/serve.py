@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import signal
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import zmq
@@ -27,8 +27,11 @@ log = logging.getLogger(__name__)
 HEARTBEAT_SECONDS = 1.0
 
 
-def run(control: str, frames: str, limits: Limits | None = None) -> None:
-    """Serve until SIGTERM or SIGINT. DeviceError without a working device, InputError for a bad endpoint."""
+def run(control: str, frames: Sequence[str], limits: Limits | None = None) -> None:
+    """Serve until SIGTERM or SIGINT: control at one endpoint, frames at each of some.
+
+    DeviceError without a working device, InputError for a bad endpoint.
+    """
     asyncio.run(serve(control, frames, limits or Limits(), open_renderer, encode_still))
 
 
@@ -53,7 +56,7 @@ def encode_still(picture: Picture, file_format: str) -> bytes:
 
 async def serve(
     control: str,
-    frames: str,
+    frames: Sequence[str],
     limits: Limits,
     renderer_of: Callable[[], Renderer],
     encode: Callable[[Picture, str], bytes],
@@ -81,7 +84,7 @@ class Engine:
         self,
         context: zmq.asyncio.Context,
         control: str,
-        frames: str,
+        frames: Sequence[str],
         limits: Limits,
         renderer: Renderer,
         render_thread: ThreadPoolExecutor,
@@ -91,6 +94,8 @@ class Engine:
         self._frames = bind_frames(context, frames)
         self._peers = Peers(self._control)
         self._tasks: set[asyncio.Task[None]] = set()
+        self._under_way: dict[tuple[bytes, bytes], asyncio.Task[None]] = {}
+        """Requests that are not answered yet, by peer and number."""
         stills = StillQueue(limits.stills)
         self._painter = Painter(
             renderer, render_thread, stills, send=self._send_frame, report=self._report_problem, encode_still=encode
@@ -120,7 +125,18 @@ class Engine:
             if parts in ([], [b""]):  # ZMQ_PROBE_ROUTER: somebody connected
                 await self._peers.send(peer, [protocol.REQUEST_NUMBER.pack(0), self._heartbeat()])
                 continue
-            self._spawn(self._reply(peer, parts))
+            self._answer(peer, parts)
+
+    def _answer(self, peer: bytes, parts: list[bytes]) -> None:
+        task = self._spawn(self._reply(peer, parts))
+        request = (peer, parts[0])
+        self._under_way[request] = task
+        task.add_done_callback(lambda _: self._under_way.pop(request, None))
+
+    def _cancel(self, peer: bytes, number: int) -> None:
+        task = self._under_way.get((peer, protocol.REQUEST_NUMBER.pack(number)))
+        if task is not None:
+            task.cancel()
 
     async def _reply(self, peer: bytes, parts: list[bytes]) -> None:
         number, data = protocol.REQUEST_NUMBER.pack(0), None
@@ -132,6 +148,8 @@ class Engine:
                 )
             number = parts[0]
             request = read_request(parts[1])
+            if isinstance(request, protocol.Cancel):
+                self._cancel(peer, request.request)
             result, data = await self._requests.answer(request, parts[2] if len(parts) == 3 else None)
             reply = protocol.Reply(result=result)
         except CuletError as error:
@@ -169,10 +187,11 @@ class Engine:
     async def _send(self, message: bytes) -> None:
         await self._frames.send(message)  # XPUB drops what a full subscriber cannot take, and never waits
 
-    def _spawn(self, work: Coroutine[None, None, None]) -> None:
+    def _spawn(self, work: Coroutine[None, None, None]) -> asyncio.Task[None]:
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+        return task
 
 
 def read_request(text: bytes) -> BaseModel:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 
 import zmq
 import zmq.asyncio
@@ -26,29 +27,30 @@ def bind_control(context: zmq.asyncio.Context, endpoint: str, upload_bytes: int)
     socket = context.socket(zmq.ROUTER)
     socket.setsockopt(zmq.MAXMSGSIZE, upload_bytes + JSON_BYTES)
     socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that left is an error, by which it is forgotten
-    return _bind(socket, endpoint)
+    return _bind(socket, [endpoint])
 
 
-def bind_frames(context: zmq.asyncio.Context, endpoint: str) -> zmq.asyncio.Socket:
-    """The XPUB: every new subscription is seen, and, once nobody has it any more, its end."""
+def bind_frames(context: zmq.asyncio.Context, endpoints: Sequence[str]) -> zmq.asyncio.Socket:
+    """The XPUB, at each of the endpoints: every new subscription is seen, and, once nobody has it any more, its end."""
     socket = context.socket(zmq.XPUB)
     socket.setsockopt(zmq.XPUB_VERBOSE, 1)
     socket.setsockopt(zmq.SNDHWM, FRAMES_HIGH_WATER)  # before bind, or it has no effect
     socket.setsockopt(zmq.MAXMSGSIZE, 1024)  # subscriptions are short
-    return _bind(socket, endpoint)
+    return _bind(socket, endpoints)
 
 
-def _bind(socket: zmq.asyncio.Socket, endpoint: str) -> zmq.asyncio.Socket:
+def _bind(socket: zmq.asyncio.Socket, endpoints: Sequence[str]) -> zmq.asyncio.Socket:
     socket.setsockopt(zmq.LINGER, 0)
-    if endpoint.startswith("tcp:"):
+    if any(endpoint.startswith("tcp:") for endpoint in endpoints):
         socket.setsockopt(zmq.HEARTBEAT_IVL, HEARTBEAT_MS)
         socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 2 * HEARTBEAT_MS)
         socket.setsockopt(zmq.HEARTBEAT_TTL, 3 * HEARTBEAT_MS)
-    try:
-        socket.bind(endpoint)
-    except zmq.ZMQError as error:
-        socket.close()
-        raise InputError(f"cannot bind {endpoint}: {error}; expected such as ipc:///run/culet/control") from error
+    for endpoint in endpoints:
+        try:
+            socket.bind(endpoint)
+        except zmq.ZMQError as error:
+            socket.close()
+            raise InputError(f"cannot bind {endpoint}: {error}; expected such as ipc:///run/culet/control") from error
     return socket
 
 

@@ -17,6 +17,7 @@ from culet.errors import BusyError, CuletError, EngineUnavailableError, InputErr
 from culet.gateway.settings import GatewaySettings
 from culet_protocol.engine import (
     REQUEST_NUMBER,
+    Cancel,
     Heartbeat,
     Reply,
     SessionProblem,
@@ -112,6 +113,10 @@ class EngineLink:
             await self._control.send_multipart(parts, flags=zmq.NOBLOCK)
             async with asyncio.timeout(None if patient else self._settings.request_seconds):
                 reply, data = await answer
+        except asyncio.CancelledError:
+            if patient:  # others are quickly done, and meant whether or not somebody waits for the answer
+                await self._cancel(number)
+            raise
         except zmq.Again:
             raise EngineUnavailableError("the render process does not take requests at the moment") from None
         except TimeoutError:
@@ -123,6 +128,15 @@ class EngineLink:
         if reply.status >= 400:
             raise error_of(reply)
         return reply.result, data
+
+    async def _cancel(self, number: int) -> None:
+        """Tell the engine that nobody waits for a request any more; if that fails, work is done in vain."""
+        if self._control is None:
+            return
+        self._numbers += 1
+        parts = [REQUEST_NUMBER.pack(self._numbers), Cancel(request=number).model_dump_json().encode()]
+        with contextlib.suppress(zmq.ZMQError):
+            await self._control.send_multipart(parts, flags=zmq.NOBLOCK)
 
     def subscribe(self, session: bytes) -> None:
         """Have the frames of a session sent; the engine sends its latest one at once."""

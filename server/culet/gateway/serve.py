@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from culet.gateway.listener import Listener
 from culet.gateway.settings import BUILT_CLIENT, GatewaySettings
-from culet.gateway.supervisor import Supervisor
+from culet.gateway.socket_folder import socket_folder
+from culet.gateway.supervisor import Supervisor, engine_command
 
 
 def serve(
@@ -22,19 +22,16 @@ def serve(
 ) -> None:
     """Run engine and gateway until SIGINT or SIGTERM; print the URL once both are ready.
 
-    `port` 0 takes a free one. `frames`, such as `tcp://127.0.0.1:5556`, is where the engine publishes frames, for
-    native viewers; without it they stay on this machine. Raises InputError if the address cannot be listened on, and
-    EngineUnavailableError if the engine dies again and again before it was ever ready.
+    `port` 0 takes a free one. `frames`, such as `tcp://127.0.0.1:5556`, is where the engine publishes frames for
+    native viewers too; without it they stay on this machine. Raises InputError if the address cannot be listened on,
+    and EngineUnavailableError if the engine dies again and again before it was ever ready.
     """
-    # A socket's path may have 107 bytes (sun_path), so the folder is not made under a long TMPDIR.
-    with tempfile.TemporaryDirectory(prefix="culet-", dir="/tmp") as folder:
-        control = f"ipc://{folder}/control"
-        frames = frames or f"ipc://{folder}/frames"
-        settings = GatewaySettings(
-            control=control, frames=reachable(frames), web=web, allowed_origins=tuple(allowed_origins)
-        )
+    with socket_folder() as folder:
+        control, own_frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
+        settings = GatewaySettings(control=control, frames=own_frames, web=web, allowed_origins=tuple(allowed_origins))
         listener = Listener(settings, host, port)
-        asyncio.run(_serve(listener, Supervisor(control, frames, on_death=listener.gateway.link.lose)))
+        command = engine_command(control, own_frames, *([frames] if frames else []))
+        asyncio.run(_serve(listener, Supervisor(command, listener.gateway.link.lose)))
 
 
 def run_gateway(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from fastapi import APIRouter, Body, Query, Response, WebSocket
+from fastapi import APIRouter, Body, Query, Request, Response, WebSocket
 from pydantic import Field, model_validator
 
 from culet.gateway import stream as streaming
+from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers, finite
 from culet.gateway.sessions import Session
@@ -102,11 +103,13 @@ async def delete_session(session_id: str, gateway: ThisGateway) -> None:
 @router.get(
     "/api/sessions/{session_id}/frame.tga", response_class=PictureResponse, responses=answers(404, 422, 429, 503)
 )
-async def frame_tga(session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway) -> Response:
+async def frame_tga(
+    http: Request, session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway
+) -> Response:
     """What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a pixel."""
     session = gateway.sessions.get(session_id)
     message = Render(session=session.id, step=query.step, width=query.width, height=query.height, format="tga")
-    _, data = await gateway.link.request(message, patient=True)
+    _, data = await while_waited_for(http, gateway.link.request(message, patient=True))
     file_format: Literal["tga"] = "tga"
     disposition = f'attachment; filename="culet-{"latest" if query.step is None else query.step}.tga"'
     return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})

@@ -179,7 +179,16 @@ class Sessions:
                     await self.update_demand(session)
                 elif now - session.used > self._settings.session_idle_seconds and self._link.ready.is_set():
                     with contextlib.suppress(CuletError):
-                        await self.close(session, "nobody used the session")
+                        await self._expire(session)
+
+    async def _expire(self, session: Session) -> None:
+        """Close a session, unless somebody watches it straight from the engine."""
+        session.used = time.monotonic()  # looked at again only after a while, should it stay
+        with contextlib.suppress(NotFoundError):
+            described, _ = await self._link.request(to_engine.GetSession(session=session.id))
+            if described["watched"]:
+                return
+        await self.close(session, "nobody used the session")
 
     async def _ask(self, session: Session, message: Message) -> dict[str, Any]:
         """A request about a session; one that the engine does not know, because it is new, is opened there first."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field
 
+from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
@@ -73,18 +74,20 @@ class PictureResponse(Response):
 
 
 @router.get("/api/render.tga", response_class=PictureResponse, responses=answers(404, 422, 429, 503))
-async def render_tga(query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
+async def render_tga(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
     """Render a preset as a 24-bit TGA."""
-    return await _picture(gateway, query.scene(), query.width, query.height, "tga")
+    return await _picture(http, gateway, query.scene(), query.width, query.height, "tga")
 
 
 @router.post("/api/render", response_class=PictureResponse, responses=answers(413, 422, 429, 503))
-async def render(request: StillRequest, gateway: ThisGateway) -> Response:
+async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> Response:
     """Render a scene in the format asked for."""
-    return await _picture(gateway, request.scene, request.width, request.height, request.format)
+    return await _picture(http, gateway, request.scene, request.width, request.height, request.format)
 
 
-async def _picture(gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format) -> Response:
+async def _picture(
+    http: Request, gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format
+) -> Response:
     message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format)
-    _, data = await gateway.link.request(message, patient=True)
+    _, data = await while_waited_for(http, gateway.link.request(message, patient=True))
     return Response(data, media_type=MEDIA_TYPES[file_format])

@@ -28,24 +28,19 @@ PR_SET_PDEATHSIG = 1
 """linux/prctl.h: the signal a process gets when its parent dies."""
 
 
-def engine_command(control: str, frames: str) -> list[str]:
+def engine_command(control: str, *frames: str) -> list[str]:
     """The command line of an engine that binds these endpoints."""
-    return [sys.executable, "-m", "culet", "engine", "--control", control, "--frames", frames]
+    published = [word for endpoint in frames for word in ("--frames", endpoint)]
+    return [sys.executable, "-m", "culet", "engine", "--control", control, *published]
 
 
 class Supervisor:
     """Keeps one engine process running until told to stop."""
 
-    def __init__(
-        self,
-        control: str,
-        frames: str,
-        command: Sequence[str] | None = None,
-        on_death: Callable[[str], None] = lambda _reason: None,
-    ) -> None:
-        """`on_death` is told why when the engine ended without being asked to."""
+    def __init__(self, command: Sequence[str], on_death: Callable[[str], None] = lambda _reason: None) -> None:
+        """`command` starts the engine; `on_death` is told why when the engine ended without being asked to."""
         self._on_death = on_death
-        self.command = list(command or engine_command(control, frames))
+        self.command = list(command)
         self.starts = 0
         self._process: asyncio.subprocess.Process | None = None
         self._stopping = False
