@@ -1,0 +1,106 @@
+"""Pictures of a dielectric stone alone under a panorama, by Mitsuba 3: another program, another method.
+
+Mitsuba's path tracer follows one random path at a time, where culet follows all parts of the light; it meets triangles
+with another intersector, and its polarised variants carry full Mueller matrices. Its dielectric has one index. The
+panorama is given to it with twice as many rows, so that both programs' bilinear lookups are one function.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+
+from culet.geometry.stone import Stone
+from culet.scene import Scene
+
+Array = NDArray[np.float64]
+
+mitsuba: Any = pytest.importorskip(
+    "mitsuba", reason="the comparison needs Mitsuba 3, which is not installed: pip install -e '.[validation]'"
+)
+
+VARIANTS = {False: "scalar_rgb", True: "scalar_spectral_polarized"}
+"""Unpolarised and polarised; both need no LLVM. The spectral one is the only scalar one that is polarised."""
+LUMINANCE, SQUARED_LUMINANCE = 4, 7
+"""Channels of the `moment` integrator's picture: the Y of X, Y, Z, and that of their squares."""
+LONGEST = 256
+"""Segments of a path: as good as endless, what is left after them is below 1e-6 of the light in these scenes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """A picture with its uncertainty."""
+
+    mean: Array
+    """(height, width) radiance."""
+    variance: Array
+    """(height, width) of the mean, from the samples' own spread."""
+    samples: int
+
+
+def twice_as_high(panorama: NDArray[np.float32]) -> NDArray[np.float32]:
+    """A grey panorama (h, 2h) of culet's, as (2h + 1, 2h, 3) for Mitsuba.
+
+    In both, columns have their centres at half numbers. culet's rows do too, but the first row of Mitsuba's `envmap`
+    is the zenith itself and its last the nadir (Mitsuba 3.9). On a lattice of half the pitch every row's centre is a
+    row of Mitsuba's, and so is every middle between two: a bilinear function is the same on a part of its cell. At a
+    pole culet looks across to the other half of the row.
+    """
+    height, width = panorama.shape
+    over_pole = np.vstack([np.roll(panorama[:1], width // 2, 1), panorama, np.roll(panorama[-1:], width // 2, 1)])
+    fine = np.empty((2 * height + 1, width), np.float32)
+    fine[0::2] = (over_pole[:-1] + over_pole[1:]) / 2
+    fine[1::2] = panorama
+    return np.repeat(fine[..., None], 3, axis=-1)
+
+
+def reference(
+    scene: Scene,
+    stone: Stone | None,
+    eta: float,
+    panorama: NDArray[np.float32],
+    size: tuple[int, int],
+    samples: int,
+    seed: int = 0,
+    *,
+    polarised: bool = False,
+) -> Reference:
+    """The scene's camera looking at the stone, which lies at the origin unturned, under a grey panorama (h, 2h)."""
+    mitsuba.set_variant(VARIANTS[polarised])
+    camera = scene.camera
+    view = mitsuba.ScalarTransform4f().look_at(origin=camera.position, target=camera.target, up=camera.up)
+    described = {
+        "type": "scene",
+        "integrator": {"type": "moment", "nested": {"type": "path", "max_depth": LONGEST, "rr_depth": LONGEST}},
+        "sensor": {
+            "type": "perspective", "fov_axis": "y", "fov": camera.fov_degrees, "to_world": view,
+            "film": {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"}},
+            "sampler": {"type": "independent"},
+        },
+        "sky": {"type": "envmap", "bitmap": mitsuba.Bitmap(twice_as_high(panorama))},
+    }  # fmt: skip
+    if stone is not None:
+        described["stone"] = _mesh(stone, eta)
+    moments = np.array(mitsuba.render(mitsuba.load_dict(described), spp=samples, seed=seed), np.float64)
+    mean = moments[..., LUMINANCE]
+    spread = np.maximum(moments[..., SQUARED_LUMINANCE] - mean**2, 0)
+    return Reference(mean, spread / (samples - 1), samples)
+
+
+def _mesh(stone: Stone, eta: float) -> Any:  # noqa: ANN401 - Mitsuba is not typed
+    """Flat triangles of glass."""
+    properties = mitsuba.Properties()
+    properties["glass"] = mitsuba.load_dict({"type": "dielectric", "int_ior": eta, "ext_ior": 1.0})
+    properties["face_normals"] = True
+    flat = trimesh.Trimesh(stone.vertices, stone.triangles, process=False)
+    mesh = mitsuba.Mesh(stone.name, len(flat.vertices), len(flat.faces), props=properties)
+    parameters = mitsuba.traverse(mesh)
+    parameters["vertex_positions"] = flat.vertices.ravel().astype(np.float32)
+    parameters["faces"] = flat.faces.ravel().astype(np.uint32)
+    parameters.update()
+    return mesh
