@@ -102,6 +102,7 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.ResetCamera(),
     messages.ToggleFall(),
     messages.ResetStone(),
+    messages.Push(x=0.25, y=-0.125, right=0.5, up=1.5),
     messages.ToggleMirror(),
     messages.ToggleEnvironment(),
     messages.ToggleWalls(),

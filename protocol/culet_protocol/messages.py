@@ -12,6 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 Distance = Annotated[float, Field(ge=-1e6, le=1e6)]
 Angle = Annotated[float, Field(ge=-1e3, le=1e3)]
+PicturePoint = Annotated[float, Field(ge=-100, le=100)]
+Blow = Annotated[float, Field(ge=-20, le=20)]
 Target = Literal["camera", "light_1", "light_2"]
 Pixels = Annotated[int, Field(ge=16, le=8192)]
 
@@ -67,6 +69,20 @@ class ResetStone(Message):
     """Put the stone back to where the scene has it, and stop it."""
 
     type: Literal["reset_stone"] = "reset_stone"
+
+
+class Push(Message):
+    """Strike the stone where the picture shows it, and let time go on; past the stone it does nothing.
+
+    x to the right and y up, from the picture's centre, in halves of its height. The blow is along the camera's right
+    and up, and so strong that it changes the velocity of the stone's centre by that, R/s.
+    """
+
+    type: Literal["push"] = "push"
+    x: PicturePoint
+    y: PicturePoint
+    right: Blow
+    up: Blow
 
 
 class ToggleMirror(Message):
@@ -131,8 +147,8 @@ class Ping(Message):
 
 
 SessionEvent = (
-    Orbit | Translate | Dolly | ResetCamera | ToggleFall | ResetStone | ToggleMirror | ToggleEnvironment | ToggleWalls
-    | PatchScene | SetScene
+    Orbit | Translate | Dolly | ResetCamera | ToggleFall | ResetStone | Push | ToggleMirror | ToggleEnvironment
+    | ToggleWalls | PatchScene | SetScene
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 

@@ -67,6 +67,24 @@ export interface ResetStone {
   type: "reset_stone";
 }
 
+/**
+ * Strike the stone where the picture shows it, and let time go on; past the stone it does nothing.
+ *
+ * x to the right and y up, from the picture's centre, in halves of its height. The blow is along the camera's right
+ * and up, and so strong that it changes the velocity of the stone's centre by that, R/s.
+ */
+export interface Push {
+  type: "push";
+  /** -100 to 100 */
+  x: number;
+  /** -100 to 100 */
+  y: number;
+  /** -20 to 20 */
+  right: number;
+  /** -20 to 20 */
+  up: number;
+}
+
 /** Switch floor and walls between matte and mirror. */
 export interface ToggleMirror {
   type: "toggle_mirror";
@@ -129,6 +147,7 @@ export type ControlEvent =
   | ResetCamera
   | ToggleFall
   | ResetStone
+  | Push
   | ToggleMirror
   | ToggleEnvironment
   | ToggleWalls

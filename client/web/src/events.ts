@@ -1,8 +1,18 @@
 /** Names for parts of the protocol's unions. */
 
-import type { Ack, ControlEvent, Dolly, Orbit, Ping, Resize, Translate, Visibility } from "@culet/protocol/messages";
+import type {
+  Ack,
+  ControlEvent,
+  Dolly,
+  Orbit,
+  Ping,
+  Push,
+  Resize,
+  Translate,
+  Visibility,
+} from "@culet/protocol/messages";
 
-export type { ControlEvent, Dolly, Orbit, Translate };
+export type { ControlEvent, Dolly, Orbit, Push, Translate };
 
 /** What moves: the camera or one of the lights. */
 export type Target = NonNullable<Orbit["target"]>;

@@ -1,5 +1,5 @@
 import { describe, expect, it, test } from "vitest";
-import { Fingers, orbitBy, pinchBy, wheelBy } from "./gestures";
+import { Fingers, orbitBy, pinchBy, pushBy, wheelBy } from "./gestures";
 
 describe("fingers", () => {
   it("drag when there is one", () => {
@@ -75,5 +75,21 @@ describe("the wheel", () => {
   it("is limited in bursts", () => {
     expect(wheelBy(-1e5, 0, "camera").forward).toBe(2);
     expect(wheelBy(1e5, 0, "camera").forward).toBe(-2);
+  });
+});
+
+describe("a push", () => {
+  it("strikes where it began, in halves of the picture's height from its centre", () => {
+    expect(pushBy(300, 100, 0, 0, 400, 200)).toMatchObject({ type: "push", x: 1, y: 0 });
+    expect(pushBy(200, 0, 0, 0, 400, 200)).toMatchObject({ x: 0, y: 1 });
+  });
+
+  it("goes with the finger, right and up, as far as it went", () => {
+    expect(pushBy(0, 0, 50, 0, 400, 200)).toMatchObject({ right: 3 });
+    expect(pushBy(0, 0, 0, -50, 400, 200)).toMatchObject({ up: 3 });
+  });
+
+  it("is gentle, however far the finger went", () => {
+    expect(pushBy(0, 0, -9000, 9000, 400, 200)).toMatchObject({ right: -10, up: -10 });
   });
 });

@@ -1,7 +1,7 @@
 /** Drag, pinch and wheel as motions of the target. */
 
 import { STEP } from "./actions";
-import type { Dolly, Orbit, Target } from "./events";
+import type { Dolly, Orbit, Push, Target } from "./events";
 
 /** What fingers did since the last look: css pixels dragged, and the ratio of a pinch. */
 export interface Motion {
@@ -48,6 +48,18 @@ export function orbitBy(dx: number, dy: number, side: number, target: Target): O
   const radians = Math.PI / Math.max(side, 1);
   const sign = target === "camera" ? -1 : 1;
   return { type: "orbit", target, yaw: sign * dx * radians, pitch: -sign * dy * radians };
+}
+
+/** R/s for a drag over half the picture's height. */
+const PUSH = 6;
+/** R/s: the most that one blow gives. */
+const PUSH_LIMIT = 10;
+
+/** A drag that began at (x, y), css pixels from the picture's upper left corner, as a blow at that place. */
+export function pushBy(x: number, y: number, dx: number, dy: number, width: number, height: number): Push {
+  const half = Math.max(height, 1) / 2;
+  const blow = (pixels: number) => Math.max(-PUSH_LIMIT, Math.min(PUSH_LIMIT, (PUSH * pixels) / half));
+  return { type: "push", x: (x - width / 2) / half, y: (height / 2 - y) / half, right: blow(dx), up: blow(-dy) };
 }
 
 /** R for a doubling of the distance between two fingers. */

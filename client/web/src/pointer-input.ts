@@ -1,7 +1,7 @@
 /** Pointer and wheel events of the canvas, summed up and sent once an animation frame. */
 
 import type { SessionEvent, Target } from "./events";
-import { Fingers, orbitBy, pinchBy, wheelBy } from "./gestures";
+import { Fingers, orbitBy, pinchBy, pushBy, wheelBy } from "./gestures";
 
 export function listenToPointers(
   canvas: HTMLCanvasElement,
@@ -10,6 +10,9 @@ export function listenToPointers(
 ): void {
   const fingers = new Fingers();
   let pending: { target: Target; yaw: number; pitch: number; forward: number } | null = null;
+
+  /** Where a push began, css pixels; it is given when the pointer goes up. */
+  let push: { id: number; x: number; y: number } | null = null;
 
   function flush(): void {
     if (!pending) return;
@@ -33,6 +36,10 @@ export function listenToPointers(
     if (event.button !== 0) return;
     canvas.setPointerCapture(event.pointerId);
     canvas.focus({ preventScroll: true });
+    if (event.shiftKey) {
+      push = { id: event.pointerId, x: event.offsetX, y: event.offsetY };
+      return;
+    }
     fingers.down(event.pointerId, event.clientX, event.clientY);
   });
   canvas.addEventListener("pointermove", (event) => {
@@ -42,8 +49,16 @@ export function listenToPointers(
     const turn = orbitBy(motion.dx, motion.dy, side, targetNow());
     add(turn.yaw, turn.pitch, pinchBy(motion.spread, targetNow()).forward);
   });
+  canvas.addEventListener("pointerup", (event) => {
+    if (push?.id !== event.pointerId) return;
+    const { x, y } = push;
+    send(pushBy(x, y, event.offsetX - x, event.offsetY - y, canvas.clientWidth, canvas.clientHeight));
+  });
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
-    canvas.addEventListener(end, (event) => fingers.up(event.pointerId));
+    canvas.addEventListener(end, (event) => {
+      fingers.up(event.pointerId);
+      if (push?.id === event.pointerId) push = null;
+    });
   }
   canvas.addEventListener(
     "wheel",

@@ -71,6 +71,7 @@ test("every control event has a TypeScript type", () => {
     { type: "reset_camera" },
     { type: "toggle_fall" },
     { type: "reset_stone" },
+    { type: "push", x: 0.25, y: -0.125, right: 0.5, up: 1.5 },
     { type: "toggle_mirror" },
     { type: "toggle_environment" },
     { type: "toggle_walls" },

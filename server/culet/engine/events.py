@@ -29,6 +29,8 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
             session.set_falling(not session.falling)
         case messages.ResetStone():
             session.reset_stone()
+        case messages.Push():
+            session.push(event.x, event.y, event.right, event.up)
         case messages.ToggleMirror():
             session.change(_with_mirror_toggled(session.scene))
         case messages.ToggleEnvironment():

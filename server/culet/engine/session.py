@@ -11,7 +11,9 @@ from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Any
 
+from culet.engine.picking import struck_point
 from culet.engine.snapshot import LARGEST_FRACTION, Snapshot
+from culet.engine.viewpoint import axes
 from culet.errors import InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
@@ -136,6 +138,26 @@ class Session:
             raise InputError("expected a scene with a stone, got none: nothing can fall")
         self.falling = falling
         self._advanced_at = None
+        self._show()
+
+    def push(self, x: float, y: float, right: float, up: float) -> None:
+        """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.
+
+        Time goes on, if the stone is hit. InputError if there is no stone, or the blow is too strong.
+        """
+        if self._simulation is None or self._stone is None:
+            raise InputError("expected a scene with a stone, got none: nothing can be pushed")
+        position, orientation = self._simulation.state.position, self._simulation.state.orientation
+        point = struck_point(self._camera, self._stone, position, orientation, x, y)
+        if point is None:
+            return
+        right_axis, up_axis, _ = axes(self._camera)
+        a, b, c = ((right * right_axis + up * up_axis) * self._simulation.body.mass).tolist()
+        was_moving = self.moving
+        self._simulation.push((a, b, c), point)
+        self.falling = True
+        if not was_moving:
+            self._advanced_at = None
         self._show()
 
     def reset_stone(self) -> None:
