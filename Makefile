@@ -13,11 +13,11 @@ WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
-.PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate bench compose-test opencl browser node
+.PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate bench study compose-test opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(WEB_BUILD)
-	@echo "Ready. make serve | test | check | validate | bench | compose-test"
+	@echo "Ready. make serve | test | check | validate | bench | study | compose-test"
 
 serve: opencl $(WEB_BUILD)
 	@exec $(BIN)/culet serve $(ARGS)
@@ -58,6 +58,9 @@ validate: $(DONE)/dev opencl
 bench: opencl
 	$(BIN)/culet bench $(ARGS)
 
+study: $(DONE)/study opencl
+	$(BIN)/culet study rendering $(ARGS)
+
 compose-test: $(DONE)/dev
 	.ci/compose-test
 
@@ -72,6 +75,10 @@ $(DONE)/base: pyproject.toml | $(DONE)/venv
 
 $(DONE)/dev: pyproject.toml | $(DONE)/base
 	$(BIN)/pip install --quiet --editable '.[dev]'
+	@touch $@
+
+$(DONE)/study: pyproject.toml | $(DONE)/base
+	$(BIN)/pip install --quiet --editable '.[study]'
 	@touch $@
 
 opencl: $(DONE)/base

@@ -5,10 +5,8 @@ from __future__ import annotations
 import json
 import platform
 import statistics
-import subprocess
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import pyopencl as cl
@@ -20,6 +18,7 @@ from culet.rendering.program import FLAGS
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
 from culet.study.cases import CASES, FEATURE_CASES
+from culet.study.provenance import commit, processor
 
 Progress = Callable[[str], None]
 
@@ -96,8 +95,8 @@ def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -
     return json.dumps(
         {
             "version": __version__,
-            "commit": _commit(),
-            "machine": {"processor": _processor(), "system": platform.platform(), **renderer.describe()},
+            "commit": commit(),
+            "machine": {"processor": processor(), "system": platform.platform(), **renderer.describe()},
             "flags": FLAGS,
             "width": width,
             "height": height,
@@ -123,22 +122,3 @@ def _take_turns(pictures: list[Picture], repeats: int) -> list[list[float]]:
 
 def _program_size(picture: Picture) -> int:
     return int(picture.program.get_info(cl.program_info.BINARY_SIZES)[0])
-
-
-def _commit() -> str:
-    try:
-        result = subprocess.run(
-            ["git", "describe", "--always", "--dirty"],  # noqa: S607
-            cwd=Path(__file__).parent, capture_output=True, text=True, check=True,
-        )  # fmt: skip
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return result.stdout.strip()
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor()
-    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())

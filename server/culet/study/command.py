@@ -1,0 +1,212 @@
+"""`culet study`: error against run time, on the machine at hand. What a command needs is imported by the command."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from culet.geometry.stone import Stone
+    from culet.scene import Scene
+    from culet.study.comparison import Difference
+    from culet.study.report import Report
+
+study_app = typer.Typer(
+    help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.", no_args_is_help=True
+)
+
+SceneFile = Annotated[
+    Path | None,
+    typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
+]
+Preset = Annotated[str | None, typer.Option(help="Start from a named scene instead; a wrong name lists them.")]
+MeshFile = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
+]
+Out = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the report; made if missing.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Fewer settings and samples, a smaller picture: 2 minutes.")]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Measure anew what an earlier run has left in the folder.")]
+Width = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 640, quick 320.")]
+Height = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 360, quick 180.")]
+ReportFile = Annotated[Path, typer.Argument(metavar="REPORT.json", help="A report.json of a study.")]
+BenchFile = Annotated[Path, typer.Argument(metavar="BENCH.jsonl", help="A file of `culet bench -o`.")]
+
+SHOWN_RATIOS = 20
+"""Of a comparison: those that changed most."""
+
+
+@study_app.command()
+def rendering(
+    scene: SceneFile = None,
+    out: Out = Path("report/rendering"),
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    quick: Quick = False,
+    fresh: Fresh = False,
+    width: Width = None,
+    height: Height = None,
+) -> None:
+    """Sweep the renderer's knobs against converged references in double precision.
+
+    Stopped with Ctrl-C it goes on where it was when it is started again.
+    """
+    from culet.study.studies import FULL, QUICK, study_rendering
+
+    with _errors(), _interruptible(out):
+        subject, stone = _subject(scene, preset, mesh)
+        effort = QUICK if quick else FULL
+        effort = effort._replace(width=width or effort.width, height=height or effort.height)
+        _tell(study_rendering(subject, stone, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
+
+
+@study_app.command()
+def simulation(
+    scene: SceneFile = None,
+    out: Out = Path("report/simulation"),
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    quick: Quick = False,
+    fresh: Fresh = False,
+) -> None:
+    """Sweep integrators and step sizes on motions whose truth is known."""
+    from culet.study.studies import study_simulation
+
+    with _errors(), _interruptible(out):
+        subject, stone = _subject(scene, preset, mesh)
+        _tell(study_simulation(subject, stone, out, _progress, quick=quick, fresh=fresh), out)
+
+
+@study_app.command()
+def streaming(
+    scene: SceneFile = None,
+    out: Out = Path("report/streaming"),
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    quick: Quick = False,
+    fresh: Fresh = False,
+    width: Width = None,
+    height: Height = None,
+) -> None:
+    """Sweep codecs and qualities on moving and still frames."""
+    with _errors(), _interruptible(out):
+        from culet.study.studies import study_streaming
+
+        subject, stone = _subject(scene, preset, mesh)
+        size = (width or (320 if quick else 640), height or (180 if quick else 360))
+        _tell(
+            study_streaming(subject, stone, out, _progress, width=size[0], height=size[1], quick=quick, fresh=fresh),
+            out,
+        )
+
+
+@study_app.command()
+def diff(before: ReportFile, after: ReportFile) -> None:
+    """Compare two reports of the same study, as ratios after / before."""
+    from culet.study.comparison import compare
+    from culet.study.report import Report
+
+    with _errors():
+        _print_difference(compare(Report.read(before), Report.read(after)))
+
+
+@study_app.command("compare-bench")
+def compare_bench(before: BenchFile, after: BenchFile) -> None:
+    """Compare the last lines of two files of `culet bench -o`, as ratios after / before. Fails on no ratio."""
+    from culet.study.comparison import compare_benches
+
+    with _errors():
+        _print_difference(compare_benches(before, after))
+
+
+@study_app.command()
+def headline(report: ReportFile) -> None:
+    """Print a report's numbers in short, as a table for a README."""
+    from culet.study.outcome import headline_markdown
+    from culet.study.report import Report
+
+    with _errors():
+        typer.echo(headline_markdown(Report.read(report)), nl=False)
+
+
+def _subject(file: Path | None, preset: str | None, mesh: Path | None) -> tuple[Scene, Stone]:
+    from culet.cli import _subject as subject
+    from culet.errors import SceneError
+
+    scene, stone = subject(file, preset, mesh)
+    if stone is None:
+        raise SceneError("stones: a study needs a stone; the scene has none", "stones")
+    return scene, stone
+
+
+@contextlib.contextmanager
+def _errors() -> Iterator[None]:
+    from culet.cli import errors_in_one_line
+    from culet.errors import InputError
+
+    with errors_in_one_line():
+        try:
+            yield
+        except ModuleNotFoundError as error:
+            if error.name is None or error.name.split(".")[0] != "skimage":
+                raise
+            raise InputError("a study needs scikit-image: pip install 'culet[study]'") from error
+
+
+@contextlib.contextmanager
+def _interruptible(out: Path) -> Iterator[None]:
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(f"culet: interrupted; what is measured is kept in {out}: the same command goes on", err=True)
+        raise typer.Exit(130) from None
+
+
+@contextlib.contextmanager
+def _progress(stage: str, steps: int) -> Iterator[Callable[[str, int], None]]:
+    """A bar on a terminal with the time that is left; elsewhere a line a stage."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        typer.echo(f"{stage}: {steps}", err=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(stage, total=steps)
+
+        def advance(label: str, done: int) -> None:
+            bar.update(task, completed=done, description=f"{stage}: {label}" if label else stage)
+
+        yield advance
+
+
+def _tell(report: Report, out: Path) -> None:
+    for line in report.headlines:
+        typer.echo(f"{line.name}: {line.value:.3g} {line.unit}")
+    for note in report.notes:
+        typer.echo(note, err=True)
+    typer.echo(f"{out / 'report.html'}: {len(report.points)} points")
+
+
+def _print_difference(difference: Difference) -> None:
+    import math
+
+    from culet.study.comparison import medians
+
+    for warning in difference.warnings:
+        typer.echo(f"note: {warning}", err=True)
+    typer.echo(f"{'median ratio':>14}  figure")
+    for name, ratio in medians(difference.ratios).items():
+        typer.echo(f"{ratio:14.3f}  {name}")
+    changed = [each for each in difference.ratios if each.ratio != 1]
+    changed.sort(key=lambda each: -abs(math.log(each.ratio)) if 0 < each.ratio < math.inf else -math.inf)
+    typer.echo(f"\n{len(changed)} of {len(difference.ratios)} figures differ; those that changed most:")
+    for each in changed[:SHOWN_RATIOS]:
+        typer.echo(f"{each.ratio:14.3f}  {each.label}: {each.figure} {each.before:.4g} -> {each.after:.4g}")
+    for words, keys in (("before", difference.only_before), ("after", difference.only_after)):
+        if keys:
+            typer.echo(f"{len(keys)} points only {words}: {', '.join(keys[:3])}{' ...' if len(keys) > 3 else ''}")

@@ -1,0 +1,119 @@
+"""Two measurements side by side, as ratios: what changed between two states of the code, or two machines."""
+
+from __future__ import annotations
+
+import json
+import math
+import statistics
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from culet.errors import InputError
+from culet.study.report import Report
+
+
+class Ratio(NamedTuple):
+    """Of one figure of one point."""
+
+    group: str
+    label: str
+    figure: str
+    before: float
+    after: float
+
+    @property
+    def ratio(self) -> float:
+        """after / before; infinite if there was nothing before."""
+        if self.before == self.after:
+            return 1.0
+        return self.after / self.before if self.before else math.inf
+
+
+class Difference(NamedTuple):
+    """Of two reports."""
+
+    ratios: list[Ratio]
+    only_before: list[str]
+    only_after: list[str]
+    warnings: list[str]
+
+
+def compare(before: Report, after: Report) -> Difference:
+    """Ratios of all figures of the points that both have; InputError if they are of different studies."""
+    if before.study != after.study:
+        raise InputError(f"expected two reports of the same study, got {before.study} and {after.study}")
+    warnings = [
+        f"{name} differ: {_shown(old)}, then {_shown(new)}"
+        for name, old, new in (("scenes", before.scene, after.scene), ("settings", before.settings, after.settings))
+        if old != new
+    ]
+    warnings += [
+        f"{name} differs: {before.provenance.get(name)}, then {after.provenance.get(name)}"
+        for name in ("processor", "device", "driver", "units")
+        if before.provenance.get(name) != after.provenance.get(name)
+    ]
+    known = {point.key: point for point in before.points}
+    ratios: list[Ratio] = []
+    for point in after.points:
+        if (old_point := known.get(point.key)) is None:
+            continue
+        for name, value in point.figures.items():
+            old_value = old_point.figures.get(name)
+            if value is not None and old_value is not None:
+                ratios.append(Ratio(point.group, point.label, name, old_value, value))
+    keys = {point.key for point in after.points}
+    return Difference(
+        ratios, [key for key in known if key not in keys], [key for key in keys if key not in known], warnings
+    )
+
+
+def medians(ratios: Iterable[Ratio]) -> dict[str, float]:
+    """Median ratio of each figure, over the points where it is finite."""
+    by_figure: dict[str, list[float]] = {}
+    for ratio in ratios:
+        if math.isfinite(ratio.ratio):
+            by_figure.setdefault(ratio.figure, []).append(ratio.ratio)
+    return {name: statistics.median(values) for name, values in by_figure.items()}
+
+
+def compare_benches(before: Path, after: Path) -> Difference:
+    """Ratios of the last line of two files of `culet bench -o`, case by case."""
+    old, new = _last_line(before), _last_line(after)
+    warnings = [
+        f"{name} differs: {_shown(old.get(name))}, then {_shown(new.get(name))}"
+        for name in ("machine", "flags", "width", "height")
+        if old.get(name) != new.get(name)
+    ]
+    cases = {case["name"]: case for case in old["cases"]}
+    ratios = [
+        Ratio("bench", case["name"], name, float(cases[case["name"]][name]), float(value))
+        for case in new["cases"]
+        if case["name"] in cases
+        for name, value in case.items()
+        if isinstance(value, int | float) and isinstance(cases[case["name"]].get(name), int | float)
+    ]
+    names = {case["name"] for case in new["cases"]}
+    return Difference(
+        ratios, [name for name in cases if name not in names], [name for name in names if name not in cases], warnings
+    )
+
+
+def _last_line(path: Path) -> dict[str, Any]:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot read {path}: {error}") from error
+    try:
+        record = json.loads([line for line in lines if line.strip()][-1])
+        for case in record["cases"]:
+            str(case["name"])
+    except (ValueError, IndexError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: expected JSON lines of `culet bench -o`") from error
+    found: dict[str, Any] = record
+    return found
+
+
+def _shown(value: object) -> str:
+    text = json.dumps(value, default=str)
+    return text if len(text) <= 60 else text[:57] + "..."

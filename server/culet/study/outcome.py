@@ -1,0 +1,183 @@
+"""From measured points to a report: fronts, fits, races and the numbers that sum up; and its files."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from culet.errors import InputError
+from culet.rendering.device import Device
+from culet.study import race, rendering, simulation, streaming
+from culet.study.knobs import Knobs
+from culet.study.limits import Limits, counted_flops
+from culet.study.page import page
+from culet.study.pareto import front
+from culet.study.provenance import provenance
+from culet.study.report import Front, Headline, Knob, Point, Race, Report, csv_text
+
+RACE_HEADLINE = "0.005"
+"""RMSE of the race that is told first."""
+
+
+def device_facts(device: Device) -> dict[str, str | int]:
+    """What a report says of it."""
+    return {"device": device.name, "driver": device.driver, "units": device.units, "lanes": device.lanes}
+
+
+def rendering_report(
+    scene: Mapping[str, object],
+    settings: dict[str, Knob],
+    facts: dict[str, str | int],
+    points: Sequence[Point],
+    base: Knobs,
+    limits: Limits,
+    facets: int,
+    notes: Sequence[str],
+) -> Report:
+    """Of `culet study rendering`."""
+    swept = [point for point in points if point.group != "race"]
+    races = race.results(points)
+    return Report(
+        study="rendering",
+        made=_now(),
+        provenance=provenance(facts),
+        settings=settings,
+        scene=dict(scene),
+        figures={**rendering.FIGURES, **race.FIGURES},
+        points=tuple(points),
+        fronts=(
+            front("Time against the scene's own idea of light", swept, "frame_seconds", "rmse_model"),
+            front("Time against the whole physics", swept, "frame_seconds", "rmse_physics"),
+        ),
+        races=tuple(races),
+        limits={f"{name}_per_second" if name == "bandwidth" else name: v for name, v in limits._asdict().items()},
+        headlines=tuple(_rendering_headlines(swept, base, limits, facets, races)),
+        notes=tuple(notes),
+    )
+
+
+def _rendering_headlines(
+    points: Sequence[Point], base: Knobs, limits: Limits, facets: int, races: Sequence[Race]
+) -> list[Headline]:
+    by_key = {point.key: point for point in points}
+    own = by_key[base.key]
+    kernel, segments = own.figures["kernel_seconds"] or 0.0, own.figures["segments"] or 0.0
+    lines = [
+        Headline(name="a frame of one sample, whole", value=1e3 * (own.figures["frame_seconds"] or 0.0), unit="ms"),
+        Headline(name="of it in the kernel", value=1e3 * kernel, unit="ms"),
+    ]
+    if segments and base.geometry == "half-spaces":
+        share = counted_flops(segments, facets) / kernel / limits.single_flops
+        lines.append(Headline(name="a segment inside the stone", value=1e9 * kernel / segments, unit="ns"))
+        lines.append(Headline(name="share of the multiply-add peak, facet search alone", value=100 * share, unit="%"))
+    for figure, words in (
+        ("rmse_paired", "RMSE of all approximations together, sampling apart"),
+        ("rmse_model", "RMSE of one sample a pixel, sampling included"),
+        ("rmse_physics", "RMSE of one sample a pixel against the whole physics"),
+        ("delta_e_model", "mean CIEDE2000 of one sample a pixel"),
+        ("cut", "mean weight cut"),
+    ):
+        if (value := own.figures[figure]) is not None:
+            lines.append(Headline(name=words, value=value, unit=rendering.FIGURES[figure].unit))
+    for words, label in (
+        ("double precision's time over single's", "precision double"),
+        ("triangles' time over half-spaces'", "geometry triangles"),
+        ("one lane's time over the widest's", "lanes 1"),
+        ("precise maths' time over relaxed", "relaxed maths no"),
+        ("classic estimator's time over the chain's", "estimator classic"),
+        ("sixteen wavelengths' time over three indices'", "bands 16"),
+        ("polarisation's time over none", "polarised yes"),
+    ):
+        other = next((point for point in points if point.label == label), None)
+        if other is not None and kernel:
+            lines.append(Headline(name=words, value=(other.figures["kernel_seconds"] or 0.0) / kernel, unit="x"))
+    ours = next((entry for entry in races if entry.name == "culet"), None)
+    for entry in races:
+        seconds = entry.seconds.get(RACE_HEADLINE)
+        if seconds is None:
+            continue
+        lines.append(Headline(name=f"{entry.name}: to RMSE {RACE_HEADLINE}", value=seconds, unit="s"))
+        fastest = ours.seconds.get(RACE_HEADLINE) if ours else None
+        if fastest and entry.name.startswith("Mitsuba"):
+            lines.append(Headline(name=f"{entry.name}'s time over culet's", value=seconds / fastest, unit="x"))
+    return lines
+
+
+def simulation_report(scene: Mapping[str, object], settings: dict[str, Knob], points: Sequence[Point]) -> Report:
+    """Of `culet study simulation`."""
+    fronts: list[Front] = []
+    for group in dict.fromkeys(point.group for point in points):
+        own = [point for point in points if point.group == group]
+        fronts += [
+            front(f"{group}: {error}", own, "cpu_seconds", error)
+            for error in ("position_error", "attitude_error", "energy_error")
+            if any(point.figures[error] is not None for point in own)
+        ]
+    fits = simulation.fits_of(list(points))
+    orders = [fit for fit in fits if fit.error == "attitude_error"]
+    return Report(
+        study="simulation",
+        made=_now(),
+        provenance=provenance({}),
+        settings=settings,
+        scene=dict(scene),
+        figures=simulation.FIGURES,
+        points=tuple(points),
+        fronts=tuple(fronts),
+        fits=tuple(fits),
+        headlines=tuple(Headline(name=f"order of {fit.label}", value=fit.order, unit="1") for fit in orders),
+    )
+
+
+def streaming_report(
+    scene: Mapping[str, object], settings: dict[str, Knob], facts: dict[str, str | int], points: Sequence[Point]
+) -> Report:
+    """Of `culet study streaming`."""
+    fronts = [
+        front(f"{group.capitalize()} frames", [p for p in points if p.group == group], "bytes", "dissimilarity")
+        for group in dict.fromkeys(point.group for point in points)
+    ]
+    return Report(
+        study="streaming",
+        made=_now(),
+        provenance=provenance(facts),
+        settings=settings,
+        scene=dict(scene),
+        figures=streaming.FIGURES,
+        points=tuple(points),
+        fronts=tuple(fronts),
+    )
+
+
+def write(report: Report, folder: Path) -> None:
+    """report.html, report.json and report.csv; InputError for a folder that cannot be written to."""
+    texts = {
+        "report.json": report.json_text(),
+        "report.csv": csv_text(report),
+        "report.html": page(report, folder / "pictures"),
+    }
+    try:
+        for name, text in texts.items():
+            part = folder / f".{name}.part"
+            part.write_text(text, encoding="utf-8")
+            part.replace(folder / name)
+    except OSError as error:
+        raise InputError(f"out: cannot write to {folder}: {error.strerror}", "out") from error
+
+
+def headline_markdown(report: Report) -> str:
+    """A table for a README."""
+    facts = report.provenance
+    on = ", ".join(str(facts[name]) for name in ("processor", "driver", "commit") if name in facts)
+    rows = "".join(f"| {line.name} | {line.value:.3g} {line.unit} |\n" for line in report.headlines)
+    return f"| {report.study}, {_size(report)} | |\n|---|---|\n{rows}\nMeasured on {on}, {report.made[:10]}.\n"
+
+
+def _size(report: Report) -> str:
+    width, height = report.settings.get("width"), report.settings.get("height")
+    return f"{width} x {height}" if width else "default stone"
+
+
+def _now() -> str:
+    return dt.datetime.now(dt.UTC).isoformat(timespec="seconds")

@@ -1,0 +1,191 @@
+"""The report as a page: what was measured, in the order in which a reader asks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from culet.study.document import document, figure, heading, paragraph, picture, table
+from culet.study.pictures import LEAST, MOST, inline, picture_paths, scale_bar
+from culet.study.plot import Mark, Series, log_log
+from culet.study.report import Front, Point, Report
+
+TITLES = {
+    "rendering": "Error against run time: the renderer",
+    "simulation": "Error against run time: the simulation",
+    "streaming": "Size, time and likeness: the stream",
+}
+
+_SIMULATION_PLOTS = (
+    ("rotation", "attitude_error"), ("rotation", "energy_error"), ("flight", "attitude_error"),
+    ("bounce", "position_error"), ("slide", "position_error"), ("drop", "position_error"), ("drop", "attitude_error"),
+)  # fmt: skip
+
+
+def page(report: Report, pictures: Path) -> str:
+    """The whole page; `pictures` is the folder of those that were made while measuring."""
+    sections = {"rendering": _rendering, "simulation": _simulation, "streaming": _streaming}[report.study]
+    body = [*_opening(report), *sections(report, pictures), *_closing(report)]
+    return document(TITLES[report.study], body)
+
+
+def _opening(report: Report) -> Iterator[str]:
+    settings = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in report.settings.items())
+    yield paragraph(f"Made {report.made}. {settings}.")
+    if report.headlines:
+        yield heading("In short")
+        yield table(["", "value", "unit"], [(line.name, line.value, line.unit) for line in report.headlines])
+    for note in report.notes:
+        yield paragraph(note)
+
+
+def _closing(report: Report) -> Iterator[str]:
+    yield heading("Every figure")
+    yield table(["figure", "unit", "about"], [(n, f.unit, f.about) for n, f in report.figures.items()])
+    yield heading("Measured on")
+    yield table(["", ""], [(name, str(value)) for name, value in report.provenance.items()])
+    if report.limits:
+        yield table(["limit", "value"], [(name.replace("_", " "), f"{v:.3g}") for name, v in report.limits.items()])
+
+
+def _rendering(report: Report, pictures: Path) -> Iterator[str]:
+    points = [point for point in report.points if point.group != "race"]
+    for front in report.fronts:
+        yield heading(front.name)
+        yield from _front(report, points, front)
+    if report.races:
+        yield heading("Against others: seconds to reach an error")
+        targets = list(report.races[0].seconds)
+        rows = []
+        for race in report.races:
+            seconds = [
+                None if s is None else f"{'~' if t in race.extrapolated else ''}{s:.3g}"
+                for t, s in race.seconds.items()
+            ]
+            rows.append([race.name, *seconds, race.note])
+        yield table(["renderer", *(f"RMSE {target}" for target in targets), ""], rows)
+        yield paragraph("~ was not waited for: taken on from the last measured point along 1 / sqrt(time).")
+        series = [
+            Series(race.name, _marks(_race_points(report, race.name), "race_seconds", "race_rmse"), line=True)
+            for race in report.races
+        ]
+        yield figure(
+            log_log(series, "seconds in the renderer", "RMSE, radiance"), "The same stone alone under a gradient sky."
+        )
+    yield heading("One knob at a time")
+    yield paragraph(
+        "Each knob is turned away from the base by itself. `paired` errors are against the model reference's picture "
+        "of the same samples, so that they show the knob and not the sampling; `model` and `physics` errors are "
+        "against the converged references."
+    )
+    columns = [
+        "kernel_seconds", "frame_seconds", "prepare_seconds", "rmse_paired", "max_paired", "bias_paired", "rmse_model",
+        "rmse_physics", "delta_e_model", "delta_e_physics", "cut", "segments", "non_finite",
+    ]  # fmt: skip
+    yield _table(points, columns, "setting")
+    yield heading("What it looks like, and where the error is")
+    yield figure(
+        f'<img class="bar" src="{scale_bar()}" alt="from black to white">',
+        f"Error maps: the largest error of a pixel's channels against the model reference, from {LEAST:g} (black) to "
+        f"{MOST:g} (white), logarithmic. The first row is the reference.",
+    )
+    shown = []
+    for key, label in [("reference", "the model reference"), *((point.key, point.label) for point in points)]:
+        image, error = picture_paths(pictures, key)
+        if image.exists():
+            shown.append(picture(inline(image), label))
+            shown.append(picture(inline(error), f"{label}: error"))
+    yield '<div class="pictures">' + "".join(shown) + "</div>"
+
+
+def _front(report: Report, points: list[Point], front: Front) -> Iterator[str]:
+    groups = dict.fromkeys(point.group for point in points)
+    crowded = [
+        group for group in groups if group in ("base", "samples", "cutoff", "scale", "bands", "combination", "end")
+    ]
+    series = [Series(g, _marks([p for p in points if p.group == g], front.cost, front.error)) for g in crowded]
+    others = [point for point in points if point.group not in crowded]
+    series.append(Series("other knobs", _marks(others, front.cost, front.error)))
+    chosen = [report.point(key) for key in front.keys]
+    cost, error = front.cost.replace("_", " "), front.error.replace("_", " ")
+    about = report.figures[front.error]
+    yield figure(
+        log_log(series, f"{cost}, s", f"{error}, {about.unit}", _marks(chosen, front.cost, front.error)),
+        f"{about.about} The numbers are the front's, in the table below.",
+    )
+    rows = [(n, p.label, p.figures[front.cost], p.figures[front.error]) for n, p in enumerate(chosen, 1)]
+    yield table(["", "on the front", cost, error], rows)
+
+
+def _simulation(report: Report, pictures: Path) -> Iterator[str]:
+    del pictures
+    yield heading("Orders of convergence")
+    yield table(
+        ["integrator", "error", "order", "points"],
+        [(fit.label, fit.error.replace("_", " "), fit.order, fit.points) for fit in report.fits],
+    )
+    for group, error in _SIMULATION_PLOTS:
+        points = [point for point in report.points if point.group == group]
+        fronts = [front for front in report.fronts if front.name == f"{group}: {error}"]
+        yield heading(f"{group.capitalize()}: {error.replace('_', ' ')}")
+        series = [
+            Series(name, _marks([p for p in points if _method(p) == name], "cpu_seconds", error), line=True)
+            for name in dict.fromkeys(map(_method, points))
+        ]
+        front = [mark for f in fronts for mark in _marks([report.point(key) for key in f.keys], "cpu_seconds", error)]
+        unit = report.figures[error].unit
+        yield figure(
+            log_log(series, "processor seconds a simulated second", f"{error.replace('_', ' ')}, {unit}", front),
+            report.figures[error].about,
+        )
+    yield heading("All points")
+    yield _table(list(report.points), list(report.figures), "setting")
+
+
+def _method(point: Point) -> str:
+    knobs = point.knobs
+    if point.group == "rotation":
+        return str(knobs["integrator"])
+    if knobs["model"] != "rigid":
+        return str(knobs["model"])
+    return f"rigid, {knobs['integrator']}" + ("" if knobs["contact_step"] == 0.02 else ", contact steps")
+
+
+def _streaming(report: Report, pictures: Path) -> Iterator[str]:
+    del pictures
+    for front in report.fronts:
+        yield heading(front.name)
+        points = [point for point in report.points if point.group == front.name.split(" ", 1)[0].lower()]
+        series = []
+        for name in dict.fromkeys(map(_family, points)):
+            own = [point for point in points if _family(point) == name]
+            series.append(Series(name, _marks(own, front.cost, front.error), line=name.startswith("JPEG")))
+        chosen = [report.point(key) for key in front.keys]
+        yield figure(
+            log_log(series, "bytes a frame", "1 - SSIM", _marks(chosen, front.cost, front.error)),
+            "Lossless codecs have no error and are in the table alone.",
+        )
+    yield heading("All points")
+    yield _table(list(report.points), list(report.figures), "codec")
+
+
+def _family(point: Point) -> str:
+    return "JPEG " + str(point.knobs["subsampling"]) if point.knobs["codec"] == "jpeg" else point.label
+
+
+def _race_points(report: Report, name: str) -> list[Point]:
+    return [point for point in report.points if point.group == "race" and point.knobs["renderer"] == name]
+
+
+def _marks(points: list[Point], x: str, y: str) -> list[Mark]:
+    marks = []
+    for point in points:
+        across, up = point.figures.get(x), point.figures.get(y)
+        if across and up:
+            marks.append(Mark(across, up, f"{point.label}: {across:.3g}, {up:.3g}"))
+    return marks
+
+
+def _table(points: list[Point], figures: list[str], first: str) -> str:
+    rows = [[p.group, p.label, *(p.figures.get(name) for name in figures)] for p in points]
+    return table(["sweep", first, *(name.replace("_", " ") for name in figures)], rows)

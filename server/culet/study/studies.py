@@ -1,0 +1,195 @@
+"""The three studies from beginning to end: what to measure, into the journal, out of it into the report."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from culet.geometry.stone import Stone
+from culet.rendering.device import open_device
+from culet.rendering.renderer import Renderer
+from culet.scene import Scene
+from culet.study import race, rendering, simulation, streaming
+from culet.study.journal import Journal
+from culet.study.knobs import base_knobs, settings_of
+from culet.study.limits import measure_limits
+from culet.study.outcome import device_facts, rendering_report, simulation_report, streaming_report, write
+from culet.study.pictures import write_pictures
+from culet.study.provenance import IMAGE_PACKAGES, MOTION_PACKAGES, code_digest, processor
+from culet.study.reference import Frame, make_reference, reference_knobs
+from culet.study.renderers import Renderers
+from culet.study.report import Report
+
+JOURNAL = "journal.jsonl"
+
+Advance = Callable[[str, int], None]
+"""Told what comes next and how much is done."""
+Progress = Callable[[str, int], AbstractContextManager[Advance]]
+"""Begins a stage of that name and that many steps."""
+
+
+class Effort(NamedTuple):
+    """How much a study of the renderer spends."""
+
+    width: int
+    height: int
+    model_samples: int
+    physics_samples: int
+    repeats: int
+    race_samples: int
+    """Of the race's reference."""
+    race_seconds: float
+    """Of each that takes part."""
+    race_pass: int
+    """Samples of a pass of Mitsuba's."""
+
+
+QUICK = Effort(320, 180, 256, 48, 3, 512, 4.0, 16)
+"""Two minutes on two cores."""
+FULL = Effort(640, 360, 2048, 768, 7, 4096, 60.0, 32)
+"""Half an hour, of which the references take the most; they are kept."""
+
+
+def study_rendering(
+    scene: Scene,
+    stone: Stone,
+    out: Path,
+    progress: Progress,
+    *,
+    effort: Effort,
+    quick: bool,
+    fresh: bool = False,
+    cache: Path | None = None,
+) -> Report:
+    """Sweep the renderer's knobs; what `out`'s journal holds is not measured again."""
+    device = open_device()
+    renderers = Renderers(device)
+    frame = Frame(scene, stone, effort.width, effort.height)
+    base = base_knobs(scene, stone, device.lanes)
+    settings = settings_of(base, quick=quick)
+    identity = _identity("rendering", scene, stone, quick, code_digest(IMAGE_PACKAGES)) | effort._asdict()
+    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+        references = []
+        for kind, samples in (("model", effort.model_samples), ("physics", effort.physics_samples)):
+            knobs = reference_knobs(base, kind, device.lanes // 2 or 1)
+            with progress(f"{kind} reference", samples) as advance:
+                references.append(
+                    make_reference(
+                        renderers, frame, knobs, samples,
+                        lambda part, advance=advance, samples=samples: advance("", round(part * samples)),  # type: ignore[misc]
+                        steps=kind == "model", cache=cache,
+                    )
+                )  # fmt: skip
+        judges = rendering.Judges(*references)
+        pictures = out / "pictures"
+        write_pictures(pictures, "reference", judges.model.image, judges.model.image, scene.film)
+        with progress("settings", len(settings)) as advance:
+            rendering.measure_all(renderers, frame, base, settings, judges, journal, effort.repeats, advance, pictures)
+        notes = [
+            _references_note(effort, judges),
+            *_run_race(renderers, effort, journal, progress, cache),
+        ]
+        with progress("limits of the machine", 1):
+            limits = measure_limits(device)
+        report = rendering_report(
+            scene.model_dump(mode="json"),
+            {"width": effort.width, "height": effort.height, "quick": quick, "repeats": effort.repeats},
+            device_facts(device), list(journal.points.values()), base, limits, len(stone.planes), notes,
+        )  # fmt: skip
+    write(report, out)
+    return report
+
+
+def _references_note(effort: Effort, judges: rendering.Judges) -> str:
+    return (
+        f"The model reference ({effort.model_samples} samples a pixel) has itself an RMSE of some "
+        f"{judges.model.error:.2g}, the physics reference ({effort.physics_samples}) of {judges.physics.error:.2g}: "
+        "errors near that are the reference's. All pictures take their samples from one sequence, so that one of n "
+        "samples shares them with its reference of N; its error looks smaller than it is by the factor sqrt(1 - n / N)."
+    )
+
+
+def _run_race(
+    renderers: Renderers, effort: Effort, journal: Journal, progress: Progress, cache: Path | None
+) -> list[str]:
+    """Against others; returns what there is to say about it."""
+    frame = race.race_frame(effort.width, effort.height)
+    lanes = renderers.device.lanes
+    base = replace(base_knobs(frame.scene, frame.stone, lanes), cutoff=1e-6)
+    with progress("reference of the race", effort.race_samples) as advance:
+        reference = make_reference(
+            renderers, frame, reference_knobs(base, "model", lanes // 2 or 1), effort.race_samples,
+            lambda part: advance("", round(part * effort.race_samples)), steps=False, cache=cache,
+        )  # fmt: skip
+    ran = {str(point.knobs["renderer"]) for point in journal.points.values() if point.group == "race"}
+    with progress("race", len(race.ENTRANTS) + 1) as advance:
+        for number, name in enumerate(race.ENTRANTS):
+            advance(name, number)
+            if name not in ran:
+                for point in list(race.run_culet(name, renderers, frame, reference, effort.race_seconds)):
+                    journal.add(point)
+        if race.mitsuba_missing():
+            return ["Mitsuba 3 is not installed, and does not take part in the race (pip install mitsuba)."]
+        advance("Mitsuba 3", len(race.ENTRANTS))
+        if not any(name.startswith("Mitsuba") for name in ran):
+            points = list(race.run_mitsuba(frame, reference.image, effort.race_pass, effort.race_seconds))
+            for point in points:
+                journal.add(point)
+            if not points:
+                return ["Mitsuba 3 is installed but renders nothing here, and does not take part in the race."]
+    return []
+
+
+def study_simulation(
+    scene: Scene, stone: Stone, out: Path, progress: Progress, *, quick: bool, fresh: bool = False
+) -> Report:
+    """Sweep integrators and step sizes on the scene's stone."""
+    identity = _identity("simulation", scene, stone, quick, code_digest(MOTION_PACKAGES))
+    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+        with progress("motions", len(simulation.points_of(stone, quick=quick))) as advance:
+            simulation.measure_all(stone, journal, quick=quick, progress=advance)
+        points = list(journal.points.values())
+    report = simulation_report(scene.model_dump(mode="json"), {"quick": quick}, points)
+    write(report, out)
+    return report
+
+
+def study_streaming(
+    scene: Scene,
+    stone: Stone,
+    out: Path,
+    progress: Progress,
+    *,
+    width: int,
+    height: int,
+    quick: bool,
+    fresh: bool = False,
+) -> Report:
+    """Sweep codecs and qualities on the scene's frames, moving and still."""
+    device = open_device()
+    identity = _identity("streaming", scene, stone, quick, code_digest(IMAGE_PACKAGES))
+    identity |= {"width": width, "height": height}
+    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+        with progress("frames", 1):
+            shown = streaming.frames(Renderer(device), scene, stone, width, height)
+        with progress("codecs", len(streaming.settings_of(quick=quick))) as advance:
+            streaming.measure_all(shown, journal, quick=quick, progress=advance)
+        points = list(journal.points.values())
+    settings = {"width": width, "height": height, "quick": quick}
+    report = streaming_report(scene.model_dump(mode="json"), dict(settings), device_facts(device), points)
+    write(report, out)
+    return report
+
+
+def _identity(study: str, scene: Scene, stone: Stone, quick: bool, code: str) -> dict[str, object]:
+    """What must be the same for points to belong together."""
+    shape = hashlib.sha256(stone.vertices.tobytes() + stone.triangles.tobytes())
+    text = hashlib.sha256(scene.model_dump_json().encode())
+    return {
+        "study": study, "scene": text.hexdigest()[:16], "stone": shape.hexdigest()[:16], "quick": quick,
+        "processor": processor(), "code": code,
+    }  # fmt: skip
