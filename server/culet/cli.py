@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from culet.errors import CuletError, InputError, MeshError, SceneError
+from culet.study.command import study_app
 from culet_client.errors import ClientError
 
 if TYPE_CHECKING:
@@ -345,3 +346,6 @@ def _progress(label: str) -> Iterator[Callable[[float], None]]:
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task(label, total=1.0)
         yield lambda done: progress.update(task, completed=done)
+
+
+app.add_typer(study_app, name="study")
