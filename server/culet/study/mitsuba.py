@@ -57,6 +57,7 @@ def main() -> None:
         os.environ["DRJIT_LIBLLVM_PATH"] = llvm
     variant = next(v for v in VARIANTS if v in mi.variants() and (llvm is not None or not v.startswith("llvm")))
     mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)  # warnings would go between the answers
     scenes = [_scene(mi, order, index) for index in order["ior"]]
     reference = np.load(order["reference"])
     spp = order["spp"]

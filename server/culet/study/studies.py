@@ -64,13 +64,21 @@ def study_rendering(
     quick: bool,
     fresh: bool = False,
     cache: Path | None = None,
+    groups: frozenset[str] | None = None,
 ) -> Report:
-    """Sweep the renderer's knobs; what `out`'s journal holds is not measured again."""
+    """Sweep the renderer's knobs, all or those sweeps that `groups` names besides the base.
+
+    What `out`'s journal holds is not measured again. `cache`: the folder of references, the user's if None.
+    """
     device = open_device()
     renderers = Renderers(device)
     frame = Frame(scene, stone, effort.width, effort.height)
     base = base_knobs(scene, stone, device.lanes)
-    settings = settings_of(base, quick=quick)
+    settings = [
+        setting
+        for setting in settings_of(base, quick=quick)
+        if groups is None or setting.group == "base" or setting.group in groups
+    ]
     identity = _identity("rendering", scene, stone, quick, code_digest(IMAGE_PACKAGES)) | effort._asdict()
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         references = []
@@ -116,7 +124,9 @@ def _references_note(effort: Effort, judges: rendering.Judges) -> str:
 def _run_race(
     renderers: Renderers, effort: Effort, journal: Journal, progress: Progress, cache: Path | None
 ) -> list[str]:
-    """Against others; returns what there is to say about it."""
+    """Against others, unless it may take no time; returns what there is to say about it."""
+    if effort.race_seconds == 0:
+        return []
     frame = race.race_frame(effort.width, effort.height)
     lanes = renderers.device.lanes
     base = replace(base_knobs(frame.scene, frame.stone, lanes), cutoff=1e-6)

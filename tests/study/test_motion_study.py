@@ -1,0 +1,108 @@
+"""The truths that the study of the simulation judges by, and what it finds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from culet.geometry.load import stone_of
+from culet.geometry.stone import MassProperties, Stone
+from culet.scene import Scene
+from culet.scene.model import Simulation as Settings
+from culet.simulation.body import RigidBody
+from culet.simulation.rotation import rotate, rotate_back
+from culet.study.journal import Journal
+from culet.study.report import Point
+from culet.study.simulation import (
+    TOP_MOMENTS,
+    TOP_SPIN,
+    UPRIGHT,
+    angle_between,
+    fits_of,
+    flat_orientation,
+    measure_all,
+    points_of,
+    rotation_truth,
+)
+from simulation.jacobi import FreeTop
+
+
+@pytest.fixture(scope="module")
+def brilliant() -> Stone:
+    return stone_of(Scene().stones[0], {})
+
+
+@pytest.fixture(scope="module")
+def points(brilliant: Stone) -> dict[str, Point]:
+    """All of a quick study but the slow slide, by key."""
+    chosen = [(key, run) for key, run in points_of(brilliant, quick=True) if not key.startswith("slide")]
+    return {key: run() for key, run in chosen}
+
+
+def figure(points: dict[str, Point], beginning: str, name: str) -> float:
+    (value,) = [point.figures[name] for key, point in points.items() if key.startswith(beginning)]
+    assert value is not None
+    return value
+
+
+def test_the_truth_of_a_free_rotation_is_jacobis(brilliant: Stone) -> None:
+    shaped = replace(brilliant, mass=MassProperties(1.0, np.diag(TOP_MOMENTS)))
+    body = RigidBody.of(Settings(mass=1), shaped)
+    momentum = body.angular_momentum(UPRIGHT, TOP_SPIN)
+    q = rotation_truth(body, UPRIGHT, momentum, 4.0)
+    omega = rotate_back(q, body.angular_velocity_at(q, momentum))
+    assert omega == pytest.approx(FreeTop(TOP_MOMENTS, TOP_SPIN).omega(4.0), abs=1e-10)  # measured 7e-12
+
+
+@pytest.mark.parametrize("angle", [1e-9, 0.1, 3.0])
+def test_the_angle_between_attitudes_is_that_of_the_turn(angle: float) -> None:
+    turned = (math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0)
+    assert angle_between(UPRIGHT, turned) == pytest.approx(angle, rel=1e-7)
+    assert angle_between(UPRIGHT, (-turned[0], 0.0, -turned[2], 0.0)) == pytest.approx(angle, rel=1e-7)
+
+
+def test_lying_flat_the_largest_facet_is_below(brilliant: Stone) -> None:
+    heights = [rotate(flat_orientation(brilliant), tuple(vertex))[1] for vertex in brilliant.vertices.tolist()]
+    assert sum(height < min(heights) + 1e-9 for height in heights) == 8  # the table's corners
+
+
+@pytest.mark.parametrize(("integrator", "order"), [("rkmk4", 4), ("rk4", 4), ("midpoint", 2), ("splitting", 2)])
+def test_integrators_have_the_orders_that_theory_gives_them(
+    points: dict[str, Point], integrator: str, order: int
+) -> None:
+    fits = {fit.label: fit.order for fit in fits_of(list(points.values())) if fit.error == "attitude_error"}
+    assert fits[integrator] == pytest.approx(order, abs=0.4)  # measured 4.32, 4.20, 2.00, 1.98
+
+
+def test_the_rigid_model_falls_on_the_parabola_and_the_classic_beside_it(points: dict[str, Point]) -> None:
+    assert figure(points, "flight model=rigid integrator=rkmk4 time_step=0.0333", "position_error") < 1e-11
+    # symplectic Euler is g h t / 2 too low: 9.81 x 2 / 60
+    classic = figure(points, "flight model=classic time_step=0.0333", "position_error")
+    assert classic == pytest.approx(9.81 * 2 / 60, rel=1e-6)
+
+
+def test_a_flat_bounce_comes_back_when_restitution_says(points: dict[str, Point]) -> None:
+    assert figure(points, "bounce model=rigid integrator=rkmk4 time_step=0.0666", "position_error") < 1e-5
+    assert figure(points, "bounce model=rigid integrator=rkmk4 time_step=0.0333", "energy_error") < 1e-6
+
+
+def test_a_drop_converges_to_its_finest_steps_and_gains_no_energy(points: dict[str, Point]) -> None:
+    assert figure(points, "drop model=rigid integrator=rkmk4 time_step=0.0166", "position_error") < 1e-5
+    drops = [point for key, point in points.items() if key.startswith("drop model=rigid")]
+    assert max(point.figures["energy_error"] or 0 for point in drops) < 1e-6
+
+
+def test_points_that_are_in_the_journal_are_not_measured_again(brilliant: Stone, tmp_path: Path) -> None:
+    told: list[int] = []
+    keys = [key for key, _ in points_of(brilliant, quick=True)]
+    known = Point(key="", group="g", label="", knobs={}, figures={})
+    with Journal(tmp_path / "j", {"study": "simulation"}) as journal:
+        journal.points |= {key: known.model_copy(update={"key": key}) for key in keys[1:]}
+        measure_all(brilliant, journal, quick=True, progress=lambda _, done: told.append(done))
+        assert journal.points[keys[0]].group == "rotation"
+        assert all(journal.points[key].group == "g" for key in keys[1:])
+    assert told == list(range(len(keys)))

@@ -1,0 +1,67 @@
+"""report.json and report.csv: what they hold, and that they read back."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from culet.errors import InputError
+from culet.study.outcome import headline_markdown
+from culet.study.page import page
+from culet.study.report import Report, csv_text
+from study.reports import report
+
+DOCUMENTED = Path(__file__).parents[2] / "docs" / "study.md"
+
+
+def test_a_report_reads_back_as_it_was(tmp_path: Path) -> None:
+    (tmp_path / "report.json").write_text(report().json_text())
+    assert Report.read(tmp_path / "report.json") == report()
+
+
+def test_the_schema_that_is_documented_is_the_one_that_is_written() -> None:
+    text = DOCUMENTED.read_text()
+    named = set(re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE))
+    assert set(Report.model_fields) <= named
+
+
+def test_another_schema_is_refused_with_the_place(tmp_path: Path) -> None:
+    written = json.loads(report().json_text())
+    (tmp_path / "r.json").write_text(json.dumps({**written, "schema_version": 2}))
+    with pytest.raises(InputError, match="schema_version"):
+        Report.read(tmp_path / "r.json")
+    (tmp_path / "r.json").write_text("{")
+    with pytest.raises(InputError, match="no report"):
+        Report.read(tmp_path / "r.json")
+    with pytest.raises(InputError, match="cannot read"):
+        Report.read(tmp_path / "missing.json")
+
+
+def test_every_point_is_a_row_with_all_knobs_and_figures() -> None:
+    rows = list(csv.DictReader(io.StringIO(csv_text(report()))))
+    assert [row["samples"] for row in rows] == ["1", "4"]
+    assert [float(row["frame_seconds"]) for row in rows] == [0.5, 2.0]
+    assert rows[0]["cut"] == ""
+
+
+def test_the_page_needs_nothing_from_elsewhere(tmp_path: Path) -> None:
+    text = page(report(), tmp_path)
+    assert not re.search(r"""https?:|src="(?!data:)|<link|<script|@import|url\(""", text)
+
+
+def test_the_page_shows_the_front_and_escapes_what_it_was_given(tmp_path: Path) -> None:
+    text = page(report(), tmp_path)
+    assert "<b> & so on" not in text
+    assert text.count("samples 4, &lt;b&gt; &amp; so on") >= 3  # in the plot, the front's table and the knobs' table
+    assert 'class="number">2</text>' in text  # the front's second point is numbered
+
+
+def test_the_headlines_are_a_table_with_their_provenance() -> None:
+    text = headline_markdown(report())
+    assert "| a frame | 1.23 ms |" in text
+    assert "Measured on P, abc, 2026-01-02." in text
