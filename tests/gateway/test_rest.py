@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 import io
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import httpx
 import pytest
 from PIL import Image
 
 from culet.scene import Scene
+from culet.scene.model import MaterialName
 from culet_client import FrameSubscription
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
@@ -75,9 +76,25 @@ async def test_materials_and_cuts_can_be_named_in_a_scene(gateway: Gateway) -> N
     # Diamond at 656.3, 546.1 and 435.8 nm by Peter's Sellmeier fit (1923).
     assert materials[0]["indices"] == pytest.approx([2.4097, 2.4236, 2.4514], abs=2e-3)
     assert "table_percent" in cuts[0]["proportions"]
-    stone = {"cut": {"name": cuts[0]["name"], "table_percent": 57}, "material": materials[1]["name"]}
-    answer = await gateway.http.post("/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9})
-    assert answer.status_code == 200, answer.text
+    assert {material["name"] for material in materials} == set(get_args(MaterialName))
+    for material in materials:
+        stone = {"cut": {"name": cuts[0]["name"], "table_percent": 57}, "material": material["name"]}
+        answer = await gateway.http.post("/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9})
+        assert answer.status_code == 200, (material["name"], answer.text)
+
+
+async def test_a_material_says_where_its_numbers_come_from(gateway: Gateway) -> None:
+    listed = (await gateway.http.get("/api/materials")).json()["materials"]
+    materials = {material.pop("name"): material for material in listed}
+    ruby, classic = materials["ruby"], materials["classic"]
+    assert "Malitson" in ruby["source"]
+    assert (ruby["confidence"], ruby["ray"], ruby["coloured"]) == ("measured", "ordinary ray", True)
+    assert (classic["confidence"], classic["ray"], classic["coloured"]) == ("as set", None, False)
+    assert classic["indices"] == [1.7, 1.8, 1.9]
+    assert materials["emerald"]["confidence"] == "weak source"
+    assert ruby["span_nm"] == [200, 5000]
+    still = await gateway.http.get("/api/render.tga", params={**SMALL, "material": "ruby"})
+    assert still.status_code == 200
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 
 export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb";
+export const SKY_TYPES = ".exr,.hdr,.png";
 
 /** Save a blob under a name, as a click on a link would. */
 export function download(blob: Blob, name: string): void {
@@ -38,11 +39,4 @@ export function parseScene(text: string, name: string): JsonObject {
     throw new Error(`${name}: expected a scene (a JSON object), got ${Array.isArray(data) ? "a list" : String(data)}`);
   }
   return data as JsonObject;
-}
-
-/** The merge patch that gives the scene's stone an uploaded mesh and leaves its material and place. */
-export function meshPatch(scene: JsonObject | null, mesh: string): JsonObject {
-  const stones = scene?.stones;
-  const stone: unknown = Array.isArray(stones) ? stones[0] : undefined;
-  return { stones: [{ ...(typeof stone === "object" ? stone : null), mesh }] };
 }

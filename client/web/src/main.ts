@@ -3,13 +3,14 @@
 import { CloseCode } from "@culet/protocol/messages";
 import type { Action } from "./actions";
 import { Banner, bannerText, Obstacle, obstacleText } from "./banner";
-import { chooseFile, download, MESH_TYPES, meshPatch, parseScene } from "./files";
+import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { listenToKeys } from "./keys";
 import { element } from "./page";
 import { Panel } from "./panel";
 import { listenToPointers } from "./pointer-input";
 import { expose, header } from "./probe";
 import * as rest from "./rest";
+import { imageSky, patchOf, stonePatch } from "./scene-choices";
 import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { statusText } from "./status-text";
@@ -40,6 +41,8 @@ const panel = new Panel(element("panel", HTMLElement), {
   saveScene: () => attempt(saveScene),
   openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
   openMesh: () => chooseFile(MESH_TYPES, (file) => attempt(() => openMesh(file))),
+  openSky: () => chooseFile(SKY_TYPES, (file) => attempt(() => openSky(file))),
+  patch: (patch) => viewer?.send({ type: "patch_scene", patch }),
   newSession: startAnew,
 });
 listenToKeys(window, perform);
@@ -91,7 +94,16 @@ async function openMesh(file: File): Promise<void> {
   const clear = toasts.note(`Reading ${file.name}\u2026`);
   const mesh = await rest.uploadMesh(file).finally(clear);
   toasts.finding([`${file.name}:`, ...mesh.findings].join("\n"));
-  viewer?.send({ type: "patch_scene", patch: meshPatch(viewer.state.scene, mesh.id) });
+  viewer?.send({ type: "patch_scene", patch: stonePatch(viewer.state.scene, { mesh: mesh.id }) });
+}
+
+async function openSky(file: File): Promise<void> {
+  const clear = toasts.note(`Reading ${file.name}\u2026`);
+  const sky = await rest.uploadSky(file).finally(clear);
+  const summary = sky.findings.join("\n");
+  toasts.finding(`${file.name}:\n${summary}`);
+  panel.choices.addSkies([{ name: file.name, summary }], () => sky.id);
+  viewer?.send({ type: "patch_scene", patch: patchOf(viewer.state.scene, "sky", imageSky(sky.id)) });
 }
 
 function startAnew(): void {
@@ -194,4 +206,6 @@ expose({
 });
 banner.show("Connecting\u2026");
 attempt(async () => panel.addPresets(await rest.presets()));
+attempt(async () => panel.choices.addMaterials(await rest.materials()));
+attempt(async () => panel.choices.addSkies(await rest.skies()));
 attempt(start);

@@ -4,6 +4,7 @@ import { type Controller, GUI } from "lil-gui";
 // By its path, since the package does not export it: a style sheet of our own origin instead of one that a script writes.
 import "../node_modules/lil-gui/dist/lil-gui.css";
 import { type Action, actionNamed, labelWithKey } from "./actions";
+import { ChoicePanel } from "./choice-panel";
 import type { Target } from "./events";
 import type { Preset } from "./rest";
 import { TARGET_NAMES, type ViewState } from "./view-state";
@@ -14,6 +15,8 @@ export interface PanelActions {
   saveScene: () => void;
   openScene: () => void;
   openMesh: () => void;
+  openSky: () => void;
+  patch: (patch: Record<string, unknown>) => void;
   newSession: () => void;
 }
 
@@ -23,6 +26,7 @@ const SWITCH_LABELS = { falling: "Falling", mirror: "Mirror", light: "Light sky"
 const NARROW = 640;
 
 export class Panel {
+  readonly choices: ChoicePanel;
   private readonly gui: GUI;
   private readonly files: GUI;
   private readonly actions: PanelActions;
@@ -34,12 +38,14 @@ export class Panel {
     this.actions = actions;
     this.gui = new GUI({ container, title: "culet", injectStyles: false, width: 250 });
     this.addMoves();
-    this.addSwitches();
+    const surroundings = this.addSwitches();
+    this.choices = new ChoicePanel(surroundings, this.gui.addFolder("Optics").close(), actions.patch);
     this.files = this.gui.addFolder("Pictures and scenes");
     this.addButton(this.files, actionNamed("download"));
     this.addCommand(this.files, "Save the scene (.json)", () => actions.saveScene());
     this.addCommand(this.files, "Open a scene\u2026", () => actions.openScene());
     this.addCommand(this.files, "Open a mesh\u2026", () => actions.openMesh());
+    this.addCommand(this.files, "Open a sky\u2026", () => actions.openSky());
     this.addCommand(this.files, "New session", () => actions.newSession());
     if (window.innerWidth < NARROW) for (const folder of [this.gui, ...this.gui.folders]) folder.close();
   }
@@ -49,6 +55,7 @@ export class Panel {
     const { target, falling, mirror, light, walls } = state;
     Object.assign(this.shown, { target, falling, mirror, light, walls });
     for (const display of this.displays) display.updateDisplay();
+    this.choices.update(state);
   }
 
   addPresets(presets: Preset[]): void {
@@ -84,7 +91,7 @@ export class Panel {
     this.addButton(folder, actionNamed("reset_camera"));
   }
 
-  private addSwitches(): void {
+  private addSwitches(): GUI {
     const folder = this.gui.addFolder("Stone and surroundings");
     for (const name of ["falling", "mirror", "light", "walls"] as const) {
       const action = actionNamed(SWITCHES[name]);
@@ -97,6 +104,7 @@ export class Panel {
       this.displays.push(display);
     }
     this.addButton(folder, actionNamed("reset_stone"));
+    return folder;
   }
 
   private addButton(folder: GUI, action: Action): Controller {

@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
-import { createSession, findSession, ProblemError, parseMesh, problemText, targa, uploadMesh } from "./rest";
+import { createSession, findSession, materials, ProblemError, problemText, targa, uploadMesh, uploadSky } from "./rest";
 
 afterEach(() => vi.unstubAllGlobals());
 
@@ -53,9 +53,25 @@ it("uploads a mesh as a form with one file", async () => {
   expect((form.get("file") as File).name).toBe("cube.off");
 });
 
-it("says at least the shape of a mesh in which nothing was found", () => {
-  expect(parseMesh({ id: "m", facets: 6, convex: false }).findings).toEqual(["6 facets, not convex."]);
-  expect(() => parseMesh({ facets: 6 })).toThrow("expected the id of a mesh");
+it("says at least the shape of an upload in which nothing was found", async () => {
+  answering(201, { id: "m", description: { facets: 6, convex: false, findings: [] } });
+  expect((await uploadMesh(new File(["OFF"], "cube.off"))).findings).toEqual(["6 facets, not convex."]);
+  const calls = answering(201, { id: "s", description: { width: 16, height: 8, findings: [] } });
+  expect(await uploadSky(new File(["#?"], "sky.hdr"))).toEqual({ id: "s", findings: ["16 \u00d7 8 pixels."] });
+  expect(calls[0]?.path).toBe("/api/skies");
+});
+
+it("refuses an upload's answer without an id", async () => {
+  answering(201, { description: { facets: 6 } });
+  await expect(uploadMesh(new File(["OFF"], "cube.off"))).rejects.toThrow("expected the id of an upload");
+});
+
+it("lists what a scene can name", async () => {
+  const calls = answering(200, { nanometres: [], materials: [{ name: "ruby", summary: "red" }] });
+  expect(await materials()).toEqual([{ name: "ruby", summary: "red" }]);
+  expect(calls[0]?.path).toBe("/api/materials");
+  answering(200, {});
+  await expect(materials()).rejects.toThrow("expected a list of materials");
 });
 
 it("asks for a step that a double cannot hold by all its digits", async () => {

@@ -19,8 +19,14 @@ export interface Preset {
   scene: JsonObject;
 }
 
-/** An uploaded mesh: its id for the scene, and sentences about it for the user. */
-export interface Mesh {
+/** Something that a scene can name. */
+export interface Catalogued {
+  name: string;
+  summary: string;
+}
+
+/** An uploaded mesh or sky: its id for the scene, and sentences about it for the user. */
+export interface Upload {
   id: string;
   findings: string[];
 }
@@ -68,25 +74,47 @@ export async function findSession(id: string): Promise<void> {
   await request(`/api/sessions/${encodeURIComponent(id)}`);
 }
 
-export async function presets(): Promise<Preset[]> {
-  const response = await request("/api/presets");
-  const { presets } = (await response.json()) as { presets?: Preset[] };
-  if (!Array.isArray(presets)) throw new ProblemError(response.status, "expected a list of presets, got none");
-  return presets;
+/** All that there is of something, under the name that the answer gives it too. */
+async function catalogue<T>(name: string): Promise<T[]> {
+  const response = await request(`/api/${name}`);
+  const { [name]: list } = (await response.json()) as JsonObject;
+  if (!Array.isArray(list)) throw new ProblemError(response.status, `expected a list of ${name}, got none`);
+  return list as T[];
 }
 
-export async function uploadMesh(file: File): Promise<Mesh> {
+export function presets(): Promise<Preset[]> {
+  return catalogue("presets");
+}
+
+export function materials(): Promise<Catalogued[]> {
+  return catalogue("materials");
+}
+
+export function skies(): Promise<Catalogued[]> {
+  return catalogue("skies");
+}
+
+async function upload(path: string, file: File): Promise<JsonObject> {
   const body = new FormData();
   body.append("file", file);
-  return parseMesh((await (await request("/api/meshes", { method: "POST", body })).json()) as JsonObject);
+  return (await (await request(path, { method: "POST", body })).json()) as JsonObject;
 }
 
-/** The gateway's answer to an upload; what it found may stand in a `description`. */
-export function parseMesh(answer: JsonObject): Mesh {
-  const { id, facets, convex, findings }: JsonObject = { ...(answer.description as JsonObject | undefined), ...answer };
-  if (typeof id !== "string") throw new ProblemError(201, "expected the id of a mesh, got none");
-  const said = Array.isArray(findings) ? findings.map(String) : [];
-  return { id, findings: said.length > 0 ? said : [`${facets} facets, ${convex ? "convex" : "not convex"}.`] };
+export async function uploadMesh(file: File): Promise<Upload> {
+  const shape = ({ facets, convex }: JsonObject) => `${facets} facets, ${convex ? "convex" : "not convex"}.`;
+  return parseUpload(await upload("/api/meshes", file), shape);
+}
+
+export async function uploadSky(file: File): Promise<Upload> {
+  return parseUpload(await upload("/api/skies", file), ({ width, height }) => `${width} \u00d7 ${height} pixels.`);
+}
+
+/** The gateway's answer to an upload, and what to say of one in which nothing was found. */
+export function parseUpload(answer: JsonObject, otherwise: (description: JsonObject) => string): Upload {
+  const description = (answer.description ?? {}) as JsonObject;
+  if (typeof answer.id !== "string") throw new ProblemError(201, "expected the id of an upload, got none");
+  const said = Array.isArray(description.findings) ? description.findings.map(String) : [];
+  return { id: answer.id, findings: said.length > 0 ? said : [otherwise(description)] };
 }
 
 /** The state of that number, rendered at full quality. */

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from fastapi import APIRouter
 
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
+from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
 from culet.scene.model import BrilliantCut, Model
 
 router = APIRouter(tags=["catalogue"])
 
-MATERIALS = {
-    "diamond": "Diamond as measured: F. Peter, Z. Phys. 15, 358 (1923).",
-    "classic": "The report's indices, which exaggerate the fire.",
-}
 CUTS = {"brilliant": "A round brilliant by its proportions."}
 SKIES = {
     "light-box": "A photographer's light box: bright above, softer at the sides, dark below.",
@@ -40,11 +37,19 @@ class Presets(Model):
 
 
 class Material(Model):
-    """A named material."""
+    """A named material: where its numbers come from, and how far they can be trusted."""
 
     name: str
     summary: str
+    source: str
+    confidence: Literal["measured", "weak source", "as set"]
+    ray: Literal["ordinary ray"] | None
+    """Which of two rays is traced, in a crystal that has two."""
+    span_nm: tuple[float, float]
+    """Wavelengths for which the source gives the index; outside, the nearer end's counts."""
     indices: tuple[float, float, float]
+    coloured: bool
+    """Whether it absorbs by a spectrum of its own: at the stone's `size_mm`, or without one at about a carat's."""
 
 
 class Materials(Model):
@@ -95,7 +100,17 @@ async def materials() -> Materials:
     return Materials(
         nanometres=RGB_NANOMETRES,
         materials=tuple(
-            Material(name=name, summary=summary, indices=channel_indices(name)) for name, summary in MATERIALS.items()
+            Material(
+                name=name,
+                summary=material.summary,
+                source=material.source,
+                confidence=material.confidence,
+                ray=material.ray,
+                span_nm=material.span_nm,
+                indices=channel_indices(name),
+                coloured=material.absorption is not None,
+            )
+            for name, material in MATERIALS.items()
         ),
     )
 

@@ -11,7 +11,7 @@ from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
-from culet.scene.model import Model
+from culet.scene.model import MaterialName, Model
 from culet_protocol.engine import Format, Render
 
 router = APIRouter(tags=["pictures"])
@@ -31,7 +31,7 @@ class StillQuery(Model):
     width: Width = DEFAULT_WIDTH
     height: Height = DEFAULT_HEIGHT
     samples: Annotated[int, Field(ge=1, le=65536, description="Per pixel; the preset's if not given.")] | None = None
-    material: Literal["diamond", "classic"] | None = None
+    material: MaterialName | None = None
     floor: Kind | None = None
     walls: Kind | None = None
     environment: Literal["dark", "light", "studio"] | None = None

@@ -1,0 +1,82 @@
+/** The panel's choices about the picture: material, sky and optics. */
+
+import type { Controller, GUI } from "lil-gui";
+import type { Catalogued } from "./rest";
+import {
+  BANDS,
+  type Choices,
+  CUTOFFS,
+  choicesOf,
+  ENDS,
+  imageSky,
+  NOTHING_CHOSEN,
+  patchOf,
+  SKIES,
+  TONE_MAPS,
+} from "./scene-choices";
+import type { ViewState } from "./view-state";
+
+type Values = Record<string, unknown>;
+
+export class ChoicePanel {
+  private readonly shown: Choices = { ...NOTHING_CHOSEN };
+  private readonly controllers = new Map<keyof Choices, Controller>();
+  private readonly skies: Values = { ...SKIES };
+  private readonly send: (patch: Values) => void;
+  private scene: ViewState["scene"] = null;
+
+  /** Material and sky go into one folder, how light is followed into another. */
+  constructor(subject: GUI, optics: GUI, send: (patch: Values) => void) {
+    this.send = send;
+    this.add(subject, "material", "Material", {});
+    this.add(subject, "sky", "Sky", this.skies);
+    this.add(optics, "bands", "Bands", BANDS);
+    this.add(optics, "polarised", "Polarised");
+    this.add(optics, "cutoff", "Cut-off", CUTOFFS);
+    this.add(optics, "end", "Below it", ENDS);
+    this.add(optics, "toneMap", "Tone map", TONE_MAPS);
+  }
+
+  update({ scene }: ViewState): void {
+    this.scene = scene;
+    Object.assign(this.shown, choicesOf(scene));
+    for (const controller of this.controllers.values()) controller.updateDisplay();
+  }
+
+  addMaterials(materials: Catalogued[]): void {
+    this.offer("material", Object.fromEntries(materials.map(({ name }) => [name, name])), materials);
+  }
+
+  /** Skies of the studio, or one that was uploaded under its file's name. */
+  addSkies(skies: Catalogued[], id = (sky: Catalogued) => sky.name): void {
+    for (const sky of skies) this.skies[sky.name] = imageSky(id(sky));
+    this.offer("sky", this.skies, skies);
+  }
+
+  private add(folder: GUI, name: keyof Choices, label: string, options?: Values | number[]): void {
+    const controller = options ? folder.add(this.shown, name, options) : folder.add(this.shown, name);
+    this.listen(name, controller.name(label));
+  }
+
+  private offer(name: keyof Choices, options: Values, described: Catalogued[]): void {
+    const controller = this.controllers.get(name);
+    if (!controller) return;
+    const renewed = controller.options(options);
+    this.listen(name, renewed);
+    for (const option of renewed.domElement.querySelectorAll("option")) {
+      const found = described.find((one) => one.name === option.textContent);
+      if (found) option.title = found.summary;
+    }
+    renewed.updateDisplay();
+  }
+
+  private listen(name: keyof Choices, controller: Controller): void {
+    this.controllers.set(name, controller);
+    controller.onChange((value: never) => {
+      controller.domElement.querySelector("select")?.blur(); // or the next key would choose something else
+      Object.assign(this.shown, choicesOf(this.scene)); // shows what is, until the server says that it changed
+      controller.updateDisplay();
+      this.send(patchOf(this.scene, name, value));
+    });
+  }
+}

@@ -1,0 +1,58 @@
+import { describe, expect, it, test } from "vitest";
+import { type Choices, choicesOf, imageSky, NOTHING_CHOSEN, patchOf, stonePatch } from "./scene-choices";
+
+const STONE = { cut: "brilliant", material: "ruby", position: [0, 4, 0] };
+const SCENE = {
+  stones: [STONE],
+  environment: { kind: "image", image: "light-box", scale: 2 },
+  optics: { bands: 16, polarised: true, cutoff: 0.003, end: "roulette", max_bounces: 64 },
+  film: { tone_map: "filmic", exposure: 2 },
+};
+const CHOSEN: Choices = {
+  material: "ruby",
+  sky: "image:light-box",
+  bands: 16,
+  polarised: true,
+  cutoff: 0.003,
+  end: "roulette",
+  toneMap: "filmic",
+};
+
+describe("the choices of a scene", () => {
+  it("are what it says", () => {
+    expect(choicesOf(SCENE)).toEqual(CHOSEN);
+    expect(choicesOf({ environment: { kind: "studio", lamps: [] } }).sky).toBe("studio");
+  });
+
+  it("call a material by indices what it is", () => {
+    expect(choicesOf({ stones: [{ material: { ior: [1.7, 1.8, 1.9] } }] }).material).toBe("its own indices");
+  });
+
+  it.each([null, {}, { stones: [], optics: null, film: 3, environment: "dark" }])("survive %j", (scene) => {
+    expect(choicesOf(scene)).toEqual(NOTHING_CHOSEN);
+  });
+});
+
+describe("a choice", () => {
+  test.each(Object.entries(CHOSEN) as [keyof Choices, never][])("of %s patches nothing else", (name, value) => {
+    const patch = patchOf({ stones: [{ ...STONE, material: "diamond" }] }, name, value);
+    const after = { ...NOTHING_CHOSEN, [name]: value };
+    expect({ ...choicesOf(patch), material: name === "material" ? value : "" }).toEqual(after);
+    expect(Object.keys(patch)).toHaveLength(1);
+  });
+
+  it("of a material leaves the stone's shape and place", () => {
+    expect(patchOf(SCENE, "material", "emerald")).toEqual({ stones: [{ ...STONE, material: "emerald" }] });
+  });
+
+  it("of a sky is one of its kind, or an image", () => {
+    expect(patchOf(SCENE, "sky", "light")).toEqual({ environment: { kind: "light" } });
+    expect(patchOf(SCENE, "sky", imageSky("a1"))).toEqual({ environment: { kind: "image", image: "a1" } });
+  });
+});
+
+it("changes the stone, or makes one where there was none", () => {
+  expect(stonePatch(SCENE, { mesh: "m1" })).toEqual({ stones: [{ ...STONE, mesh: "m1" }] });
+  expect(stonePatch({ stones: [] }, { mesh: "m1" })).toEqual({ stones: [{ mesh: "m1" }] });
+  expect(stonePatch(null, { mesh: "m1" })).toEqual({ stones: [{ mesh: "m1" }] });
+});

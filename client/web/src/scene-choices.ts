@@ -1,0 +1,101 @@
+/** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+
+export interface Choices {
+  /** A material's name, or what to call one that the scene describes by its indices. */
+  material: string;
+  /** The kind of the environment, or, of an image, which one: see `imageSky`. */
+  sky: string;
+  bands: number;
+  polarised: boolean;
+  cutoff: number;
+  end: string;
+  toneMap: string;
+}
+
+/** Values to choose from; a scene may have others. */
+export const BANDS = [3, 8, 16, 32];
+export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
+export const ENDS = { "cut and counted": "cut", "by chance": "roulette", "in the sky": "sky" };
+export const TONE_MAPS = { sRGB: "srgb", filmic: "filmic", "the report's": "classic", none: "none" };
+export const SKIES = { "studio lamps": "studio", dark: "dark", light: "light", "half-lit": "half" };
+
+/** The scene's before there is one. */
+export const NOTHING_CHOSEN: Choices = {
+  material: "",
+  sky: "",
+  bands: 3,
+  polarised: false,
+  cutoff: 0.01,
+  end: "cut",
+  toneMap: "srgb",
+};
+
+const IMAGE = "image:";
+
+/** The sky of an image, by its name or the id of an upload. */
+export function imageSky(image: string): string {
+  return IMAGE + image;
+}
+
+export function choicesOf(scene: JsonObject | null): Choices {
+  const { material } = stoneOf(scene);
+  const environment = part(scene, "environment");
+  const optics = part(scene, "optics");
+  const none = NOTHING_CHOSEN;
+  const kind = text(environment.kind, none.sky);
+  return {
+    material: text(material, material === undefined ? none.material : "its own indices"),
+    sky: kind === "image" ? imageSky(text(environment.image, "")) : kind,
+    bands: number(optics.bands, none.bands),
+    polarised: optics.polarised === true,
+    cutoff: number(optics.cutoff, none.cutoff),
+    end: text(optics.end, none.end),
+    toneMap: text(part(scene, "film").tone_map, none.toneMap),
+  };
+}
+
+/** The merge patch that makes one choice and leaves the rest of the scene. */
+export function patchOf<K extends keyof Choices>(scene: JsonObject | null, name: K, value: Choices[K]): JsonObject {
+  switch (name) {
+    case "material":
+      return stonePatch(scene, { material: value });
+    case "sky":
+      return { environment: environmentOf(String(value)) };
+    case "toneMap":
+      return { film: { tone_map: value } };
+    default:
+      return { optics: { [name]: value } };
+  }
+}
+
+/** The merge patch that changes something about the scene's stone; a list is replaced as a whole. */
+export function stonePatch(scene: JsonObject | null, change: JsonObject): JsonObject {
+  return { stones: [{ ...stoneOf(scene), ...change }] };
+}
+
+function environmentOf(sky: string): JsonObject {
+  return sky.startsWith(IMAGE) ? { kind: "image", image: sky.slice(IMAGE.length) } : { kind: sky };
+}
+
+function stoneOf(scene: JsonObject | null): JsonObject {
+  const stones = scene?.stones;
+  return object(Array.isArray(stones) ? stones[0] : undefined);
+}
+
+function part(scene: JsonObject | null, name: string): JsonObject {
+  return object(scene?.[name]);
+}
+
+function object(value: unknown): JsonObject {
+  return typeof value === "object" && value !== null ? (value as JsonObject) : {};
+}
+
+function text(value: unknown, otherwise: string): string {
+  return typeof value === "string" ? value : otherwise;
+}
+
+function number(value: unknown, otherwise: number): number {
+  return typeof value === "number" ? value : otherwise;
+}

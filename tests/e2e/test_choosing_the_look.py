@@ -1,0 +1,77 @@
+"""Material, sky and optics by the panel's lists: the picture follows, and the rest of the scene stays."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.server import Server
+from e2e.view import Pixels, View, difference
+
+SEEN = 1
+"""Mean difference, of 255, that a choice must make. Measured: 2.7 to 60."""
+
+
+@pytest.fixture
+def wide_view(view_of: ViewOf) -> View:
+    """With the panel."""
+    return view_of(viewport=WITH_PANEL).open()
+
+
+def choose(view: View, label: str, option: str) -> None:
+    view.page.get_by_label(label, exact=True).select_option(label=option)
+
+
+def magenta(pixels: Pixels) -> float:
+    """Part of the picture that is of that colour."""
+    red, green, blue = (pixels[..., channel] for channel in range(3))
+    return float(((red > 200) & (blue > 200) & (green < 60)).mean())
+
+
+def test_the_stone_is_made_of_what_one_chooses(wide_view: View, server: Server) -> None:
+    view = wide_view
+    stone = view.scene["stones"][0]
+    before, after = view.change(lambda: choose(view, "Material", "ruby"))
+    assert server.session(view.session)["scene"]["stones"] == [stone | {"material": "ruby"}]
+    assert difference(before.pixels, after.pixels) > SEEN
+    view.change_by("m")  # the list has not kept the keyboard
+    assert view.page.get_by_label("Material", exact=True).input_value() == "ruby"
+
+
+def test_the_sky_is_one_of_the_studios_or_ones_own(wide_view: View, server: Server, tmp_path: Path) -> None:
+    view = wide_view
+    before, after = view.change(lambda: choose(view, "Sky", "ring-lights"))
+    assert server.session(view.session)["scene"]["environment"]["image"] == "ring-lights"
+    assert difference(before.pixels, after.pixels) > SEEN
+    file = tmp_path / "magenta.png"
+    Image.new("RGB", (64, 32), (255, 0, 255)).save(file)
+    without, under = view.change(lambda: view.open_file("Open a sky", file))
+    assert "64 \u00d7 32 pixels" in view.page.locator(".toast.finding").inner_text()
+    assert magenta(without.pixels) == 0
+    assert magenta(under.pixels) > 0.01  # measured 0.035: through the stone, and above the horizon
+    chosen = view.page.get_by_label("Sky", exact=True).evaluate("list => list.selectedOptions[0].textContent")
+    assert chosen == "magenta.png"
+    view.change(lambda: choose(view, "Sky", "studio lamps"))
+    assert view.scene["environment"]["kind"] == "studio"
+    view.change(lambda: choose(view, "Sky", "magenta.png"))
+    assert view.scene["environment"]["kind"] == "image"
+    assert view.problems == []
+
+
+def test_light_is_followed_as_one_chooses(wide_view: View, server: Server) -> None:
+    view = wide_view
+    view.page.get_by_role("button", name="Optics").click()
+    view.change(lambda: choose(view, "Bands", "8"))
+    view.change(lambda: view.page.get_by_label("Polarised").click())
+    view.change(lambda: choose(view, "Cut-off", "0.001"))
+    view.change(lambda: choose(view, "Below it", "by chance"))
+    view.change(lambda: choose(view, "Tone map", "filmic"))
+    scene = server.session(view.session)["scene"]
+    chosen = {"bands": 8, "polarised": True, "cutoff": 0.001, "end": "roulette"}
+    assert scene["optics"] | chosen == scene["optics"]
+    assert scene["film"]["tone_map"] == "filmic"
+    view.until("() => document.getElementById('status').textContent.includes('error 0.')")
+    assert view.problems == []
