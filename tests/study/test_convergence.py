@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from culet.study.convergence import COARSE, ROUNDING, fit_order, time_to
+from culet.study.convergence import COARSE, ROUNDING, fit_order, resting_error, time_to
 
 STEPS = [0.1, 0.05, 0.025, 0.0125]
 
@@ -50,3 +50,11 @@ def test_below_its_bias_nothing_is_reached() -> None:
 
 def test_nothing_measured_reaches_nothing() -> None:
     assert time_to([], [], 0.1).seconds is None
+
+
+def test_noise_that_still_falls_is_at_rest_nowhere() -> None:
+    assert resting_error([1, 2, 4, 5], [1, 2**-0.5, 0.5, 5**-0.5]) is None  # however near the last two points are
+
+
+def test_a_bias_is_where_the_error_comes_to_rest() -> None:
+    assert resting_error([1, 2, 4], [0.3, 0.21, 0.2]) == 0.2

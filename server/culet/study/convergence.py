@@ -33,6 +33,18 @@ def fit_order(
     return OrderFit(float(order), float(constant), len(used))
 
 
+REST = -0.2
+"""An error that falls more slowly than time to this power has come to rest; that of independent samples has -1/2."""
+
+
+def resting_error(seconds: Sequence[float], errors: Sequence[float]) -> float | None:
+    """The error at which a curve has come to rest at its end, a bias; None if it still falls."""
+    if len(errors) < 3 or not errors[-1] > 0:
+        return None
+    slope = math.log(errors[-1] / errors[-2]) / math.log(seconds[-1] / seconds[-2])
+    return errors[-1] if slope > REST else None
+
+
 class TimeTo(NamedTuple):
     """Seconds until an error is reached."""
 

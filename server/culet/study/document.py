@@ -7,6 +7,9 @@ from collections.abc import Iterable, Sequence
 
 from culet.study.report import Knob
 
+SHORT = 48
+"""Letters of a cell that is not broken into lines."""
+
 STYLE = """
 :root { color-scheme: light; }
 body { font: 15px/1.5 system-ui, sans-serif; color: #1c1c1c; background: #fff; max-width: 62rem; margin: 2rem auto;
@@ -15,6 +18,7 @@ h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.2rem; } h3 { fon
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; margin: 0.6rem 0 1.2rem; }
 th, td { padding: 0.2rem 0.6rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
+td.short { white-space: nowrap; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 thead th { border-bottom: 1.5px solid #555; }
 svg { width: 100%; height: auto; font: 12px system-ui, sans-serif; }
@@ -27,7 +31,7 @@ figcaption { font-size: 0.85rem; color: #444; }
 .pictures img { width: 100%; image-rendering: auto; }
 .bar { height: 10px; width: 14rem; }
 @media print { body { margin: 0; max-width: none; font-size: 10pt; } h2 { break-after: avoid; }
-  .scroll { overflow: visible; } }
+  .scroll { overflow: visible; } table { font-size: 6.5pt; } }
 """
 
 
@@ -94,4 +98,5 @@ def _is_number(value: Knob) -> bool:
 
 
 def _cell(tag: str, words: str, *, number: bool) -> str:
-    return f"<{tag}{' class=number' if number else ''}>{html.escape(words)}</{tag}>"
+    kind = " class=number" if number else " class=short" if len(words) <= SHORT else ""
+    return f"<{tag}{kind}>{html.escape(words)}</{tag}>"

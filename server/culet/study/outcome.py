@@ -37,6 +37,7 @@ def rendering_report(
 ) -> Report:
     """Of `culet study rendering`."""
     swept = [point for point in points if point.group != "race"]
+    single = [point for point in swept if point.knobs["samples"] == 1]
     races = race.results(points)
     return Report(
         study="rendering",
@@ -49,6 +50,7 @@ def rendering_report(
         fronts=(
             front("Time against the scene's own idea of light", swept, "frame_seconds", "rmse_model"),
             front("Time against the whole physics", swept, "frame_seconds", "rmse_physics"),
+            front("One sample a pixel: time against the knob's own error", single, "kernel_seconds", "rmse_paired"),
         ),
         races=tuple(races),
         limits={f"{name}_per_second" if name == "bandwidth" else name: v for name, v in limits._asdict().items()},
@@ -97,7 +99,10 @@ def _rendering_headlines(
         seconds = entry.seconds.get(RACE_HEADLINE)
         if seconds is None:
             continue
-        lines.append(Headline(name=f"{entry.name}: to RMSE {RACE_HEADLINE}", value=seconds, unit="s"))
+        words = f"{entry.name}: to RMSE {RACE_HEADLINE}" + (
+            " (extrapolated)" if RACE_HEADLINE in entry.extrapolated else ""
+        )
+        lines.append(Headline(name=words, value=seconds, unit="s"))
         fastest = ours.seconds.get(RACE_HEADLINE) if ours else None
         if fastest and entry.name.startswith("Mitsuba"):
             lines.append(Headline(name=f"{entry.name}'s time over culet's", value=seconds / fastest, unit="x"))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
 from culet.study.document import document, figure, heading, paragraph, picture, table
 from culet.study.pictures import LEAST, MOST, inline, picture_paths, scale_bar
-from culet.study.plot import Mark, Series, log_log
+from culet.study.plot import SHAPES, Mark, Series, log_log
 from culet.study.report import Front, Point, Report
 
 TITLES = {
@@ -99,12 +100,12 @@ def _rendering(report: Report, pictures: Path) -> Iterator[str]:
 
 
 def _front(report: Report, points: list[Point], front: Front) -> Iterator[str]:
-    groups = dict.fromkeys(point.group for point in points)
-    crowded = [
-        group for group in groups if group in ("base", "samples", "cutoff", "scale", "bands", "combination", "end")
-    ]
-    series = [Series(g, _marks([p for p in points if p.group == g], front.cost, front.error)) for g in crowded]
-    others = [point for point in points if point.group not in crowded]
+    if front.error == "rmse_paired":
+        points = [point for point in points if point.knobs["samples"] == 1]
+    drawn = Counter(point.group for point in points if point.figures.get(front.error))
+    marked = sorted({"base", *(group for group, _ in drawn.most_common(len(SHAPES) - 2))})
+    series = [Series(g, _marks([p for p in points if p.group == g], front.cost, front.error)) for g in marked]
+    others = [point for point in points if point.group not in marked]
     series.append(Series("other knobs", _marks(others, front.cost, front.error)))
     chosen = [report.point(key) for key in front.keys]
     cost, error = front.cost.replace("_", " "), front.error.replace("_", " ")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from culet.geometry.load import stone_of
 from culet.scene.model import GradientEnvironment, Optics, Plane
 from culet.study.cases import CHECKER
-from culet.study.convergence import time_to
+from culet.study.convergence import resting_error, time_to
 from culet.study.image_error import radiance_error
 from culet.study.knobs import base_knobs
 from culet.study.reference import Frame, Reference
@@ -102,7 +102,7 @@ def results(points: Sequence[Point], targets: Sequence[float] = TARGETS) -> list
         own.sort(key=lambda point: point.figures["race_seconds"] or 0.0)
         seconds = [point.figures["race_seconds"] or math.nan for point in own]
         errors = [point.figures["race_rmse"] or math.nan for point in own]
-        floor = errors[-1] if len(errors) > 2 and errors[-1] > 0.8 * errors[-2] else None
+        floor = resting_error(seconds, errors)
         reached = {f"{target:g}": time_to(seconds, errors, target, floor=floor) for target in targets}
         races.append(
             Race(
