@@ -11,6 +11,8 @@ import json
 from dataclasses import dataclass
 from importlib.resources import files
 
+from culet.scene import Scene
+
 SHARE = 0.8
 """Of a frame's time that rendering may take; the rest is for simulation, tone mapping and the rest of the machine."""
 SPARE = 0.85
@@ -63,6 +65,12 @@ class Governor:
         least = min(1.0, max(LEAST_WIDTH / width, LEAST_HEIGHT / height))
         scale = max(self.setting.scale, least)
         return max(16, round(width * scale)), max(16, round(height * scale))
+
+    def simplified(self, scene: Scene) -> Scene:
+        """The scene of the next moving frame: three indices, without polarisation, and a cut-off by the setting."""
+        optics = scene.optics
+        changes = {"bands": 3, "polarised": False, "cutoff": max(optics.cutoff, self.setting.cutoff)}
+        return scene.model_copy(update={"optics": optics.model_copy(update=changes)})
 
     def rendered(
         self, seconds: float, size: tuple[int, int], wanted: tuple[int, int], frames_per_second: float

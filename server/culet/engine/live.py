@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from culet.engine.drawing import Picture
+from culet.engine.governor import Governor, read_ladder
 from culet.engine.session import Session, Shown
 
 NATIVE_RATE = 30.0
@@ -18,8 +19,14 @@ NATIVE_SIZE = (960, 540)
 REST_SAMPLES = 16
 """Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
 
+SETTLE_SECONDS = 0.2
+"""A picture whose camera or scene has changed twice within this time is being moved: it is governed as a falling one
+is, and drawn in full once this time has passed without a change."""
+
 REPEAT_SECONDS = 1.0
 """A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
+
+LADDER = read_ladder()
 
 
 @dataclass(eq=False)
@@ -37,6 +44,12 @@ class LivePicture:
     painted: Shown | None = None
     """What the picture shows."""
     painted_size: tuple[int, int] = (0, 0)
+    governor: Governor = field(default_factory=lambda: Governor(LADDER))
+    reduced_until: float | None = None
+    """s, steady clock: from when on a picture that the governor has reduced is to be drawn in full, if nothing moves.
+    None if it is in full."""
+    changed_at: float = -1e9
+    """s, steady clock: when something new was last drawn."""
     refinement: Iterator[Any] | None = None
     """More samples on their way, a band at a time."""
     refused: Shown | None = None
@@ -75,13 +88,17 @@ class LivePicture:
             return None
         if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
             return None
-        if self.at_rest and (self.final or self.picture is not None):
-            return None
+        if self.at_rest:
+            if self.reduced_until is not None:
+                return max(self.reduced_until, self.begun_at + 1 / self.frames_per_second)
+            if self.final or self.picture is not None:
+                return None
         return self.begun_at + 1 / self.frames_per_second
 
     def wants_refinement(self) -> bool:
         """Whether more samples would improve what is seen."""
-        return self.watched and self.at_rest and not self.final and self.picture is not None
+        in_full = self.reduced_until is None and self.picture is not None
+        return self.watched and self.at_rest and not self.final and in_full
 
     def abandon(self) -> None:
         """Nobody watches: free the picture's memory, keep the message."""

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 
 from culet.engine import jpeg, schedule
 from culet.engine.drawing import Picture, Renderer, band_rows
-from culet.engine.live import REST_SAMPLES, LivePicture
+from culet.engine.live import REST_SAMPLES, SETTLE_SECONDS, LivePicture
 from culet.engine.session import Shown
 from culet.engine.still import Still, StillQueue
 from culet.errors import CuletError, DeviceError
+from culet.scene import Scene
 from culet_protocol.frame import Codec, Flags, Frame
 
 log = logging.getLogger(__name__)
@@ -127,19 +128,27 @@ class Painter:
             live.simulate_seconds = time.perf_counter() - started
             shown = session.shown
             session.remember(shown)
-        if live.current and live.picture is not None:  # the simulation has not moved on: nothing new to see
+        settled = live.reduced_until is not None and live.at_rest
+        if live.current and live.picture is not None and not settled:  # the simulation has not moved on
             return
-        size = live.size
+        governed = shown.moving or (not settled and live.begun_at - live.changed_at < SETTLE_SECONDS)
+        size = live.governor.size(*live.size) if governed else live.size
+        scene = live.governor.simplified(shown.scene) if governed else shown.scene
+        if shown is not live.painted:
+            live.changed_at = live.begun_at
         try:
-            picture = await self._in_render_thread(self._first_sample, shown, size)
-            live.picture, live.painted, live.painted_size, live.final = picture, shown, size, REST_SAMPLES <= 1
+            picture = await self._in_render_thread(self._first_sample, scene, shown, size)
+            if governed:
+                live.governor.rendered(picture.seconds, size, live.size, live.frames_per_second)
+            live.reduced_until = live.begun_at + SETTLE_SECONDS if governed else None
+            live.picture, live.painted, live.painted_size, live.final = picture, shown, live.size, REST_SAMPLES <= 1
             self.counters.frames_rendered += 1
             await self._publish(live, picture, shown)
         except Exception as error:  # one session's failure must not end the others'
             self._refuse(live, shown, error)
 
-    def _first_sample(self, shown: Shown, size: tuple[int, int]) -> Picture:
-        picture = self._renderer.picture(shown.scene, shown.stone, *size, panorama=shown.panorama)
+    def _first_sample(self, scene: Scene, shown: Shown, size: tuple[int, int]) -> Picture:
+        picture = self._renderer.picture(scene, shown.stone, *size, panorama=shown.panorama)
         picture.refine(1)
         return picture
 
