@@ -10,6 +10,7 @@ import pytest
 
 from culet.errors import InputError
 from culet.study.comparison import compare, compare_benches, medians
+from culet.study.report import Figure
 from study.reports import report
 
 
@@ -43,6 +44,13 @@ def test_something_out_of_nothing_is_infinite_and_not_in_the_median() -> None:
     found = compare(report(points=(before,)), report(points=(after,)))
     assert [ratio.ratio for ratio in found.ratios] == [math.inf]
     assert medians(found.ratios) == {}
+
+
+def test_a_mean_error_of_either_sign_has_no_ratio() -> None:
+    signed = {"bias": Figure(unit="radiance", better="neither", about="Mean error.")}
+    points = [report().points[0].model_copy(update={"figures": {"bias": value}}) for value in (0.1, -0.2)]
+    before, after = (report(points=(point,), figures=signed, fronts=()) for point in points)
+    assert compare(before, after).ratios == []
 
 
 def bench(path: Path, seconds: float, **changes: object) -> Path:

@@ -56,6 +56,8 @@ def test_a_ramp_is_enlarged_to_the_same_ramp() -> None:
     large = enlarged(small, 4, 8)
     assert large[0, 1:-1, 0] == pytest.approx(np.linspace(0.0625, 0.9375, 8)[1:-1])
     assert large[0, [0, -1], 0] == pytest.approx([0.125, 0.875])  # beyond the outer centres there is nothing to mix
+    upright = enlarged(small.transpose(1, 0, 2), 8, 4)
+    assert upright == pytest.approx(large.transpose(1, 0, 2))
     assert enlarged(small, 2, 4) is small
 
 

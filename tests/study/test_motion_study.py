@@ -21,7 +21,9 @@ from culet.study.simulation import (
     TOP_MOMENTS,
     TOP_SPIN,
     UPRIGHT,
+    Motion,
     angle_between,
+    bounce_truth,
     fits_of,
     flat_orientation,
     measure_all,
@@ -88,6 +90,16 @@ def test_the_rigid_model_falls_on_the_parabola_and_the_classic_beside_it(points:
 def test_a_flat_bounce_comes_back_when_restitution_says(points: dict[str, Point]) -> None:
     assert figure(points, "bounce model=rigid integrator=rkmk4 time_step=0.0666", "position_error") < 1e-5
     assert figure(points, "bounce model=rigid integrator=rkmk4 time_step=0.0333", "energy_error") < 1e-6
+
+
+@pytest.mark.parametrize(("seconds", "height"), [(1.0, 0.0), (1.5, 4.905 / 4), (2.0, 0.0), (4.0, 0.0), (60.0, 0.0)])
+def test_a_point_that_falls_a_second_bounces_until_it_rests(seconds: float, height: float) -> None:
+    """From g / 2 it falls a second; with e = 1/2 its bounces last 1, 1/2, 1/4 ... s, 2 s in all. The first rises to a
+    quarter of the height, half a second after the landing."""
+    motion = Motion("bounce", seconds, (0.0, 4.905, 0.0), UPRIGHT, {"gravity": 9.81, "restitution": 0.5})
+    end = bounce_truth(motion, radius=1.0)
+    assert end.position is not None
+    assert end.position[1] == pytest.approx(height, abs=1e-9)
 
 
 def test_a_drop_converges_to_its_finest_steps_and_gains_no_energy(points: dict[str, Point]) -> None:

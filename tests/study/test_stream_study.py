@@ -35,6 +35,8 @@ def test_higher_quality_costs_bytes_and_is_more_alike(points: dict[str, Point]) 
         values = [figure(points, each, name) for each in ladder]
         assert values == sorted(values)
         assert values[0] < values[-1]
+    likeness, error = (figure(points, ladder[0], name) for name in ("ssim", "dissimilarity"))
+    assert error == pytest.approx(1 - likeness)
 
 
 def test_halved_chroma_saves_bytes_and_costs_colour(points: dict[str, Point]) -> None:

@@ -100,7 +100,10 @@ def test_what_is_cut_darkens(finished: Report) -> None:
 def test_the_fronts_first_point_is_the_fastest(finished: Report) -> None:
     swept = [point for point in finished.points if point.group != "race"]
     for front in finished.fronts:
-        fastest = min(swept, key=lambda point: point.figures[front.cost] or 0)
+        judged = [point for point in swept if point.figures[front.error] is not None]
+        if front.error == "rmse_paired":
+            judged = [point for point in judged if point.knobs["samples"] == 1]
+        fastest = min(judged, key=lambda point: point.figures[front.cost] or 0)
         assert front.keys[0] == fastest.key
 
 

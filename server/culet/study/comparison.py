@@ -24,10 +24,10 @@ class Ratio(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """after / before; infinite if there was nothing before."""
+        """after / before, of magnitudes; infinite if there was nothing before."""
         if self.before == self.after:
             return 1.0
-        return self.after / self.before if self.before else math.inf
+        return abs(self.after / self.before) if self.before else math.inf
 
 
 class Difference(NamedTuple):
@@ -40,7 +40,7 @@ class Difference(NamedTuple):
 
 
 def compare(before: Report, after: Report) -> Difference:
-    """Ratios of all figures of the points that both have; InputError if they are of different studies."""
+    """Ratios of what is better if less or more, of the points that both have; InputError for different studies."""
     if before.study != after.study:
         raise InputError(f"expected two reports of the same study, got {before.study} and {after.study}")
     warnings = [
@@ -60,7 +60,7 @@ def compare(before: Report, after: Report) -> Difference:
             continue
         for name, value in point.figures.items():
             old_value = old_point.figures.get(name)
-            if value is not None and old_value is not None:
+            if value is not None and old_value is not None and after.figures[name].better != "neither":
                 ratios.append(Ratio(point.group, point.label, name, old_value, value))
     keys = {point.key for point in after.points}
     return Difference(

@@ -88,9 +88,11 @@ def text(value: Knob) -> str:
         return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, int) or (isinstance(value, float) and value == round(value) and 100 <= abs(value) < 1e7):
-        return f"{int(value)}"
-    return f"{value:.3g}" if isinstance(value, float) else value
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return f"{value:.0f}" if 1000 <= abs(value) < 1e7 else f"{value:.3g}"
+    return value
 
 
 def _is_number(value: Knob) -> bool:

@@ -131,7 +131,7 @@ def simulation_report(scene: Mapping[str, object], settings: dict[str, Knob], po
         points=tuple(points),
         fronts=tuple(fronts),
         fits=tuple(fits),
-        headlines=tuple(Headline(name=f"order of {fit.label}", value=fit.order, unit="1") for fit in orders),
+        headlines=tuple(Headline(name=f"order of {fit.label}", value=fit.order, unit="") for fit in orders),
     )
 
 
@@ -175,7 +175,7 @@ def headline_markdown(report: Report) -> str:
     """A table for a README."""
     facts = report.provenance
     on = ", ".join(str(facts[name]) for name in ("processor", "driver", "commit") if name in facts)
-    rows = "".join(f"| {line.name} | {line.value:.3g} {line.unit} |\n" for line in report.headlines)
+    rows = "".join(f"| {line.name} | {f'{line.value:.3g} {line.unit}'.strip()} |\n" for line in report.headlines)
     return f"| {report.study}, {_size(report)} | |\n|---|---|\n{rows}\nMeasured on {on}, {report.made[:10]}.\n"
 
 

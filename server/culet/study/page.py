@@ -108,14 +108,21 @@ def _front(report: Report, points: list[Point], front: Front) -> Iterator[str]:
     others = [point for point in points if point.group not in marked]
     series.append(Series("other knobs", _marks(others, front.cost, front.error)))
     chosen = [report.point(key) for key in front.keys]
-    cost, error = front.cost.replace("_", " "), front.error.replace("_", " ")
-    about = report.figures[front.error]
     yield figure(
-        log_log(series, f"{cost}, s", f"{error}, {about.unit}", _marks(chosen, front.cost, front.error)),
-        f"{about.about} The numbers are the front's, in the table below.",
+        log_log(series, _axis(report, front.cost), _axis(report, front.error), _marks(chosen, front.cost, front.error)),
+        f"{report.figures[front.error].about} The numbers are the front's, in the table below.",
     )
-    rows = [(n, p.label, p.figures[front.cost], p.figures[front.error]) for n, p in enumerate(chosen, 1)]
-    yield table(["", "on the front", cost, error], rows)
+    yield _numbered(chosen, front.cost, front.error)
+
+
+def _numbered(chosen: list[Point], cost: str, error: str) -> str:
+    rows = [(n, point.label, point.figures[cost], point.figures[error]) for n, point in enumerate(chosen, 1)]
+    return table(["", "on the front", cost.replace("_", " "), error.replace("_", " ")], rows)
+
+
+def _axis(report: Report, figure_: str) -> str:
+    unit = report.figures[figure_].unit
+    return figure_.replace("_", " ") + (f", {unit}" if unit else "")
 
 
 def _simulation(report: Report, pictures: Path) -> Iterator[str]:
@@ -133,12 +140,18 @@ def _simulation(report: Report, pictures: Path) -> Iterator[str]:
             Series(name, _marks([p for p in points if _method(p) == name], "cpu_seconds", error), line=True)
             for name in dict.fromkeys(map(_method, points))
         ]
-        front = [mark for f in fronts for mark in _marks([report.point(key) for key in f.keys], "cpu_seconds", error)]
-        unit = report.figures[error].unit
+        chosen = [report.point(key) for front in fronts for key in front.keys]
+        about = report.figures[error]
         yield figure(
-            log_log(series, "processor seconds a simulated second", f"{error.replace('_', ' ')}, {unit}", front),
-            report.figures[error].about,
+            log_log(
+                series,
+                "processor seconds a simulated second",
+                _axis(report, error),
+                _marks(chosen, "cpu_seconds", error),
+            ),
+            about.about,
         )
+        yield _numbered(chosen, "cpu_seconds", error)
     yield heading("All points")
     yield _table(list(report.points), list(report.figures), "setting")
 
@@ -164,8 +177,9 @@ def _streaming(report: Report, pictures: Path) -> Iterator[str]:
         chosen = [report.point(key) for key in front.keys]
         yield figure(
             log_log(series, "bytes a frame", "1 - SSIM", _marks(chosen, front.cost, front.error)),
-            "Lossless codecs have no error and are in the table alone.",
+            "Lossless codecs have no error and are in the tables alone.",
         )
+        yield _numbered(chosen, front.cost, front.error)
     yield heading("All points")
     yield _table(list(report.points), list(report.figures), "codec")
 

@@ -35,6 +35,7 @@ class Series:
 def log_log(series: Sequence[Series], x_label: str, y_label: str, front: Sequence[Mark] = ()) -> str:
     """An inline SVG. `front` is drawn as a stair and numbered from 1, from left to right."""
     shown = [Series(each.name, [m for m in each.marks if m.x > 0 and m.y > 0], each.line) for each in series]
+    shown = [each for each in shown if each.marks]
     marks = [mark for each in shown for mark in each.marks] + [m for m in front if m.x > 0 and m.y > 0]
     if not marks:
         return "<p>Nothing to draw: no point has both figures above 0.</p>"

@@ -36,7 +36,7 @@ FIGURES: dict[str, Figure] = {
     "max_paired": Figure(unit="radiance", about="Largest error against the same samples."),
     "bias_paired": Figure(unit="radiance", better="neither", about="Mean error against the same samples."),
     "cut": Figure(unit="weight", about="Mean weight of the chains that were dropped; bounds the error that it causes."),
-    "segments": Figure(unit="", better="neither", about="Interior segments of a frame, all samples."),
+    "segments": Figure(unit="", about="Interior segments of a frame, all samples."),
     "non_finite": Figure(unit="", about="Numbers of the picture that are NaN or infinite."),
 }
 """Of each point. `model`, `physics`: see the module `reference`. Time is of this machine, noise included."""

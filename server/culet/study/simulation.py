@@ -39,8 +39,8 @@ FIGURES: dict[str, Figure] = {
     "cpu_seconds": Figure(unit="s/s", about="Processor seconds a simulated second, median."),
     "position_error": Figure(unit="R", about="Distance of the centre of mass from where it should be, at the end."),
     "attitude_error": Figure(unit="rad", about="Angle between the attitude and what it should be, at the end."),
-    "energy_error": Figure(unit="1", about="Energy's relative error at the end; drop: what it has above its start's."),
-    "momentum_error": Figure(unit="1", about="Relative error of the momentum, or of the angular momentum if larger."),
+    "energy_error": Figure(unit="", about="Energy's relative error at the end; drop: what it has above its start's."),
+    "momentum_error": Figure(unit="", about="Relative error of the momentum, or of the angular momentum if larger."),
     "penetration": Figure(unit="R", about="Deepest that a vertex was inside the floor, at any step."),
 }
 """Null where a motion says nothing of it."""
@@ -216,7 +216,7 @@ def _cases(stone: Stone) -> Iterator[tuple[Motion, Callable[[str], End]]]:
         lying,
         {"spin": (0, 0, 0), "friction": 0, "restitution": 0.6, "random_torque": 0},
     )
-    yield bounce, lambda model: _bounce_end(bounce, 1.0 if model == "classic" else half_height)
+    yield bounce, lambda model: bounce_truth(bounce, 1.0 if model == "classic" else half_height)
     slide = Motion(
         "slide", 1.0, (0.0, FLOOR + half_height, 0.0), lying,
         {"spin": (0, 0, 0), "velocity": (1, 0, 0), "friction": 0.3, "rolling_resistance": 0, "sleeping": False},
@@ -303,8 +303,8 @@ def _flight_end(motion: Motion, stone: Stone) -> End:
     )
 
 
-def _bounce_end(motion: Motion, radius: float) -> End:
-    """Height after some bounces of a point that falls from `clearance`, each e times as fast as the one before."""
+def bounce_truth(motion: Motion, radius: float) -> End:
+    """Where a body of that radius is that lands flat and without friction, each bounce e times as fast as the last."""
     settings = _settings(motion, {})
     g, e, mass = settings.gravity, settings.restitution, settings.mass
     clearance = motion.position[1] - FLOOR - radius

@@ -28,8 +28,8 @@ FIGURES: dict[str, Figure] = {
     "bytes": Figure(unit="B", about="Of a frame, median."),
     "encode_ms": Figure(unit="ms", about="Median, on one core."),
     "decode_ms": Figure(unit="ms", about="Median, by a decoder in Python, not by a browser."),
-    "ssim": Figure(unit="1", better="more", about="Mean structural similarity to the frame itself."),
-    "dissimilarity": Figure(unit="1", about="1 - SSIM: an error, so that it can be drawn on a logarithmic scale."),
+    "ssim": Figure(unit="", better="more", about="Mean structural similarity to the frame itself."),
+    "dissimilarity": Figure(unit="", about="1 - SSIM: an error, so that it can be drawn on a logarithmic scale."),
     "delta_e": Figure(unit="CIEDE2000", about="Mean colour difference from the frame itself."),
 }
 
