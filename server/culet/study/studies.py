@@ -50,7 +50,7 @@ class Effort(NamedTuple):
 
 QUICK = Effort(320, 180, 256, 48, 3, 512, 4.0, 16)
 """Two minutes on two cores."""
-FULL = Effort(640, 360, 2048, 768, 7, 4096, 60.0, 32)
+FULL = Effort(640, 360, 2048, 512, 7, 2048, 30.0, 32)
 """Half an hour, of which the references take the most; they are kept."""
 
 
