@@ -132,16 +132,17 @@ class Painter:
         if live.current and live.picture is not None and not settled:  # the simulation has not moved on
             return
         governed = shown.moving or (not settled and live.begun_at - live.changed_at < SETTLE_SECONDS)
-        size = live.governor.size(*live.size) if governed else live.size
+        wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
+        size = live.governor.size(*wanted) if governed else wanted
         scene = live.governor.simplified(shown.scene) if governed else shown.scene
         if shown is not live.painted:
             live.changed_at = live.begun_at
         try:
             picture = await self._in_render_thread(self._first_sample, scene, shown, size)
             if governed:
-                live.governor.rendered(picture.seconds, size, live.size, live.frames_per_second)
+                live.governor.rendered(picture.seconds, size, wanted, live.frames_per_second)
             live.reduced_until = live.begun_at + SETTLE_SECONDS if governed else None
-            live.picture, live.painted, live.painted_size, live.final = picture, shown, live.size, REST_SAMPLES <= 1
+            live.picture, live.painted, live.painted_size, live.final = picture, shown, wanted, REST_SAMPLES <= 1
             self.counters.frames_rendered += 1
             await self._publish(live, picture, shown)
         except Exception as error:  # one session's failure must not end the others'
