@@ -106,6 +106,8 @@ async def test_a_material_says_where_its_numbers_come_from(gateway: Gateway) -> 
         ('{"scene": {"camera": {"fov_degrees": 1000}}}', "scene.camera.fov_degrees"),
         ('{"scene": {"camera": {"zoom": 2}}}', "scene.camera.zoom"),
         ('{"scene": {"stones": [{"mesh": "/etc/passwd"}]}}', "scene.stones.0.mesh"),
+        ('{"scene": {"stones": [{"cut": {"table_percent": 500}}]}}', "scene.stones.0.cut.table_percent"),
+        ('{"scene": {"environment": {"kind": "gradient", "top": 7}}}', "scene.environment.top"),
         ('{"scene": {}, "width": 0}', "width"),
         ('{"scene": {}, "height": 100000}', "height"),
         ('{"scene": {}, "width": 8192, "height": 8192}', "width"),

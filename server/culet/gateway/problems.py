@@ -13,6 +13,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from culet.errors import CuletError, InputError
+from culet.scene.model import field_of
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_AFTER_SECONDS = "2"
@@ -98,7 +99,7 @@ async def _of_validation(_request: Request, error: RequestValidationError) -> JS
     if first["type"] == "json_invalid":
         detail = f"the body is not JSON: {first['ctx']['error']} at character {first['loc'][-1]}"
         return problem(InputError.status, InputError.title, detail)
-    field = ".".join(str(part) for part in first["loc"][1:]) or None
+    field = field_of(tuple(first["loc"][1:])) or None
     came = "" if first["type"] == "missing" else f"; got {_short(first.get('input'))}"
     more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
     where = field or first["loc"][0]

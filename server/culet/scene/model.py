@@ -410,7 +410,7 @@ _ENVIRONMENT_KINDS = frozenset(
 )
 
 
-def _field(location: tuple[int | str, ...]) -> str:
+def field_of(location: tuple[int | str, ...]) -> str:
     """The place in the JSON: without the names that pydantic gives to the alternatives of a union."""
     parts = [str(part) for part in location]
     return ".".join(
@@ -423,7 +423,7 @@ def _field(location: tuple[int | str, ...]) -> str:
 def scene_error(error: ValidationError) -> SceneError:
     """The first finding of pydantic as one line: the field, what was expected, what came."""
     first = error.errors(include_url=False, include_context=False)[0]
-    field = _field(first["loc"])
+    field = field_of(first["loc"])
     came = repr(first["input"])
     shown = came if len(came) <= 80 else came[:77] + "..."
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
