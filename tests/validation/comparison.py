@@ -86,10 +86,13 @@ class Verdict:
         )
 
 
-def compare(ours: Seen, channel: int, theirs: Reference) -> Verdict:
-    """Welch's test in each pixel, with Satterthwaite's degrees of freedom (Biometrics Bulletin 2, 110 (1946))."""
+def compare(ours: Seen, channel: int, theirs: Reference, exactness: float = 1e-4) -> Verdict:
+    """Welch's test in each pixel, with Satterthwaite's degrees of freedom (Biometrics Bulletin 2, 110 (1946)).
+
+    `exactness` is the radiance to which the two skies agree.
+    """
     difference = ours.mean[..., channel] - theirs.mean
-    floor = np.where(ours.on_stone, EVENTS / theirs.samples, 1e-4) ** 2
+    floor = np.where(ours.on_stone, EVENTS / theirs.samples, 0) ** 2 + exactness**2
     # Where few samples out of many are different their spread is a guess, and a small one just when too few were: the
     # larger of it and the expected one counts (a score test).
     their_variance = np.maximum(theirs.variance, ours.path_variance[..., channel] / theirs.samples)

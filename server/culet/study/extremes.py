@@ -1,0 +1,298 @@
+"""`python -m culet.study.extremes`: scenes at the ends of what is allowed, and how many of their pixels are wrong.
+
+Almost all of them are under a uniform sky of radiance 1, where a clear stone cannot be seen: a pixel and what its
+chains cut are 1 together, or it is a speck, black or white. Where something is dark (an absorbing stone, a floor) a
+pixel is a speck if it is brighter than anything can be there, and negative if a band must be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.half_spaces import stone_from_half_spaces
+from culet.geometry.load import stone_of
+from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.polygons import edges_of_facets
+from culet.geometry.stone import Stone
+from culet.rendering.chains import GROUPS, chain_table, is_spectral
+from culet.rendering.features import Geometry, features_of
+from culet.rendering.renderer import Renderer
+from culet.scene.model import Scene, StoneSettings
+
+Array = NDArray[np.float64]
+Settings = Mapping[str, Any]
+
+MODES: Mapping[str, Settings] = {
+    "scalar": {},
+    "spectral": {"bands": 8},
+    "polarised": {"polarised": True},
+    "triangles": {},
+}
+"""Name -> optics. The last one takes the stone through the tree that stones need which are not convex."""
+ROUNDING = 2e-6
+"""Of radiance 1 in single precision: sums of up to a thousand parts of a chain, each rounded to 6e-8."""
+LOST = 10
+"""Cut-offs. A chain in a convex stone ends once, with less weight than the cut-off (up to 2.6 of them, summed over the
+weights of wavelengths or counted for polarisation). A pixel that cuts more has lost a ray between two facets."""
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """One case: a stone, a scene without it, and where to look from."""
+
+    name: str
+    stone: Callable[[], Stone]
+    settings: Settings = field(default_factory=dict)
+    """Of the stone."""
+    scene: Settings = field(default_factory=dict)
+    """What else is not as usual."""
+    cameras: Callable[[Stone], Iterator[Settings]] | None = None
+    """Several small pictures instead of one from the side."""
+    brightest: float | None = None
+    """Where a pixel may be darker than 1: the most that it may be."""
+
+
+@dataclass(frozen=True)
+class Count:
+    """Pixels of one case in one mode."""
+
+    pixels: int = 0
+    not_finite: int = 0
+    negative: int = 0
+    specks: int = 0
+    farthest: float = 0
+    """Radiance by which a pixel goes beyond its bounds, at most; below ROUNDING it is no speck."""
+
+    def plus(self, other: Count) -> Count:
+        """Both together."""
+        return Count(
+            self.pixels + other.pixels,
+            self.not_finite + other.not_finite,
+            self.negative + other.negative,
+            self.specks + other.specks,
+            max(self.farthest, other.farthest),
+        )
+
+    @property
+    def wrong(self) -> int:
+        """All that should not be there."""
+        return self.not_finite + self.negative + self.specks
+
+
+def brilliant() -> Stone:
+    """The default cut."""
+    return stone_of(StoneSettings(), {})
+
+
+def scaled(factor: float) -> Callable[[], Stone]:
+    """The brilliant from a file in other units."""
+
+    def read() -> Stone:
+        stone = brilliant()
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (factor * stone.vertices).tolist()]
+        lines += [f"f {a} {b} {c}" for a, b, c in (stone.triangles + 1).tolist()]
+        return stone_from_mesh("\n".join(lines).encode(), "obj", name=f"brilliant x {factor:g}")
+
+    return read
+
+
+def box(x: float, y: float, z: float) -> Callable[[], Stone]:
+    """By its sides."""
+    planes = [[*(sign * np.eye(3)[axis]), side] for axis, side in enumerate((x, y, z)) for sign in (1, -1)]
+    return lambda: stone_from_half_spaces("box", np.array(planes))
+
+
+def tetrahedron() -> Stone:
+    """Four facets: the fewest."""
+    return stone_from_half_spaces(
+        "tetrahedron", np.array([(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1), (-1, -1, 1, 1.0)])
+    )
+
+
+def ball(facets: int) -> Callable[[], Stone]:
+    """Tangent planes of a sphere, scattered evenly at random."""
+    normals = np.random.default_rng(1).normal(size=(facets, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    return lambda: stone_from_half_spaces("ball", np.column_stack([normals, np.ones(facets)]))
+
+
+def at_vertices(stone: Stone) -> Iterator[Settings]:
+    """From outside and from the centre at every vertex; the middle of the picture meets it."""
+    for vertex in stone.vertices:
+        yield _camera(3 * vertex / np.linalg.norm(vertex) + 0.3, vertex)
+        yield _camera(np.zeros(3), vertex)
+
+
+def along_edges(stone: Stone) -> Iterator[Settings]:
+    """At the middle of every edge, from outside and from the centre, and along it."""
+    for a, b in stone.vertices[edges_of_facets(stone)[:, :2]]:
+        middle = (a + b) / 2
+        yield _camera(3 * middle / np.linalg.norm(middle), middle)
+        yield _camera(np.zeros(3), middle)
+        yield _camera(a + 2 * (a - b) / np.linalg.norm(a - b), b)
+
+
+def on_facets(stone: Stone) -> Iterator[Settings]:
+    """The eye on each facet's plane, above the stone's centre: looking out, in, and along."""
+    for *normal, offset in stone.planes:
+        eye, out = offset * np.array(normal), np.array(normal)
+        across = np.cross(out, np.eye(3)[np.abs(out).argmin()])
+        for direction in (out, -out, across):
+            yield _camera(eye, eye + direction, fov_degrees=100)
+
+
+def grazing(stone: Stone) -> Iterator[Settings]:
+    """At 89.9999 degrees from each facet's normal, on the point abreast of the stone's centre."""
+    for *normal, offset in stone.planes:
+        out = np.array(normal)
+        across = np.cross(out, np.eye(3)[np.abs(out).argmin()])
+        across /= np.linalg.norm(across)
+        angle = np.radians(89.9999)
+        point = offset * out
+        yield _camera(point + 3 * (np.cos(angle) * out + np.sin(angle) * across), point)
+
+
+def inside(_: Stone) -> Iterator[Settings]:
+    """Nearly all directions from the centre and from beside it."""
+    for eye in ((0, 0, 0), (0.2, 0.05, -0.1)):
+        for direction in (*np.eye(3), *-np.eye(3)):
+            yield _camera(np.array(eye), np.array(eye) + direction, fov_degrees=110)
+
+
+def far(_: Stone) -> Iterator[Settings]:
+    """From a million radii: the stone fills a tenth of the narrowest picture."""
+    for direction in ((0.3, 0.8, 0.5196), (0, 1, 0), (1, 0, 0)):
+        yield _camera(1e6 * np.array(direction), np.zeros(3))
+
+
+def _camera(position: Array, target: Array, fov_degrees: float = 1e-3) -> Settings:
+    forward = target - position
+    up = np.eye(3)[np.abs(forward).argmin()]
+    return {
+        "position": position.tolist(),
+        "target": target.tolist(),
+        "up": up.tolist(),
+        "fov_degrees": fov_degrees,
+    }
+
+
+def _index(n: float) -> Settings:
+    return {"material": {"ior": [n, n, n]}}
+
+
+EXTREMES = (
+    Extreme("index 1", brilliant, _index(1)),
+    Extreme("index 1 + 1e-6", brilliant, _index(1 + 1e-6)),
+    Extreme("index 4", brilliant, _index(4)),
+    Extreme("index 10", brilliant, _index(10)),
+    Extreme("absorption 0", brilliant),
+    Extreme("absorption 1e6 per R", brilliant, {"absorption": [1e6] * 3}, brightest=1),
+    Extreme("1e-6 in size", scaled(1e-6)),
+    Extreme("1e6 in size", scaled(1e6)),
+    Extreme("needle, 1000 : 1", box(1, 1e-3, 1e-3)),
+    Extreme("wafer, 1000 : 1", box(1, 1e-3, 1)),
+    Extreme("4 facets", tetrahedron),
+    Extreme("5000 facets", ball(5000)),
+    Extreme("rays at every vertex", brilliant, cameras=at_vertices),
+    Extreme("rays at and along every edge", brilliant, cameras=along_edges),
+    Extreme("camera inside", brilliant, cameras=inside),
+    Extreme("camera on every facet", brilliant, cameras=on_facets),
+    Extreme("camera at 1e6 radii", brilliant, cameras=far),
+    Extreme("grazing every facet, 89.9999 degrees", brilliant, cameras=grazing),
+    Extreme(
+        "light inside the stone",
+        brilliant,
+        scene={"floor": {"kind": "matte"}, "lights": [{"position": [0, 0.01, 0], "colour": [1, 1, 1]}]},
+        brightest=0.9 * 1.2,  # the lighter albedo in all the light that there is, which is more than the sky
+    ),
+    Extreme("light at the stone's vertex", brilliant,
+            scene={"floor": {"kind": "matte"}, "lights": [{"position": brilliant().vertices[0].tolist(),
+                                                           "colour": [1, 1, 1]}]},
+            brightest=0.9 * 1.2),
+)  # fmt: skip
+
+_FROM_THE_SIDE: Settings = {"position": [0.7, 1.6, 2.4], "target": [0, 0, 0], "fov_degrees": 40}
+
+
+def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3) -> Count:
+    """Render a case in a mode of MODES, and judge every pixel."""
+    stone = extreme.stone()
+    cameras = extreme.cameras(stone) if extreme.cameras else iter([_FROM_THE_SIDE])
+    size = (5, 5) if extreme.cameras else (96, 54)
+    total = Count()
+    for camera in cameras:
+        scene = Scene.read(
+            {
+                "floor": {"kind": "none"},
+                "lights": [],
+                "environment": {"kind": "constant"},
+                **extreme.scene,
+                "camera": camera,
+                "stones": [{"position": [0, 0, 0], "orientation": [1, 0, 0, 0], **extreme.settings}],
+                "optics": {"cutoff": cutoff, "max_bounces": 65536, **MODES[mode]},
+            }
+        )
+        features = features_of(scene, stone)
+        if mode == "triangles":
+            features = replace(features, geometry=Geometry.MESH)
+        picture = renderer.picture(scene, stone, *size, features=features)
+        picture.refine()
+        pixels, cut = picture.linear().astype(np.float64), picture.cut_map().astype(np.float64)
+        total = total.plus(_judged(scene, extreme.brightest, pixels, cut))
+    return total
+
+
+def _judged(scene: Scene, brightest: float | None, pixels: Array, cut: Array) -> Count:
+    """(height, width, 3) radiance and (height, width) cut weight, the mean over the channels.
+
+    A pixel of sampled wavelengths is a sum of radiances by weights of both signs, those of each channel 1 together. So
+    what is cut may make it brighter, and light from 0 to L gives it from -L times the negative weights to L times the
+    positive ones.
+    """
+    finite = np.isfinite(pixels).all(axis=-1) & np.isfinite(cut)
+    lowest, highest = 0.0, brightest or 1.0
+    if is_spectral(scene):
+        chains = chain_table(scene, 0, np.float64, common=False)
+        by_group = [chains["share"][chains["group"] == group] for group in range(GROUPS)]
+        lowest = highest * min(np.minimum(share, 0).sum(axis=0).min() for share in by_group)
+        highest = highest * max(np.maximum(share, 0).sum(axis=0).max() for share in by_group)
+    if brightest is not None:
+        beyond = np.maximum(pixels - highest, lowest - pixels).max(axis=-1)
+    elif is_spectral(scene):
+        beyond = (abs(pixels - 1) - 3 * cut[..., None]).max(axis=-1)
+    else:
+        # Of polarised light, what is counted is the most that it could have become: up to twice what is missing.
+        missing, least = 1 - pixels.mean(axis=-1), cut / 2 if scene.optics.polarised else cut
+        beyond = np.max([missing - cut, least - missing, (pixels - 1).max(axis=-1)], axis=0)
+    if brightest is None:
+        lost = cut > LOST * scene.optics.cutoff
+        beyond = np.where(lost, np.maximum(beyond, cut), beyond)
+    beyond = np.where(finite, np.maximum(beyond, 0), 0)
+    return Count(
+        pixels=finite.size,
+        not_finite=int((~finite).sum()),
+        negative=int(((pixels < (lowest - ROUNDING if is_spectral(scene) else 0)).any(axis=-1) | (cut < 0)).sum()),
+        specks=int((beyond > ROUNDING).sum()),
+        farthest=float(beyond.max()),
+    )
+
+
+def table(renderer: Renderer) -> Iterator[str]:
+    """Lines of Markdown: for each case and mode the pixels that are not finite, negative, and specks."""
+    yield "| case | pixels | " + " | ".join(MODES) + " | farthest |"
+    yield "|---|" + "---|" * (len(MODES) + 2)
+    for extreme in EXTREMES:
+        counts = [count(renderer, extreme, mode) for mode in MODES]
+        cells = [f"{c.not_finite} / {c.negative} / {c.specks}" for c in counts]
+        farthest = max(c.farthest for c in counts)
+        yield f"| {extreme.name} | {counts[0].pixels} | " + " | ".join(cells) + f" | {farthest:.1e} |"
+
+
+if __name__ == "__main__":
+    for line in table(Renderer()):
+        print(line, flush=True)
