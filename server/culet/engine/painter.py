@@ -131,11 +131,12 @@ class Painter:
         settled = live.reduced_until is not None and live.at_rest
         if live.current and live.picture is not None and not settled:  # the simulation has not moved on
             return
-        governed = shown.moving or (not settled and live.begun_at - live.changed_at < SETTLE_SECONDS)
+        changed = shown is not live.painted  # if not, only the size did
+        governed = shown.moving or (changed and live.begun_at - live.changed_at < SETTLE_SECONDS)
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
         size = live.governor.size(*wanted) if governed else wanted
         scene = live.governor.simplified(shown.scene) if governed else shown.scene
-        if shown is not live.painted:
+        if changed:
             live.changed_at = live.begun_at
         try:
             picture = await self._in_render_thread(self._first_sample, scene, shown, size)
