@@ -21,7 +21,7 @@ def test_glass_reflects_four_hundredths_at_normal_incidence() -> None:
     ],
 )
 def test_glass_reflects_as_hyperphysics_says(degrees: float, n_i: float, n_t: float, r_p: float, r_s: float) -> None:
-    """Amplitudes of http://hyperphysics.phy-astr.gsu.edu/hbase/phyopt/freseq.html, as in Mitsuba 3's test_fresnel.py."""
+    """Amplitudes of http://hyperphysics.phy-astr.gsu.edu/hbase/phyopt/freseq.html, as in Mitsuba's test_fresnel.py."""
     assert fresnel(math.sin(math.radians(degrees)), n_i, n_t) == pytest.approx((r_p**2 + r_s**2) / 2, abs=1e-15)
 
 
