@@ -14,9 +14,9 @@ NAMES = tuple(sorted(entry.name for entry in files(__name__).iterdir() if entry.
 
 @cache
 def source(name: str) -> str:
-    """The text of a file with what it includes put in place, each file once; `#line` keeps the compiler's messages true.
+    """The text of a file with what it includes put in place, each once; `#line` keeps the compiler's messages true.
 
-    Joining here, not by the compiler, makes the text all that a program depends on: no cache can miss a changed include.
+    Joining here, not by the compiler, makes the text all that a program depends on: no cache misses a changed include.
     """
     return _join(name, set())
 

@@ -15,6 +15,7 @@ typedef struct {
   real direction[3], direction_column[3], direction_row[3]; // the same for the ray's direction, not normalised
   real reach;                                               // from the eye to the foot, in lengths of that direction
   real cutoff;                                              // weight below which a chain ends
+  real panorama_scale;                                      // factor on the radiance of the sky's image
   real panorama_turn;                                       // of the sky's image about the vertical, in whole turns
   real centre[3];                                  // the stone's centre in the world, from where checkers are counted
   real absorption[3];                              // per R, by channel

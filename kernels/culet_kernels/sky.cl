@@ -54,7 +54,7 @@ static inline radianceL panorama(world_t world, vec3L direction, channels_t chan
     }
   }
   radianceL seen = black();
-  for (int k = 0; k < channels.count; k++) seen.channel[k] = load_lanes(radiance[k]);
+  for (int k = 0; k < channels.count; k++) seen.channel[k] = world.scene->panorama_scale * load_lanes(radiance[k]);
   return seen;
 }
 

@@ -102,7 +102,6 @@ static inline realL leave(world_t world, pools_t *pools, task_t task, packetL *p
 
 // A number from 0 to 1 for each lane, by an integer hash (C. Wellons, Prospecting for Hash Functions, 2018: lowbias32).
 static inline realL chance(task_t task, const packetL *packet) {
-  uint state[LANES];
   real number[LANES];
   int tag[LANES];
   real weight[LANES];

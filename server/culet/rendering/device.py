@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import os
+from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import pyopencl as cl
+from numpy.typing import NDArray
 
 from culet.errors import DeviceError
 
 Real = type[np.float32] | type[np.float64]
 """The precision of a program."""
+
+MOST_PANORAMAS = 4
+"""That stay on the device."""
 
 _PROBE = """
 __kernel void probe(__global float4 *a) {
@@ -33,7 +38,19 @@ class Device:
     lanes: int
     """Of single precision; double precision has half as many."""
     units: int
-    lock: Any = field(repr=False)
+    panoramas: OrderedDict[int, tuple[NDArray[np.float32], Any]] = field(default_factory=OrderedDict, repr=False)
+    """Skies that are on the device, the latest used last: by the array's identity, with the array, which keeps it."""
+
+    def panorama(self, pixels: NDArray[np.float32]) -> Any:  # noqa: ANN401 - pyopencl has no types
+        """The buffer of a sky, which is uploaded once and not for every picture."""
+        if id(pixels) not in self.panoramas:
+            flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
+            buffer = cl.Buffer(self.context, flags, hostbuf=np.ascontiguousarray(pixels, np.float32))
+            self.panoramas[id(pixels)] = pixels, buffer
+        self.panoramas.move_to_end(id(pixels))
+        while len(self.panoramas) > MOST_PANORAMAS:
+            self.panoramas.popitem(last=False)
+        return self.panoramas[id(pixels)][1]
 
     def lanes_for(self, real: Real) -> int:
         """Lanes of a packet in that precision."""
@@ -46,7 +63,6 @@ def open_device() -> Device:
     CULET_DEVICE, a part of a device's or platform's name, narrows the choice. Listing platforms is not enough: a driver
     can be installed and yet fail to build anything. DeviceError says what was tried.
     """
-    import threading
 
     wanted = os.environ.get("CULET_DEVICE", "").lower()
     tried: list[str] = []
@@ -73,7 +89,7 @@ def open_device() -> Device:
         lanes = max(lane for lane in (1, 4, 8, 16) if lane <= max(1, width))
         return Device(
             context, queue, candidate.name.strip(), candidate.platform.version.strip(), lanes,
-            candidate.max_compute_units, threading.Lock(),
+            candidate.max_compute_units,
         )  # fmt: skip
     found = "; ".join(tried) or "none matches" + (f" CULET_DEVICE={wanted!r}" if wanted else "")
     raise DeviceError(f"no OpenCL device works ({found}); on Debian: apt-get install pocl-opencl-icd")

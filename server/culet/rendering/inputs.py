@@ -57,7 +57,8 @@ class Inputs:
                 panorama = panorama_of(scene.environment, {})
             self._struct["panorama_height"], self._struct["panorama_width"] = panorama.shape[:2]
             self._struct["panorama_turn"] = scene.environment.turn_degrees / 360
-            self._panorama = self._upload(panorama * np.float32(scene.environment.scale))
+            self._struct["panorama_scale"] = scene.environment.scale
+            self._panorama = device.panorama(panorama)
         self._fixed = [self._upload(facets.astype(real)), self._upload(shadows.astype(real)), *mesh]
 
     def of_sample(self, sample: int) -> list[Any]:

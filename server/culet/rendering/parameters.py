@@ -33,7 +33,8 @@ def layout(real: Real) -> np.dtype[np.void]:
         [
             ("foot", d, 3), ("foot_column", d, 3), ("foot_row", d, 3),
             ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
-            ("reach", r), ("cutoff", r), ("panorama_turn", r), ("centre", r, 3), ("absorption", r, 3),
+            ("reach", r), ("cutoff", r), ("panorama_scale", r), ("panorama_turn", r),
+            ("centre", r, 3), ("absorption", r, 3),
             ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
             ("lamp_rim", r, MAX_LAMPS), ("lamp_slope", r, MAX_LAMPS),
             ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
