@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import math
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,6 +20,7 @@ from culet_client.errors import ClientError
 if TYPE_CHECKING:
     from culet.geometry.stone import Stone
     from culet.rendering.panoramas import Panorama
+    from culet.rendering.renderer import Picture
     from culet.scene import Scene
 
 app = typer.Typer(
@@ -98,7 +100,14 @@ def render(
             write(picture, out)
         except OSError as error:
             raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
-        typer.echo(f"{out}: {width} x {height}, {picture.samples} samples per pixel, cut {picture.cut():.2g}")
+        typer.echo(f"{out}: {width} x {height}, {picture.samples} samples per pixel, {_quality(picture)}")
+
+
+def _quality(picture: Picture) -> str:
+    """How right a picture is, in mean radiance."""
+    error = picture.error_estimate()
+    estimated = "" if math.isnan(error) else f", estimated error {error:.2g}"
+    return f"cut off at most {picture.truncation_bound():.2g}{estimated}"
 
 
 @app.command()

@@ -13,6 +13,7 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
+from culet.rendering.bounds import largest_radiance
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, features_of
@@ -118,6 +119,7 @@ class Picture:
         if is_spectral(scene):
             self._variant = replace(self._variant, tile=SPECTRAL_TILE)
         self._kernel = get(features, self._variant)
+        self._panorama = panorama
         self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
         self._tiles = math.ceil(width / self._variant.tile), math.ceil(height / self._variant.tile)
         self._halves = [self._allocate(width * height * 4 * np.dtype(real).itemsize) for _ in range(2)]
@@ -167,6 +169,10 @@ class Picture:
     def cut(self) -> float:
         """Mean of the whole picture's cut weight, of the last sample."""
         return float(self._tally()[:, 1].sum(dtype=float)) / (self.width * self.height)
+
+    def truncation_bound(self) -> float:
+        """The most that dropped weight can be missing from the picture's mean radiance, averaged over the channels."""
+        return self.cut() * largest_radiance(self.scene, self._panorama)
 
     def segments(self) -> int:
         """Interior segments of the last sample."""

@@ -1,0 +1,31 @@
+"""The largest radiance that a scene holds outside the stone: what a unit of dropped weight can be worth at most."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from culet.rendering.panoramas import Panorama, panorama_of
+from culet.rendering.parameters import sky_colours
+from culet.scene.model import ImageEnvironment, Scene, StudioEnvironment
+
+MATTE_ALBEDO = 0.9
+"""Of the checker's brighter cells, as in room.cl."""
+AMBIENT = 0.2
+"""Of the light that falls on a surface, as in room.cl."""
+
+
+def largest_radiance(scene: Scene, panorama: Panorama | None = None) -> float:
+    """Of any channel, in any direction, from any place. A mirror shows a fifth of a surface's light and four fifths of
+    something else, so it is no brighter than the brightest of both."""
+    environment = scene.environment
+    if isinstance(environment, ImageEnvironment):
+        pixels = panorama_of(environment, {}) if panorama is None else panorama
+        brightest = float(pixels.max()) * environment.scale
+    else:
+        brightest = float(np.max(sky_colours(environment)))
+    if isinstance(environment, StudioEnvironment):
+        brightest += float(np.sum([lamp.radiance for lamp in environment.lamps], axis=0).max(initial=0))
+    if scene.floor.kind != "none" or scene.walls.kind != "none":
+        light = AMBIENT + np.sum([light.colour for light in scene.lights], axis=0).max(initial=0)
+        brightest = max(brightest, MATTE_ALBEDO * float(light))
+    return brightest

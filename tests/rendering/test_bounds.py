@@ -1,0 +1,34 @@
+"""What was cut is worth at most the largest radiance outside, and no place shows more than that."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from culet.rendering.bounds import largest_radiance
+from culet.rendering.renderer import Renderer
+from culet.scene import PRESETS, Scene
+from rendering.views import radiance, take
+
+SCENES: dict[str, dict[str, Any]] = {
+    "default": {},
+    "matte room": {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}},
+    "light box": {"environment": {"kind": "image", "scale": 2}, "floor": {"kind": "none"}},
+}
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
+def test_what_a_coarse_cutoff_loses_is_within_the_bound(exact: Renderer, scene: dict[str, Any]) -> None:
+    """Far within it, since few chains end where it is brightest."""
+    coarse = take(exact, Scene.read({**scene, "optics": {"cutoff": 0.1}}))
+    fine = take(exact, Scene.read({**scene, "optics": {"cutoff": 1e-5, "max_bounces": 4096}}))
+    missing = float(np.mean(radiance(fine) - radiance(coarse)))
+    assert 0 < missing <= coarse.truncation_bound()
+
+
+@pytest.mark.parametrize("name", [name for name, (_, scene) in PRESETS.items() if scene.optics.estimator == "chain"])
+def test_nothing_is_brighter_than_the_largest_radiance(exact: Renderer, name: str) -> None:
+    scene = PRESETS[name][1]
+    assert radiance(take(exact, scene)).max() <= largest_radiance(scene) * (1 + 1e-12)
