@@ -37,8 +37,11 @@ static inline int lowest_bit(uint bits) { return popcount((bits & -bits) - 1); }
 // of the ray's start. Neighbours overlap by this much, which closes the cracks between them.
 #if IS_DOUBLE
 #define OVERLAP 1e-12
+#define WIDE_OVERLAP 1e-9
 #else
 #define OVERLAP 2e-6f
+#define WIDE_OVERLAP                                                                                                   \
+  1e-4f // for a ray inside that has found nothing, which no ray inside can: it is at an edge or a vertex
 #endif
 
 typedef struct {
@@ -51,6 +54,7 @@ typedef struct {
 typedef struct {
   real origin[3], direction[3];
   real start;   // hits before this do not count,
+  real overlap;
   real limit;   // nor do those behind this; becomes the nearest hit
   int triangle; // leaf x TREE_WIDTH + place, -1 for none
 } probe_t;
@@ -72,8 +76,8 @@ static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) 
   const realW qx = ty * az - tz * ay, qy = tz * ax - tx * az, qz = tx * ay - ty * ax;
   const realW v = (dx * qx + dy * qy + dz * qz) * inverse;
   const realW t = (bx * qx + by * qy + bz * qz) * inverse;
-  const maskW hits = faces & (u >= -OVERLAP) & (v >= -OVERLAP) & (u + v <= 1 + OVERLAP) &
-                     (t >= probe->start - OVERLAP) & (t < probe->limit);
+  const maskW hits = faces & (u >= -probe->overlap) & (v >= -probe->overlap) & (u + v <= 1 + probe->overlap) &
+                     (t >= probe->start - probe->overlap) & (t < probe->limit);
   uint hit = mask_bits(hits);
   if (hit == 0) return;
   real distance[TREE_WIDTH];
@@ -98,13 +102,15 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
   nearness[0] = probe->start;
   // Along each axis a box is entered at one of its two sides and left at the other, by the direction's sign. Boxes are a
   // little larger than what they hold, by more than these operations round (rendering/tree.py).
-  real inverse[3], offset[3];
+  real inverse[3], enter[3], leave[3];
   int first_side[3];
   // Of the normals in a box the component that faces the ray most, or, inside, is turned away most.
   int most_facing[3];
   for (int k = 0; k < 3; k++) {
     inverse[k] = 1 / away_from_zero(probe->direction[k]);
-    offset[k] = -probe->origin[k] * inverse[k];
+    const real offset = -probe->origin[k] * inverse[k], widening = (probe->overlap - OVERLAP) * fabs(inverse[k]);
+    enter[k] = offset - widening;
+    leave[k] = offset + widening;
     first_side[k] = inverse[k] < 0 ? 3 + k : k;
     most_facing[k] = side * probe->direction[k] < 0 ? 9 + k : 6 + k;
   }
@@ -117,11 +123,11 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
       continue;
     }
     __global const real *rows = tree.boxes + node * 12 * TREE_WIDTH;
-    realW near = (realW)(probe->start - OVERLAP), far = (realW)(probe->limit), facing = (realW)(0);
+    realW near = (realW)(probe->start - probe->overlap), far = (realW)(probe->limit), facing = (realW)(0);
     for (int k = 0; k < 3; k++) {
       facing = fma(load_wide(rows, most_facing[k]), (realW)(-side * probe->direction[k]), facing);
-      near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(inverse[k]), (realW)(offset[k])));
-      far = fmin(far, fma(load_wide(rows, 3 + 2 * k - first_side[k]), (realW)(inverse[k]), (realW)(offset[k])));
+      near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(inverse[k]), (realW)(enter[k])));
+      far = fmin(far, fma(load_wide(rows, 3 + 2 * k - first_side[k]), (realW)(inverse[k]), (realW)(leave[k])));
     }
     uint entered = mask_bits((near <= far) & (facing > 0));
     if (entered == 0) continue;
@@ -179,7 +185,12 @@ static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree
     probe.start = quantity[6][lane];
     probe.limit = t_max;
     probe.triangle = -1;
+    probe.overlap = OVERLAP;
     probe_tree(tree, side, &probe);
+    if (probe.triangle < 0 && side < 0) {
+      probe.overlap = WIDE_OVERLAP;
+      probe_tree(tree, side, &probe);
+    }
     if (probe.triangle < 0) continue;
     t[lane] = fmax(probe.limit, probe.start);
     __global const real *rows =
