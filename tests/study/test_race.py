@@ -52,6 +52,7 @@ def test_a_package_that_is_not_there_is_missing() -> None:
 
 
 @pytest.mark.validation
+@pytest.mark.skipif(mitsuba_missing(), reason="Mitsuba 3 is not installed: pip install -e '.[validation]'")
 def test_mitsuba_sees_the_same_stone(device: Device) -> None:
     """The race is fair only if both come to the same picture; 256 samples of noise of 0.25 are an RMSE of 0.016."""
     frame = race_frame(64, 36)
