@@ -18,6 +18,7 @@ from culet.simulation.snapshot import read_snapshot, write_snapshot
 from culet.simulation.state import Quaternion, RigidState, Touch, Triple
 from culet.simulation.surfaces import FLOOR, Surface
 
+REST: Triple = (0.0, 0.0, 0.0)
 MAX_SPEED = 1e4
 """R/s. Of any point of a stone after a push; the scene's own start may be faster."""
 
@@ -46,19 +47,10 @@ class Simulation:
             raise InputError("a quaternion of length 0 is no orientation", "start_orientation")
         self.settings = settings
         self.body = RigidBody.of(settings, stone, surfaces)
-        self._model = MODELS[settings.model]
         orientation = start_orientation
         if abs(sum(c * c for c in orientation) - 1) > 1e-12:  # normalising again would change the last bit
             orientation = normalised(orientation)
-        vx, vy, vz = settings.velocity
-        self._start = RigidState(
-            step=0,
-            time=0.0,
-            position=start_position,
-            orientation=orientation,
-            momentum=(vx * self.body.mass, vy * self.body.mass, vz * self.body.mass),
-            angular_momentum=self.body.angular_momentum(orientation, settings.spin),
-        )
+        self._start = _moving_at(settings, self.body, RigidState(0, 0.0, start_position, orientation, REST, REST))
         self.state = self.previous = self._start
 
     @property
@@ -73,7 +65,10 @@ class Simulation:
         if state.asleep:
             self.state = replace(state, step=state.step + 1, time=state.time + self.settings.time_step)
         else:
-            self.state = self._model.step(state, self.settings, self.body)
+            self.state = self._next(state)
+
+    def _next(self, state: RigidState) -> RigidState:
+        return MODELS[self.settings.model].step(state, self.settings, self.body)
 
     def push(self, impulse: Triple, point: Triple) -> None:
         """Strike the stone at a point of the world (R) with an impulse (mass R/s), and wake it.
@@ -90,15 +85,47 @@ class Simulation:
             raise InputError(f"a push makes the stone move at {MAX_SPEED:g} R/s at most; got {impulse}", "impulse")
         self.state = replace(state, momentum=pushed.momentum, angular_momentum=pushed.angular_momentum, asleep=False)
 
+    def adjust(self, settings: SimulationSettings) -> None:
+        """Go on from the current state with other settings; any of them may differ, the model too.
+
+        Pose and velocities stay as they are: with another mass or inertia the momenta follow. `velocity` and `spin` are
+        of the start: they hold from the next `reset` on, or now if no step was taken. A stone that sleeps wakes just if
+        its next step would move it. Deterministic: the same changes at the same steps give the same bits. Who counts
+        the steps (`FixedStepClock`) must hear of another `time_step` too. InputError, and nothing changed, if the
+        stone has no such inertia.
+        """
+        if settings == self.settings:
+            return
+        old, body = self.body, self.body
+        if (settings.mass, settings.inertia) != (self.settings.mass, self.settings.inertia):
+            body = RigidBody.of(settings, old.stone, old.surfaces)
+        unmoved = self.state == self._start
+        self.settings, self.body = settings, body
+        self._start = _moving_at(settings, body, self._start)
+        if unmoved:
+            self.state = self.previous = self._start
+            return
+        if body is not old:
+            velocity, omega = old.velocity(self.state), old.angular_velocity(self.state)
+            self.state = _with_velocities(self.state, body, velocity, omega)
+        self._wake_if_moved()
+
     def surround(self, surfaces: tuple[Surface, ...]) -> None:
-        """Put other surfaces about the stone; one that sleeps wakes, in case they moved it."""
+        """Put other surfaces about the stone; one that sleeps wakes just if its next step would move it."""
         if surfaces != self.body.surfaces:
             self.body = replace(self.body, surfaces=surfaces)
-            self.state = replace(self.state, asleep=False)
+            self._wake_if_moved()
+
+    def _wake_if_moved(self) -> None:
+        if not self.state.asleep:
+            return
+        awake = replace(self.state, asleep=False)
+        if self._next(awake) != replace(self.state, step=awake.step + 1, time=awake.time + self.settings.time_step):
+            self.state = awake
 
     def touch(self) -> Touch:
         """How the current state meets the surfaces."""
-        return self._model.touch(self.state, self.body)
+        return MODELS[self.settings.model].touch(self.state, self.body)
 
     def reset(self) -> None:
         """Back to the start, step 0."""
@@ -126,3 +153,14 @@ class Simulation:
     def restore(self, snapshot: Any) -> None:  # noqa: ANN401 - whatever JSON held
         """Go on from a snapshot to the same bits; InputError, and nothing changed, if it is none."""
         self.state, self.previous = read_snapshot(snapshot)
+
+
+def _moving_at(settings: SimulationSettings, body: RigidBody, start: RigidState) -> RigidState:
+    return _with_velocities(start, body, settings.velocity, settings.spin)
+
+
+def _with_velocities(state: RigidState, body: RigidBody, velocity: Triple, omega: Triple) -> RigidState:
+    x, y, z = velocity
+    m = body.mass
+    angular_momentum = body.angular_momentum(state.orientation, omega)
+    return replace(state, momentum=(x * m, y * m, z * m), angular_momentum=angular_momentum)

@@ -1,0 +1,116 @@
+"""Settings that change while the stone moves: it goes on from where it is, reproducibly, and wakes if that moves it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from culet.geometry.stone import Stone
+from culet.simulation.simulation import Simulation
+from culet.simulation.state import RigidState
+from simulation.solids import about, advance, lowest, nearest, rigid
+
+TILTED = about((0.6, 0.0, 0.8), 0.7)
+
+CHANGES: dict[str, dict[str, Any]] = {
+    "restitution": {"restitution": 0.1},
+    "friction": {"friction": 0.9},
+    "gravity": {"gravity": 3},
+    "rolling resistance": {"rolling_resistance": 0.05},
+    "integrator": {"integrator": "midpoint"},
+    "time step": {"time_step": 1 / 60},
+    "contact step": {"contact_step": 0.005},
+    "mass": {"mass": 7},
+    "inertia": {"inertia": "cone"},
+    "model": {"model": "classic"},
+}
+
+
+def adjusted(moving: Simulation, **changes: object) -> Simulation:
+    moving.adjust(moving.settings.model_validate(moving.settings.model_dump() | changes))
+    return moving
+
+
+def falling(box: Stone) -> Simulation:
+    return rigid(box, (0.0, 1.0, 0.0), TILTED, spin=(1, 2, 3), velocity=(1, 0, 0))
+
+
+def asleep(box: Stone, **settings: Any) -> Simulation:
+    moving = rigid(box, (0.0, lowest(box), 0.0), **settings)
+    moving.step()
+    assert moving.state.asleep
+    return moving
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_change_keeps_pose_and_velocities_and_alters_what_follows(box: Stone, name: str) -> None:
+    whole, other = falling(box), falling(box)
+    advance(whole, 0.3)
+    advance(other, 0.3)
+    before = other.body, other.state
+    adjusted(other, **CHANGES[name])
+    assert other.interpolated(1) == whole.interpolated(1)
+    assert other.body.velocity(other.state) == pytest.approx(before[0].velocity(before[1]), rel=1e-15)
+    omega = before[0].angular_velocity(before[1])
+    assert other.body.angular_velocity(other.state) == pytest.approx(omega, rel=1e-14)  # measured 4e-16
+    for moving in (whole, other):
+        while moving.state.time < 2:
+            moving.step()
+    same = name == "mass"  # all stones fall, bounce and slide alike
+    assert (other.state.position == pytest.approx(whole.state.position, abs=1e-9)) is same
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_the_same_changes_at_the_same_steps_give_the_same_bits(box: Stone, name: str) -> None:
+    def path() -> list[RigidState]:
+        moving = falling(box)
+        return advance(moving, 0.5) + advance(adjusted(moving, **CHANGES[name]), 1)
+
+    assert path() == path()
+
+
+def test_a_change_back_before_the_next_step_changes_nothing(box: Stone) -> None:
+    moving, whole = falling(box), falling(box)
+    for one in (moving, whole):
+        advance(one, 0.5)
+    adjusted(adjusted(moving, restitution=0, gravity=1), restitution=0.6, gravity=9.81)
+    assert advance(moving, 1) == advance(whole, 1)
+
+
+def test_velocity_and_spin_are_of_the_start(box: Stone) -> None:
+    moving = falling(box)
+    adjusted(moving, velocity=(0, 0, 2), spin=(4, 0, 0))
+    assert moving.body.velocity(moving.state) == (0, 0, 2), "no step was taken: it starts so"
+    path = advance(moving, 0.1)
+    adjusted(moving, velocity=(5, 0, 0))
+    assert moving.state is path[-1]
+    moving.reset()
+    assert moving.body.velocity(moving.state) == (5, 0, 0)
+    assert moving.body.angular_velocity(moving.state) == pytest.approx((4, 0, 0), abs=1e-15)
+
+
+@pytest.mark.parametrize("change", [{"gravity": 30}, {"friction": 0}, {"restitution": 1}, {"mass": 1e3}])
+def test_a_stone_on_its_facet_sleeps_on(box: Stone, change: dict[str, Any]) -> None:
+    moving = asleep(box)
+    before = moving.state
+    adjusted(moving, **change)
+    assert moving.state == before
+    moving.step()
+    assert moving.settled
+
+
+def test_a_stone_that_may_not_sleep_any_more_wakes(box: Stone) -> None:
+    assert not adjusted(asleep(box), sleeping=False).state.asleep
+
+
+def test_a_stone_that_the_classic_model_balanced_falls_over(box: Stone) -> None:
+    moving = rigid(box, (0.0, 0.0, 0.0), TILTED, model="classic", time_step=1 / 60)
+    while not moving.state.asleep:
+        moving.step()
+    pose = moving.interpolated(1)
+    assert adjusted(moving, model="rigid").interpolated(1) == pose
+    woken = advance(moving, 30)
+    assert not woken[0].asleep
+    assert woken[-1].asleep
+    assert -1e-5 < nearest(moving) < 1e-5
