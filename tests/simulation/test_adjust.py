@@ -36,8 +36,8 @@ def falling(box: Stone) -> Simulation:
     return rigid(box, (0.0, 1.0, 0.0), TILTED, spin=(1, 2, 3), velocity=(1, 0, 0))
 
 
-def asleep(box: Stone, **settings: Any) -> Simulation:
-    moving = rigid(box, (0.0, lowest(box), 0.0), **settings)
+def asleep(box: Stone) -> Simulation:
+    moving = rigid(box, (0.0, lowest(box), 0.0))
     moving.step()
     assert moving.state.asleep
     return moving
