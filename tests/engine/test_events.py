@@ -169,19 +169,37 @@ def test_a_patch_of_what_is_not_about_motion_leaves_the_stone_in_the_air() -> No
     assert subject.shown.scene.stones[0].material == "classic"
 
 
+def test_another_shape_is_put_at_the_start_at_rest() -> None:
+    subject = falling(session())
+    scene = after(subject, messages.PatchScene(patch={"stones": [{"cut": {"table_percent": 60}}]}))
+    assert subject.shown.scene.stones[0].position == scene.stones[0].position
+    assert not subject.falling
+
+
 @pytest.mark.parametrize(
     "patch",
     [
-        {"simulation": {"gravity": 1}},
         {"stones": [{"position": [0, 3, 0]}]},
-        {"stones": [{"cut": {"table_percent": 60}}]},
+        {"stones": [{"orientation": [1, 0, 0, 0]}]},
+        {"simulation": {"spin": [0, 9, 0]}},
+        {"simulation": {"velocity": [1, 0, 0]}},
     ],
 )
-def test_a_patch_of_the_motion_or_shape_puts_the_stone_at_its_start(patch: dict[str, Any]) -> None:
+@pytest.mark.parametrize("falls", [True, False])
+def test_another_start_is_shown_and_a_falling_stone_falls_from_there(patch: dict[str, Any], falls: bool) -> None:
     subject = falling(session())
+    if not falls:
+        after(subject, messages.ToggleFall())
     scene = after(subject, messages.PatchScene(patch=patch))
-    assert subject.shown.scene.stones[0].position == scene.stones[0].position
-    assert not subject.falling
+    assert subject.pose() == session(**scene.model_dump(mode="json")).pose()
+    assert subject.shown.simulation_time == 0
+    assert (subject.falling, subject.moving) == (falls, falls)
+    fresh = session(**scene.model_dump(mode="json"))
+    fresh.set_falling(falls)
+    for one in (subject, fresh):
+        one.advance(50)
+        one.advance(50.2)
+    assert subject.pose() == fresh.pose()
 
 
 def test_a_patched_camera_is_shown_and_becomes_home() -> None:

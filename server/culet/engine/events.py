@@ -139,10 +139,12 @@ def _patch(session: Session, patch: dict[str, Any], assets: Assets) -> None:
         at_home = document | {"camera": home.model_dump(mode="json")}
         home = Scene.read(merge_patch(at_home, patch)).camera
     sky = None if after.environment == before.environment else sky_for(after, session, assets)
-    if _start(after) == _start(before):
-        session.change(after, home=home, sky=sky)
-    else:
+    if _shape(after) != _shape(before):
         session.replace_stone(after, stone_for(after, session, assets), home=home, sky=sky)
+    elif _start(after) != _start(before):
+        session.start_anew(after, home=home, sky=sky)
+    else:
+        session.change(after, home=home, sky=sky)
 
 
 def _shape(scene: Scene) -> object:
@@ -151,5 +153,6 @@ def _shape(scene: Scene) -> object:
 
 
 def _start(scene: Scene) -> object:
-    """What the motion depends on: a patch of anything else leaves the stone where it is."""
-    return _shape(scene), [(stone.position, stone.orientation) for stone in scene.stones], scene.simulation
+    """Where and how the stone starts: a patch of anything else leaves it where it is."""
+    poses = [(stone.position, stone.orientation) for stone in scene.stones]
+    return poses, scene.simulation.velocity, scene.simulation.spin

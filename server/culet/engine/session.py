@@ -84,7 +84,7 @@ class Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
         session = cls(name, scene, stone, sky=sky, history=history)
         session._authored = scene.model_copy(update={"camera": snapshot.home})
-        session._clock.advance(snapshot.fraction * scene.simulation.time_step)
+        session._clock = _clock(scene, snapshot.fraction)
         session.falling = snapshot.falling and session._simulation is not None
         session.sequence = snapshot.next_sequence
         if session._simulation is not None and snapshot.simulation is not None:
@@ -115,14 +115,27 @@ class Session:
     def change(self, scene: Scene, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was.
 
-        `sky` belongs to a scene with another environment of its own.
+        The stone goes on from where it is, by the scene's settings. `sky` belongs to a scene with another environment
+        of its own. InputError, and nothing changed, if the stone cannot have these settings.
         """
+        was_moving = self.moving
+        if self._simulation is not None:
+            self._simulation.adjust(scene.simulation)
+            self._simulation.surround(surfaces_of(scene))
+        if scene.simulation.time_step != self._clock.time_step:
+            self._clock = _clock(scene, self._clock.fraction)
+        if not was_moving:
+            self._advanced_at = None  # the time that it rested is not made up for
         self._authored = scene.model_copy(update={"camera": home or self.home})
         self.sky = sky or self.sky
-        if self._simulation is not None:
-            self._simulation.surround(surfaces_of(scene))
         self._camera = scene.camera
         self._show()
+
+    def start_anew(self, scene: Scene, *, home: Camera | None = None, sky: Sky | None = None) -> None:
+        """As `change`, with the stone put to the scene's start, from where it falls at once if it was falling."""
+        self._place(scene, self._stone)
+        self._advanced_at = None
+        self.change(scene, home=home, sky=sky)
 
     def replace_stone(
         self, scene: Scene, stone: Stone | None, *, home: Camera | None = None, sky: Sky | None = None
@@ -244,11 +257,17 @@ class Session:
         return Shown(step, scene, self._stone, self.sky.panorama, time, self.moving)
 
     def _place(self, scene: Scene, stone: Stone | None) -> None:
-        self._stone = stone
-        self._clock = FixedStepClock(scene.simulation.time_step)
-        self._simulation: Simulation | None = None
+        simulation: Simulation | None = None
         if stone is not None and scene.stones:
             start = scene.stones[0]
-            self._simulation = Simulation(
-                scene.simulation, stone, start.position, start.orientation, surfaces_of(scene)
-            )
+            simulation = Simulation(scene.simulation, stone, start.position, start.orientation, surfaces_of(scene))
+        self._stone = stone
+        self._simulation = simulation
+        self._clock = _clock(scene)
+
+
+def _clock(scene: Scene, fraction: float = 0.0) -> FixedStepClock:
+    """A clock for the scene's steps that is so far between two of them."""
+    clock = FixedStepClock(scene.simulation.time_step)
+    clock.advance(min(fraction, LARGEST_FRACTION) * clock.time_step)
+    return clock
