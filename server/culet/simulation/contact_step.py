@@ -5,8 +5,13 @@ would carry a vertex into a surface, and only then the stone moves, with the new
 of it is taken back, and it does not move at all: no jitter, no creep. A vertex that is still above its surface may
 approach it by its gap in one step and no more.
 
+It moves by the mean of the velocities before and after, if the vertices that press kept to their surface before, too:
+sliding is then exact up to the step in which it ends, where the velocity after would fall short by v h / 2. A vertex
+that was arriving would get inside, so that the stone then moves by the velocity after.
+
 The step cannot create energy: with v the velocity after it and dv its change, the kinetic part changes by
-v . (f h + J p) - |dv|^2 / 2, the potential by -v . f h, and contact impulses do no work on v. What is left is the
+v . (f h + J p) - |dv|^2 / 2, the potential by -v . f h, and contact impulses do no work on v; with the mean velocity u
+it is u . (f h + J p) and -u . f h, and what presses and rubs does no positive work on u. What is left is the
 second order of the rotation, and being moved out of a surface by it; both are bounded by slowing the stone down where
 there is more energy than before.
 
@@ -23,7 +28,17 @@ from culet.simulation.contact import TOUCH, Contact, closing_speed, contacts_of
 from culet.simulation.free_rotation import Integrator, turned
 from culet.simulation.impact import limited
 from culet.simulation.impulses import solve
-from culet.simulation.motion import Motion, gaps, kinetic_energy, pushed_out, speed, sphere_centre_gap, stopped
+from culet.simulation.motion import (
+    Motion,
+    gaps,
+    kinetic_energy,
+    pushed_out,
+    speed,
+    sphere_centre_gap,
+    stopped,
+    velocities,
+)
+from culet.simulation.state import Triple
 
 MAX_ROUNDS = 6
 """Of adding vertices that arrive within the step, or of shortening it."""
@@ -58,7 +73,7 @@ def contact_step(
     for attempt in range(MAX_ROUNDS):
         points = contacts_of(motion, body, [(*vertex, gap) for vertex, gap in sorted(vertices.items())])
         moving = _kicked_and_stopped(motion, body, points, gravity, friction, length)
-        end = _moved(moving, body, length, integrator)
+        end = _moved(begun, moving, body, points, length, integrator)
         arrived = {vertex: gap for vertex, gap in _inside(end, body).items() if vertex not in vertices}
         if not arrived or attempt == MAX_ROUNDS - 1:
             break
@@ -75,6 +90,8 @@ def contact_step(
             return begun, 0.0
     highest = kinetic_energy(begun, body) + body.mass * gravity * begun.position[1]
     end = pushed_out(end, body)
+    if body.mass * gravity * end.position[1] > highest:  # about to stop: the mean went higher than its energy allows
+        end = pushed_out(_moved_by(moving, moving, body, length, integrator), body)
     return limited(end, body, highest - body.mass * gravity * end.position[1]), length
 
 
@@ -101,12 +118,31 @@ def _resisted(motion: Motion, body: RigidBody, moment: float) -> Motion:
     return motion._replace(angular_momentum=(lx - part * wx, ly, lz - part * wz))
 
 
-def _moved(motion: Motion, body: RigidBody, length: float, integrator: Integrator) -> Motion:
-    (x, y, z), (px, py, pz), mass = motion.position, motion.momentum, body.mass
-    return motion._replace(
+def _moved(
+    begun: Motion, moving: Motion, body: RigidBody, points: list[Contact], length: float, integrator: Integrator
+) -> Motion:
+    """Moved on by the mean of both velocities where that keeps to the surfaces, else by the one at the end."""
+    velocity, omega = velocities(begun, body)
+    pressed = [point for point in points if any(point.impulse)]
+    if any(abs(closing_speed(point, velocity, omega)) * length > TOUCH / 4 for point in pressed):
+        return _moved_by(moving, moving, body, length, integrator)
+    momentum = _mean(begun.momentum, moving.momentum)
+    angular_momentum = _mean(begun.angular_momentum, moving.angular_momentum)
+    mean = moving._replace(momentum=momentum, angular_momentum=angular_momentum)
+    return _moved_by(mean, moving, body, length, integrator)
+
+
+def _moved_by(mean: Motion, moving: Motion, body: RigidBody, length: float, integrator: Integrator) -> Motion:
+    (x, y, z), (px, py, pz), mass = mean.position, mean.momentum, body.mass
+    return moving._replace(
         position=(x + px / mass * length, y + py / mass * length, z + pz / mass * length),
-        orientation=turned(body, motion.orientation, motion.angular_momentum, length, integrator),
+        orientation=turned(body, mean.orientation, mean.angular_momentum, length, integrator),
     )
+
+
+def _mean(one: Triple, other: Triple) -> Triple:
+    (a, b, c), (x, y, z) = one, other
+    return ((a + x) / 2, (b + y) / 2, (c + z) / 2)
 
 
 def _inside(motion: Motion, body: RigidBody) -> dict[Vertex, float]:
@@ -122,8 +158,6 @@ def _inside(motion: Motion, body: RigidBody) -> dict[Vertex, float]:
 
 def _fast(motion: Motion, body: RigidBody, vertices: dict[Vertex, float], bounce_speed: float) -> list[Vertex]:
     """Those of the vertices that close in faster than `bounce_speed`."""
-    px, py, pz = motion.momentum
-    velocity = (px / body.mass, py / body.mass, pz / body.mass)
-    omega = body.angular_velocity_at(motion.orientation, motion.angular_momentum)
+    velocity, omega = velocities(motion, body)
     points = contacts_of(motion, body, [(*vertex, gap) for vertex, gap in vertices.items()])
     return [(point.surface, point.vertex) for point in points if closing_speed(point, velocity, omega) > bounce_speed]

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact, closing_speed
 from culet.simulation.impulses import solve
-from culet.simulation.motion import Motion, kinetic_energy
+from culet.simulation.motion import Motion, kinetic_energy, velocities
 
 ROUNDING = 1e-12
 """Of the kinetic energy: a gain below this is rounding."""
@@ -21,8 +21,7 @@ HALVINGS = 4
 
 def impact(motion: Motion, body: RigidBody, points: Sequence[Contact], restitution: float, friction: float) -> Motion:
     """The motion just after: never with more kinetic energy, never with a touching vertex on its way in."""
-    velocity = (motion.momentum[0] / body.mass, motion.momentum[1] / body.mass, motion.momentum[2] / body.mass)
-    omega = body.angular_velocity_at(motion.orientation, motion.angular_momentum)
+    velocity, omega = velocities(motion, body)
     closing = [max(closing_speed(point, velocity, omega), 0.0) for point in points]
     before = kinetic_energy(motion, body)
     e = restitution
@@ -42,7 +41,7 @@ def impact(motion: Motion, body: RigidBody, points: Sequence[Contact], restituti
 def limited(motion: Motion, body: RigidBody, energy: float) -> Motion:
     """The same motion, slower if its kinetic energy is above `energy` (mass R^2/s^2)."""
     kinetic = kinetic_energy(motion, body)
-    if kinetic <= energy:
+    if kinetic <= max(energy, 0.0):
         return motion
     factor = (max(energy, 0.0) / kinetic) ** 0.5
     (px, py, pz), (lx, ly, lz) = motion.momentum, motion.angular_momentum

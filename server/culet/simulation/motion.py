@@ -43,6 +43,13 @@ def sphere_centre_gap(motion: Motion, surface: Surface) -> float:
     return a * x + b * y + c * z - surface.offset
 
 
+def velocities(motion: Motion, body: RigidBody) -> tuple[Triple, Triple]:
+    """Of the centre of mass, R/s, and of the rotation, rad/s; world axes."""
+    px, py, pz = motion.momentum
+    velocity = (px / body.mass, py / body.mass, pz / body.mass)
+    return velocity, body.angular_velocity_at(motion.orientation, motion.angular_momentum)
+
+
 def kinetic_energy(motion: Motion, body: RigidBody) -> float:
     """mass R^2/s^2."""
     (px, py, pz), (lx, ly, lz) = motion.momentum, motion.angular_momentum
