@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from culet.scene import Scene
-from culet.scene.model import MaterialName
+from culet.scene.model import MaterialName, Simulation
 from culet_client import FrameSubscription
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
@@ -81,6 +81,13 @@ async def test_materials_and_cuts_can_be_named_in_a_scene(gateway: Gateway) -> N
         stone = {"cut": {"name": cuts[0]["name"], "table_percent": 57}, "material": material["name"]}
         answer = await gateway.http.post("/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9})
         assert answer.status_code == 200, (material["name"], answer.text)
+
+
+async def test_the_integrators_listed_are_those_of_the_scene(gateway: Gateway) -> None:
+    integrators = (await gateway.http.get("/api/integrators")).json()["integrators"]
+    named = Simulation.model_json_schema()["properties"]["integrator"]["enum"]
+    assert [integrator["name"] for integrator in integrators] == named
+    assert all(integrator["summary"].endswith(".") for integrator in integrators)
 
 
 async def test_a_material_says_where_its_numbers_come_from(gateway: Gateway) -> None:

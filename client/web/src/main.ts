@@ -208,4 +208,5 @@ banner.show("Connecting\u2026");
 attempt(async () => panel.addPresets(await rest.presets()));
 attempt(async () => panel.choices.addMaterials(await rest.materials()));
 attempt(async () => panel.choices.addSkies(await rest.skies()));
+attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
 attempt(start);

@@ -6,6 +6,7 @@ import "../node_modules/lil-gui/dist/lil-gui.css";
 import { type Action, actionNamed, labelWithKey } from "./actions";
 import { ChoicePanel } from "./choice-panel";
 import type { Target } from "./events";
+import { FallPanel } from "./fall-panel";
 import type { Preset } from "./rest";
 import { TARGET_NAMES, type ViewState } from "./view-state";
 
@@ -27,6 +28,7 @@ const NARROW = 640;
 
 export class Panel {
   readonly choices: ChoicePanel;
+  readonly fall: FallPanel;
   private readonly gui: GUI;
   private readonly files: GUI;
   private readonly actions: PanelActions;
@@ -39,6 +41,7 @@ export class Panel {
     this.gui = new GUI({ container, title: "culet", injectStyles: false, width: 250 });
     this.addMoves();
     const surroundings = this.addSwitches();
+    this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);
     this.choices = new ChoicePanel(surroundings, this.gui.addFolder("Optics").close(), actions.patch);
     this.files = this.gui.addFolder("Pictures and scenes");
     this.addButton(this.files, actionNamed("download"));
@@ -55,6 +58,7 @@ export class Panel {
     const { target, falling, mirror, light, walls } = state;
     Object.assign(this.shown, { target, falling, mirror, light, walls });
     for (const display of this.displays) display.updateDisplay();
+    this.fall.update(state);
     this.choices.update(state);
   }
 

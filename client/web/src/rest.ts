@@ -94,6 +94,10 @@ export function skies(): Promise<Catalogued[]> {
   return catalogue("skies");
 }
 
+export function integrators(): Promise<Catalogued[]> {
+  return catalogue("integrators");
+}
+
 async function upload(path: string, file: File): Promise<JsonObject> {
   const body = new FormData();
   body.append("file", file);

@@ -1,6 +1,7 @@
 /** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import { number, object, part, text } from "./json";
 
 export interface Choices {
   /** A material's name, or what to call one that the scene describes by its indices. */
@@ -79,23 +80,7 @@ function environmentOf(sky: string): JsonObject {
   return sky.startsWith(IMAGE) ? { kind: "image", image: sky.slice(IMAGE.length) } : { kind: sky };
 }
 
-function stoneOf(scene: JsonObject | null): JsonObject {
+export function stoneOf(scene: JsonObject | null): JsonObject {
   const stones = scene?.stones;
   return object(Array.isArray(stones) ? stones[0] : undefined);
-}
-
-function part(scene: JsonObject | null, name: string): JsonObject {
-  return object(scene?.[name]);
-}
-
-function object(value: unknown): JsonObject {
-  return typeof value === "object" && value !== null ? (value as JsonObject) : {};
-}
-
-function text(value: unknown, otherwise: string): string {
-  return typeof value === "string" ? value : otherwise;
-}
-
-function number(value: unknown, otherwise: number): number {
-  return typeof value === "number" ? value : otherwise;
 }

@@ -1,4 +1,4 @@
-"""What there is to choose from: presets, materials, cuts, skies."""
+"""What there is to choose from: presets, materials, cuts, skies, integrators."""
 
 from __future__ import annotations
 
@@ -20,6 +20,15 @@ SKIES = {
     "aset": "The Angular Spectrum Evaluation Tool's colours by elevation: green, red, blue.",
 }
 """Made by the renderer, which the gateway does not load; a test compares the names."""
+INTEGRATORS = {
+    "rkmk4": "Munthe-Kaas's Runge-Kutta on the rotations, of fourth order.",
+    "rk4": "The classical Runge-Kutta on quaternions, of fourth order.",
+    "midpoint": "The Lie midpoint rule, of second order.",
+    "splitting": "Exact turns about the three principal axes in a row, of second order.",
+    "symmetric_top": "As a body of revolution, exactly, and the rest split off: of second order.",
+    "euler": "The report's, of first order.",
+}
+"""A test compares the names with the scene's."""
 
 
 class Preset(Model):
@@ -86,6 +95,19 @@ class Skies(Model):
     skies: tuple[Sky, ...]
 
 
+class IntegratorDescription(Model):
+    """A way to follow a free rotation; `simulation.integrator` of a scene takes the name."""
+
+    name: str
+    summary: str
+
+
+class Integrators(Model):
+    """All integrators."""
+
+    integrators: tuple[IntegratorDescription, ...]
+
+
 @router.get("/api/presets")
 async def presets() -> Presets:
     """Scenes to begin with."""
@@ -126,3 +148,11 @@ async def cuts() -> Cuts:
 async def skies() -> Skies:
     """Panoramas of the studio; POST adds others."""
     return Skies(skies=tuple(Sky(name=name, summary=summary) for name, summary in SKIES.items()))
+
+
+@router.get("/api/integrators")
+async def integrators() -> Integrators:
+    """Ways to follow the rotation of a stone in flight (model `rigid`)."""
+    return Integrators(
+        integrators=tuple(IntegratorDescription(name=name, summary=summary) for name, summary in INTEGRATORS.items())
+    )

@@ -1,0 +1,61 @@
+import { describe, expect, it, test } from "vitest";
+import { type Fall, fallOf, fallPatch, NOTHING_FALLS, spinAxis } from "./fall";
+
+const STONE = { cut: "brilliant", material: "ruby", position: [1, 4, 2] };
+const SIMULATION = {
+  spin: [0, 3, 4],
+  gravity: 1.6,
+  restitution: 0.5,
+  friction: 0.1,
+  rolling_resistance: 0.03,
+  model: "classic",
+  integrator: "euler",
+  seed: 7,
+};
+const SCENE = { stones: [STONE], simulation: SIMULATION, floor: { kind: "matte" } };
+const FALL: Fall = {
+  height: 4,
+  spin: 5,
+  gravity: 1.6,
+  restitution: 0.5,
+  friction: 0.1,
+  rolling: 0.03,
+  model: "classic",
+  integrator: "euler",
+};
+
+describe("how a scene's stone falls", () => {
+  it("is what it says", () => {
+    expect(fallOf(SCENE)).toEqual(FALL);
+  });
+
+  it.each([null, {}, { stones: [{ position: "up" }], simulation: { spin: [1, 2], gravity: "low" } }])(
+    "survives %j",
+    (scene) => {
+      expect(fallOf(scene)).toEqual(NOTHING_FALLS);
+      expect(spinAxis(scene)).toBeNull();
+    },
+  );
+});
+
+describe("a change", () => {
+  test.each(Object.entries(FALL) as [keyof Fall, never][])("of %s patches nothing else", (name, value) => {
+    const before = { stones: [{ ...STONE, position: [1, 0, 2] }], simulation: { spin: [0, 0.3, 0.4] } };
+    const patch = fallPatch(before, name, value);
+    expect(fallOf(patch)[name]).toEqual(value);
+    expect(Object.keys(patch)).toEqual([name === "height" ? "stones" : "simulation"]);
+    expect({ ...fallOf(patch), [name]: NOTHING_FALLS[name] }).toEqual(NOTHING_FALLS);
+  });
+
+  it("of the height leaves the rest of the stone", () => {
+    expect(fallPatch(SCENE, "height", 2)).toEqual({ stones: [{ ...STONE, position: [1, 2, 2] }] });
+  });
+
+  it("of the spin keeps its axis, or takes the one that it had", () => {
+    expect(fallPatch(SCENE, "spin", 10)).toEqual({ simulation: { spin: [0, 6, 8] } });
+    const still = { simulation: { spin: [0, 0, 0] } };
+    expect(spinAxis(still)).toBeNull();
+    expect(fallPatch(still, "spin", 2)).toEqual({ simulation: { spin: [0, 2, 0] } });
+    expect(fallPatch(still, "spin", 2, [1, 0, 0])).toEqual({ simulation: { spin: [2, 0, 0] } });
+  });
+});

@@ -1,0 +1,19 @@
+/** Parts of JSON from outside, of which nothing is known: what has another form counts as absent. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+
+export function part(json: JsonObject | null, name: string): JsonObject {
+  return object(json?.[name]);
+}
+
+export function object(value: unknown): JsonObject {
+  return typeof value === "object" && value !== null ? (value as JsonObject) : {};
+}
+
+export function text(value: unknown, otherwise: string): string {
+  return typeof value === "string" ? value : otherwise;
+}
+
+export function number(value: unknown, otherwise: number): number {
+  return typeof value === "number" ? value : otherwise;
+}

@@ -1,0 +1,114 @@
+"""The sliders of the fall: they act on the stone that falls, and every page on the session follows."""
+
+from __future__ import annotations
+
+import pytest
+
+from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.server import Server
+from e2e.view import View
+
+
+@pytest.fixture
+def falling(view_of: ViewOf, server: Server) -> View:
+    """A page with the folder open, on a stone that bounces for long."""
+    scene = {"floor": {"kind": "matte"}, "simulation": {"restitution": 0.97}}
+    session = server.http.post("/api/sessions", json={"scene": scene}).json()["id"]
+    view = with_fall(view_of, session)
+    view.page.keyboard.press("p")
+    view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.1")
+    return view
+
+
+def with_fall(view_of: ViewOf, session: str) -> View:
+    view = view_of(viewport=WITH_PANEL).open(f"?session={session}")
+    view.page.get_by_role("button", name="Fall").click()
+    return view
+
+
+def drag(view: View, label: str, *to: float) -> None:
+    """Take a slider to parts of its length, and let it go at the last."""
+    slider = view.page.locator(".lil-controller", has_text=label).locator(".lil-slider")
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    assert box is not None
+    mouse = view.page.mouse
+    mouse.move(box["x"] + 1, box["y"] + 5)
+    mouse.down()
+    for part in to:
+        mouse.move(box["x"] + part * box["width"], box["y"] + 5)
+        view.settle_messages()
+    mouse.up()
+
+
+def shown(view: View, label: str) -> float:
+    return float(view.page.get_by_label(label).input_value())
+
+
+def test_a_slider_acts_on_the_falling_stone_and_on_every_page(view_of: ViewOf, falling: View, server: Server) -> None:
+    guest = with_fall(view_of, falling.session)
+    falling.record()
+    drag(falling, "Gravity", 0.3, 0.5, 0.1)
+    drag(falling, "Friction", 0.25)
+    falling.until("() => culet.state.scene.simulation.friction !== 0.3")
+    time = falling.number("framesShown")
+    falling.until("before => culet.framesShown > before + 3", time)
+    simulation = server.session(falling.session)["scene"]["simulation"]
+    assert simulation["gravity"] == pytest.approx(3, abs=0.5)  # a pixel of the slider is 0.45
+    assert simulation["friction"] == pytest.approx(0.5, abs=0.04)  # likewise 0.03
+    assert shown(falling, "Gravity") == pytest.approx(simulation["gravity"], abs=0.005)
+    guest.until("friction => culet.state.scene.simulation.friction === friction", simulation["friction"])
+    assert shown(guest, "Gravity") == shown(falling, "Gravity")
+    assert shown(guest, "Friction") == shown(falling, "Friction")
+    times = [frame["simulationTime"] for frame in falling.recorded]
+    assert times == sorted(times), "it was put back"
+    assert falling.state["falling"]
+    assert {message["type"] for message in falling.sent[1:]} == {"patch_scene"}
+    assert falling.problems == guest.problems == []
+
+
+def test_another_drop_height_or_spin_drops_the_stone_from_there(falling: View, server: Server) -> None:
+    before = server.session(falling.session)["scene"]
+    drag(falling, "Drop height", 0.5)
+    falling.until("() => culet.state.scene.stones[0].position[1] > 3")
+    drag(falling, "Spin", 0, 0.5)
+    falling.until("() => culet.state.scene.simulation.spin[1] > 10")
+    after = server.session(falling.session)["scene"]
+    x, y, z = after["stones"][0]["position"]
+    assert y == pytest.approx(4, abs=0.15)  # a pixel is 0.12
+    stone = before["stones"][0]
+    assert (
+        after["stones"]
+        == [stone | {"position": [stone["position"][0], y, stone["position"][2]]}]
+        == [stone | {"position": [x, y, z]}]
+    )
+    about = [component / before["simulation"]["spin"][1] for component in before["simulation"]["spin"]]
+    assert after["simulation"]["spin"] == pytest.approx([after["simulation"]["spin"][1] * part for part in about])
+    assert falling.state["falling"]
+    falling.until("() => culet.lastFrame.simulationTime < 0.6")  # it began anew
+    falling.until("() => culet.lastFrame.simulationTime > 0.6")  # and falls
+    assert falling.problems == []
+
+
+def test_integrator_and_model_are_chosen_and_what_a_model_does_not_know_is_grey(falling: View, server: Server) -> None:
+    integrator, friction = (falling.page.get_by_label(label) for label in ("Integrator", "Friction"))
+    integrator.select_option("midpoint")
+    falling.until("() => culet.state.scene.simulation.integrator === 'midpoint'")
+    falling.page.get_by_label("Model").select_option("the report's")
+    falling.until("() => culet.state.scene.simulation.model === 'classic'")
+    assert integrator.is_disabled()
+    assert friction.is_disabled()
+    simulation = server.session(falling.session)["scene"]["simulation"]
+    assert (simulation["integrator"], simulation["model"]) == ("midpoint", "classic")
+    falling.page.keyboard.press("p")  # the lists have not kept the keyboard
+    falling.until("() => !culet.state.falling")
+    assert falling.problems == []
+
+
+def test_a_merge_patch_by_rest_moves_the_sliders(falling: View, server: Server) -> None:
+    patch = {"simulation": {"gravity": 100.5, "restitution": 0.25}}
+    assert server.http.patch(f"/api/sessions/{falling.session}", json=patch).status_code == 200
+    falling.until("() => culet.state.scene.simulation.gravity === 100.5")
+    assert shown(falling, "Gravity") == 100.5  # beyond the slider's end
+    assert shown(falling, "Restitution") == 0.25
+    assert falling.state["falling"]
