@@ -61,15 +61,15 @@ static inline float16 shown(float16 x, int tone_map) {
 
 static inline uchar16 to_bytes(float16 x, int tone_map) { return convert_uchar16_sat_rte(255 * shown(x, tone_map)); }
 
-// A work-item shows BLOCK pixels, of which `even` and `odd` hold the sums of half the samples each. `scale` is the exposure
+// A work-item shows BLOCK pixels, of which `earlier` and, if `both`, `later` hold sums of samples. `scale` is the exposure
 // over the number of samples; `inside_gamut` says that no component is negative, or that those that are may be clipped.
-__kernel void develop(__global const real4 *even, __global const real4 *odd, int both, __global uchar *bytes,
+__kernel void develop(__global const real4 *earlier, __global const real4 *later, int both, __global uchar *bytes,
                       int pixels, float scale, int tone_map, int inside_gamut) {
   const int first = get_global_id(0) * BLOCK, count = min(BLOCK, pixels - first);
   float linear[3][BLOCK];
   for (int i = 0; i < BLOCK; i++) {
     const int pixel = first + min(i, count - 1);
-    const float4 sum = convert_float4(both ? even[pixel] + odd[pixel] : even[pixel]);
+    const float4 sum = convert_float4(both ? earlier[pixel] + later[pixel] : earlier[pixel]);
     linear[0][i] = scale * sum.x;
     linear[1][i] = scale * sum.y;
     linear[2][i] = scale * sum.z;

@@ -20,6 +20,7 @@ from culet.rendering.features import Features, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.panoramas import Panorama
 from culet.rendering.program import Programs, Variant, build
+from culet.rendering.sums import Fold, Sums
 from culet.scene.model import Scene
 
 SOURCES = {"chain": "render.cl", "classic": "classic.cl"}
@@ -50,6 +51,7 @@ class Renderer:
         self.programs = Programs(self.device)
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
+        self.fold = Fold(self.device, self.variant)
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
 
     def picture(
@@ -91,10 +93,7 @@ def _tent(u: float) -> float:
 
 
 class Picture:
-    """A scene seen at a size: sums of linear radiance on the device, one more sample of each pixel at a time.
-
-    Samples are summed in two halves, the even and the odd ones: how far apart they are tells the error of the whole.
-    """
+    """A scene seen at a size: sums of linear radiance on the device, one more sample of each pixel at a time."""
 
     def __init__(
         self,
@@ -107,7 +106,6 @@ class Picture:
         features: Features | None,
     ) -> None:
         self.scene, self.width, self.height = scene, width, height
-        self.samples = 0
         self.seconds = 0.0
         """Spent by the last refinement."""
         self._renderer = renderer
@@ -122,8 +120,14 @@ class Picture:
         self._panorama = panorama
         self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
         self._tiles = math.ceil(width / self._variant.tile), math.ceil(height / self._variant.tile)
-        self._halves = [self._allocate(width * height * 4 * np.dtype(real).itemsize) for _ in range(2)]
+        size = width * height * 4 * np.dtype(real).itemsize
+        self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
+
+    @property
+    def samples(self) -> int:
+        """Of each pixel, so far."""
+        return self._sums.samples
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
@@ -139,18 +143,18 @@ class Picture:
         self.seconds = 0.0
         for sample in range(samples):
             x, y = jitter(self.samples, self.scene.sampling.filter)
-            half, accumulate = self.samples % 2, self.samples >= 2
+            target, accumulate = self._sums.next
             for band in range(bands):
                 start = time.perf_counter()
                 count = min(tiles, self._tiles[1] - band * tiles)
                 event = self._kernel(
-                    queue, (self._tiles[0], count), (1, 1), self._halves[half], *self._inputs.of_sample(self.samples),
+                    queue, (self._tiles[0], count), (1, 1), target, *self._inputs.of_sample(self.samples),
                     np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(accumulate), self._tallies,
                 )  # fmt: skip
                 event.wait()
                 self.seconds += time.perf_counter() - start
                 if band == bands - 1:
-                    self.samples += 1
+                    self._sums.added()
                 yield (sample + (band + 1) / bands) / samples
 
     @property
@@ -160,11 +164,11 @@ class Picture:
 
     def linear(self) -> NDArray[np.floating[Any]]:
         """(height, width, 3) mean linear radiance."""
-        return self._mean()[..., :3]
+        return self._sums.mean()[..., :3]
 
     def cut_map(self) -> NDArray[np.floating[Any]]:
         """(height, width) mean weight that was dropped; times the largest radiance it bounds a pixel's error."""
-        return self._mean()[..., 3]
+        return self._sums.mean()[..., 3]
 
     def cut(self) -> float:
         """Mean of the whole picture's cut weight, of the last sample."""
@@ -184,9 +188,9 @@ class Picture:
             return np.zeros((self.height, self.width, 3), np.uint8)
         shown = np.empty((self.height, self.width, 3), np.uint8)
         target = self._allocate(shown.nbytes)
-        film, pixels = self.scene.film, self.width * self.height
+        film, pixels, sums = self.scene.film, self.width * self.height, self._sums
         self._renderer.develop(
-            self._renderer.device.queue, (math.ceil(pixels / 16),), None, *self._halves, np.int32(self.samples > 1),
+            self._renderer.device.queue, (math.ceil(pixels / 16),), None, *sums.buffers, np.int32(sums.later > 0),
             target, np.int32(pixels),
             np.float32(film.exposure / max(1, self.samples)), np.int32(TONE_MAPS[film.tone_map]),
             np.int32(film.gamut == "clip" or not is_spectral(self.scene)),
@@ -203,27 +207,8 @@ class Picture:
         return tallies
 
     def error_estimate(self) -> float:
-        """Root mean square error of `linear()` that the two halves of the samples let expect, in radiance; NaN below
-        two samples. Each half has twice the variance of the whole, so their difference has four times it."""
-        if self.samples < 2:
-            return math.nan
-        even, odd = (half[..., :3] for half in self._read_halves())
-        count = math.ceil(self.samples / 2), self.samples // 2
-        difference = even / count[0] - odd / count[1]
-        return float(np.sqrt(np.mean(difference.astype(float) ** 2)) / 2)
-
-    def _read_halves(self) -> list[NDArray[np.floating[Any]]]:
-        halves = []
-        for number, buffer in enumerate(self._halves):
-            sums = np.zeros((self.height, self.width, 4), self._renderer.variant.real)
-            if self.samples > number:
-                cl.enqueue_copy(self._renderer.device.queue, sums, buffer)
-            halves.append(sums)
-        return halves
-
-    def _mean(self) -> NDArray[np.floating[Any]]:
-        even, odd = self._read_halves()
-        return (even + odd) / max(1, self.samples)
+        """Root mean square error of `linear()` that its samples let expect, in radiance; NaN below two samples."""
+        return self._sums.error()
 
     def _allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
         return self._renderer.pool.allocate(size)

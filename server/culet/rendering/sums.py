@@ -1,0 +1,108 @@
+"""A picture's samples, summed on the device, and what they tell of its error."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+from numpy.typing import NDArray
+
+from culet.rendering.device import Device, Real
+from culet.rendering.program import Variant, build
+
+BLOCK = 1024
+"""Pixels of a work-item that folds."""
+RATE = 0.75
+"""An edge through a pixel, sampled n times by well spread points, is known to n^-3/4 (D. Mitchell, Consequences of
+stratified sampling in graphics, SIGGRAPH 1996): halfway between random samples and smooth pictures."""
+LEVELS = 2
+"""Doublings that an estimate is the mean of: a sequence is luckier with some numbers of samples than with others."""
+
+
+class Fold:
+    """The kernel that makes two runs one; compiled when it is first needed, since a moving frame has one sample."""
+
+    def __init__(self, device: Device, variant: Variant) -> None:
+        self.queue = device.queue
+        self._device, self._variant = device, variant
+
+    @cached_property
+    def _kernel(self) -> Any:  # noqa: ANN401 - pyopencl has no types
+        return cl.Kernel(build(self._device, "sums.cl", self._variant.options), "fold")
+
+    def __call__(self, earlier: Any, later: Any, pixels: int) -> float:  # noqa: ANN401
+        """Add the later run to the earlier; returns the mean squared difference of the two sums' colours."""
+        blocks = math.ceil(pixels / BLOCK)
+        apart = np.empty(blocks, self._variant.real)
+        target = cl.Buffer(self._device.context, cl.mem_flags.WRITE_ONLY, apart.nbytes)
+        self._kernel(self.queue, (blocks,), (1,), earlier, later, target, np.int32(BLOCK), np.int32(pixels))
+        cl.enqueue_copy(self.queue, apart, target)
+        return float(apart.sum(dtype=float)) / (3 * pixels)
+
+
+class Sums:
+    """Sums of linear radiance in two runs: the first 1, 2, 4, 8 ... samples, and those since.
+
+    Whenever the later run is as long as the earlier, the two are compared and made one. Any run of the sequence of
+    samples is as well spread as another of its length, so the errors of the two are alike and as good as independent:
+    half their difference is the error of their mean, whatever the rate of convergence is. (The even samples against
+    the odd ones are worse spread than all of them, and said up to 2.7 times too much.)
+    """
+
+    def __init__(self, fold: Fold, buffers: tuple[Any, Any], width: int, height: int, real: Real) -> None:
+        self.samples = 0
+        self._fold, self._buffers, self._real = fold, buffers, real
+        self._width, self._height = width, height
+        self._errors: list[float] = []
+        """Of 2, 4, 8 ... samples."""
+
+    @property
+    def earlier(self) -> int:
+        """Samples of the earlier run: the largest power of two that there are."""
+        return 1 << max(0, self.samples.bit_length() - 1)
+
+    @property
+    def later(self) -> int:
+        """Samples of the later run."""
+        return max(0, self.samples - self.earlier)
+
+    @property
+    def buffers(self) -> tuple[Any, Any]:
+        """On the device: sums of the earlier run, and of the later; what is there means nothing without a sample."""
+        return self._buffers
+
+    @property
+    def next(self) -> tuple[Any, bool]:
+        """Where the next sample goes, and whether it is added to what is there."""
+        return self._buffers[min(1, self.samples)], self.later > 0
+
+    def added(self) -> None:
+        """The sample is there, in all pixels."""
+        self.samples += 1
+        if self.samples > 1 and self.samples == self.earlier:
+            squared = self._fold(*self._buffers, self._width * self._height)
+            self._errors.append(math.sqrt(squared) / self.samples)
+
+    def mean(self) -> NDArray[np.floating[Any]]:
+        """(height, width, 4) of all samples; zeros without any."""
+        runs = [
+            self._read(buffer) for buffer, count in zip(self._buffers, (self.samples, self.later), strict=True) if count
+        ]
+        return sum(runs, np.zeros((self._height, self._width, 4), self._real)) / self._real(max(1, self.samples))
+
+    def error(self) -> float:
+        """Root mean square error of the mean's colours; NaN below two samples. From the last LEVELS doublings, each
+        taken on to the present number of samples by RATE."""
+        if not self._errors:
+            return math.nan
+        counts = [2 ** (number + 1) for number in range(len(self._errors))]
+        taken_on = [error * (count / self.samples) ** RATE for count, error in zip(counts, self._errors, strict=True)]
+        return float(np.sqrt(np.mean(np.square(taken_on[-LEVELS:]))))
+
+    def _read(self, buffer: Any) -> NDArray[np.floating[Any]]:  # noqa: ANN401
+        sums = np.empty((self._height, self._width, 4), self._real)
+        cl.enqueue_copy(self._fold.queue, sums, buffer)
+        return sums
