@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from culet_protocol.messages import Message, SessionEvent
+from culet_protocol.messages import BALANCED, Exactness, Message, SessionEvent
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "exr"]
@@ -129,6 +129,8 @@ class SessionState(Message):
     session: SessionId
     scene: dict[str, Any]
     falling: bool
+    exactness: Exactness = BALANCED
+    pinned: bool = False
     edited: bool
     snapshot: dict[str, Any]
 

@@ -44,14 +44,15 @@ def _png(width: int, height: int, rgb: bytes) -> bytes:
 
 # Fractions are sums of powers of two, so that float32 keeps them and every language prints them alike.
 MOVING = Frame(
-    session=bytes(range(16)), codec=Codec.JPEG, flags=Flags.MOVING, sequence=7, width=16, height=8, samples=1, step=42,
-    simulation_time=1.4375, timestamp=1_760_000_000.5, simulate_ms=0.125, render_ms=31.5, encode_ms=1.75, cut=0.03125,
-    error=math.nan, payload=JPEG,
+    session=bytes(range(16)), codec=Codec.JPEG, flags=Flags.MOVING | Flags.FRONTIER, sequence=7, width=16, height=8,
+    samples=1, bands=3, max_bounces=256, cutoff=0.015625, step=42, simulation_time=1.4375, timestamp=1_760_000_000.5,
+    simulate_ms=0.125, render_ms=31.5, encode_ms=1.75, cut=0.03125, error=0.0625, payload=JPEG,
 )  # fmt: skip
 STILL = Frame(
-    session=bytes(range(240, 256)), codec=Codec.PNG, flags=Flags.FINAL, sequence=0xFFFFFFFF, width=4, height=2,
-    samples=1024, step=2**53 + 1, simulation_time=0, timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5,
-    encode_ms=18.25, cut=0, error=0.015625, payload=_png(4, 2, b"\x10\x80\xf0"),
+    session=bytes(range(240, 256)), codec=Codec.PNG, flags=Flags.FINAL | Flags.POLARISED, sequence=0xFFFFFFFF, width=4,
+    height=2, samples=1024, bands=64, max_bounces=65536, cutoff=2**-20, step=2**53 + 1, simulation_time=0,
+    timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5, encode_ms=18.25, cut=0, error=0.015625,
+    payload=_png(4, 2, b"\x10\x80\xf0"),
 )  # fmt: skip
 """Its sequence is the last before it wraps; its step is the first integer that a double cannot hold."""
 
@@ -59,7 +60,7 @@ STILL = Frame(
 def _with(frame: Frame, field: str, value: bytes | int) -> bytes:
     """The frame's bytes with one field of the header overwritten."""
     packed = frame.pack()
-    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (80, "I")}[field]
+    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (89, "I")}[field]
     return packed[:offset] + struct.pack("<" + form, value) + packed[offset + struct.calcsize(form) :]
 
 
@@ -68,7 +69,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
     valid = {
         "jpeg": MOVING,
         "png": STILL,
-        "empty_payload": replace(MOVING, payload=b"", sequence=8),
+        "empty_payload": replace(MOVING, payload=b"", sequence=8, flags=Flags.NONE, error=math.nan),
     }
     size, marked = HEADER_SIZE, MOVING.pack()
     refused = {
@@ -77,7 +78,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
         "truncated_payload": (marked[:-1], f"{len(JPEG)} bytes", f"{len(JPEG) - 1}"),
         "trailing_byte": (marked + b"\0", f"{len(JPEG)} bytes", f"{len(JPEG) + 1}"),
         "wrong_magic": (_with(MOVING, "magic", b"NOPE"), "CULT", "NOPE"),
-        "wrong_version": (_with(MOVING, "version", 1), "version 2", "1"),
+        "wrong_version": (_with(MOVING, "version", 2), "version 3", "2"),
         "wrong_codec": (_with(MOVING, "codec", 9), "1 (JPEG)", "9"),
         "wrong_length": (_with(MOVING, "length", 5), "5 bytes", f"{len(JPEG)}"),
     }
@@ -108,6 +109,7 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.ToggleWalls(),
     messages.PatchScene(patch={"camera": {"fov_degrees": 30}}),
     messages.SetScene(scene={}),
+    messages.Balance(exactness=0.75, pinned=True),
     messages.Resize(width=1280, height=720),
     messages.Visibility(visible=False),
     messages.Ack(sequence=7),
@@ -116,7 +118,7 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
 
 NOTICES: tuple[messages.Message, ...] = (
     messages.Hello(protocol=VERSION, session=bytes(range(16)).hex(), viewer=1),
-    messages.State(scene={"version": 1, "floor": {"kind": "mirror"}}, falling=True),
+    messages.State(scene={"version": 1, "floor": {"kind": "mirror"}}, falling=True, exactness=0.75, pinned=True),
     messages.Viewers(count=2),
     messages.Problem(
         code="unusable_scene", message="camera.fov_degrees: too large; got 300", field="camera.fov_degrees"
@@ -137,6 +139,7 @@ REFUSED_CONTROL = {
     "infinite": '{"type": "translate", "right": 1e999, "up": 0}',
     "out of range": '{"type": "resize", "width": 100000, "height": 720}',
     "zero": '{"type": "resize", "width": 0, "height": 720}',
+    "too exact": '{"type": "balance", "exactness": 1.5, "pinned": false}',
     "unknown target": '{"type": "orbit", "target": "light_3", "yaw": 0, "pitch": 0}',
     "negative sequence": '{"type": "ack", "sequence": -1}',
 }

@@ -12,7 +12,7 @@ from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
 MAGIC = b"CULT"
-HEADER_VERSION = 2
+HEADER_VERSION = 3
 
 
 class Codec(IntEnum):
@@ -30,6 +30,10 @@ class Flags(IntFlag):
     """The stone is falling."""
     FINAL = 2
     """The picture has all its samples: nothing better will come until something changes."""
+    POLARISED = 4
+    """Light was followed with its polarisation."""
+    FRONTIER = 8
+    """The error is not of this picture: it is what the measured front of error against time says of its settings."""
 
 
 class FrameError(ValueError):
@@ -49,11 +53,14 @@ FIELDS = (
     HeaderField("magic", "4s", "CULT"),
     HeaderField("version", "B", "version of this header"),
     HeaderField("codec", "B", "1 JPEG, 2 PNG"),
-    HeaderField("flags", "H", "bit 0 moving, bit 1 final"),
+    HeaderField("flags", "H", "bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier"),
     HeaderField("sequence", "I", "number of the frame in its session, from 1"),
     HeaderField("width", "H", "pixels"),
     HeaderField("height", "H", "pixels"),
     HeaderField("samples", "I", "samples per pixel in this picture"),
+    HeaderField("bands", "B", "wavelengths that were followed; 3: one for each channel"),
+    HeaderField("max_bounces", "I", "reflections after which a chain of light was cut"),
+    HeaderField("cutoff", "f", "weight below which a chain of light was ended, 0 to 1"),
     HeaderField("step", "Q", "number of the state shown; names the frame for frame.tga?step="),
     HeaderField("simulation_time", "d", "s since the stone was put at its start"),
     HeaderField("timestamp", "d", "s since the Unix epoch, engine's clock, when encoded"),
@@ -61,7 +68,7 @@ FIELDS = (
     HeaderField("render_ms", "f", "milliseconds spent on rendering"),
     HeaderField("encode_ms", "f", "milliseconds spent on tone mapping and encoding"),
     HeaderField("cut", "f", "mean weight of what the cut-off dropped, 0 to 1"),
-    HeaderField("error", "f", "estimated root mean square error, in radiance; NaN if it is not known"),
+    HeaderField("error", "f", "root mean square error of radiance: estimated, or the frontier's (bit 3), or NaN"),
     HeaderField("length", "I", "bytes of payload that follow"),
 )
 
@@ -80,6 +87,9 @@ class Frame:
     width: int
     height: int
     samples: int
+    bands: int
+    max_bounces: int
+    cutoff: float
     step: int
     simulation_time: float
     timestamp: float
@@ -96,8 +106,8 @@ class Frame:
             raise FrameError(f"a session id has 16 bytes, got {len(self.session)}")
         header = LAYOUT.pack(
             self.session, MAGIC, HEADER_VERSION, self.codec, self.flags, self.sequence & 0xFFFFFFFF, self.width,
-            self.height, self.samples, self.step, self.simulation_time, self.timestamp, self.simulate_ms,
-            self.render_ms, self.encode_ms, self.cut, self.error, len(self.payload),
+            self.height, self.samples, self.bands, self.max_bounces, self.cutoff, self.step, self.simulation_time,
+            self.timestamp, self.simulate_ms, self.render_ms, self.encode_ms, self.cut, self.error, len(self.payload),
         )  # fmt: skip
         return header + self.payload
 
@@ -107,8 +117,8 @@ class Frame:
         if len(message) < HEADER_SIZE:
             raise FrameError(f"a frame has at least {HEADER_SIZE} bytes, got {len(message)}")
         (
-            session, magic, version, codec, flags, sequence, width, height, samples, step, simulation_time, timestamp,
-            simulate_ms, render_ms, encode_ms, cut, error, length,
+            session, magic, version, codec, flags, sequence, width, height, samples, bands, max_bounces, cutoff, step,
+            simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, length,
         ) = LAYOUT.unpack_from(message)  # fmt: skip
         if magic != MAGIC:
             raise FrameError(f"a frame is marked {MAGIC!r}, got {magic!r}")
@@ -122,6 +132,6 @@ class Frame:
         except ValueError:
             raise FrameError(f"expected codec {', '.join(f'{c} ({c.name})' for c in Codec)}, got {codec}") from None
         return cls(
-            session, codec, Flags(flags), sequence, width, height, samples, step, simulation_time, timestamp,
-            simulate_ms, render_ms, encode_ms, cut, error, payload,
+            session, codec, Flags(flags), sequence, width, height, samples, bands, max_bounces, cutoff, step,
+            simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, payload,
         )  # fmt: skip

@@ -16,6 +16,9 @@ PicturePoint = Annotated[float, Field(ge=-100, le=100)]
 Blow = Annotated[float, Field(ge=-20, le=20)]
 Target = Literal["camera", "light_1", "light_2"]
 Pixels = Annotated[int, Field(ge=16, le=8192)]
+Exactness = Annotated[float, Field(ge=0, le=1)]
+BALANCED: Exactness = 0.5
+"""What a new session has."""
 
 
 class Message(BaseModel):
@@ -117,6 +120,18 @@ class SetScene(Message):
     scene: dict[str, Any]
 
 
+class Balance(Message):
+    """How fast or exact frames are to be while things move; a picture at rest is always refined to the end.
+
+    `exactness` goes from 0, many frames, to 1, few, of the quality that this rate leaves time for. `pinned`, it chooses
+    the quality itself instead, 1 being all that the scene asks for, and frames come as fast as they then can.
+    """
+
+    type: Literal["balance"] = "balance"
+    exactness: Exactness
+    pinned: bool
+
+
 class Resize(Message):
     """The size that this viewer would like, in device pixels."""
 
@@ -148,7 +163,7 @@ class Ping(Message):
 
 SessionEvent = (
     Orbit | Translate | Dolly | ResetCamera | ToggleFall | ResetStone | Push | ToggleMirror | ToggleEnvironment
-    | ToggleWalls | PatchScene | SetScene
+    | ToggleWalls | PatchScene | SetScene | Balance
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 
@@ -168,11 +183,14 @@ class Hello(Message):
 
 
 class State(Message):
-    """The session's scene as it is now (with the live camera), and whether the stone moves; sent on every edit."""
+    """The session's scene as it is now (with the live camera), whether the stone moves, and the session's balance; sent
+    on every edit."""
 
     type: Literal["state"] = "state"
     scene: dict[str, Any]
     falling: bool
+    exactness: Exactness = BALANCED
+    pinned: bool = False
 
 
 class Viewers(Message):

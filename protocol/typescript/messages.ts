@@ -112,6 +112,19 @@ export interface SetScene {
   scene: JsonObject;
 }
 
+/**
+ * How fast or exact frames are to be while things move; a picture at rest is always refined to the end.
+ *
+ * `exactness` goes from 0, many frames, to 1, few, of the quality that this rate leaves time for. `pinned`, it chooses
+ * the quality itself instead, 1 being all that the scene asks for, and frames come as fast as they then can.
+ */
+export interface Balance {
+  type: "balance";
+  /** 0 to 1 */
+  exactness: number;
+  pinned: boolean;
+}
+
 /** The size that this viewer would like, in device pixels. */
 export interface Resize {
   type: "resize";
@@ -153,6 +166,7 @@ export type ControlEvent =
   | ToggleWalls
   | PatchScene
   | SetScene
+  | Balance
   | Resize
   | Visibility
   | Ack
@@ -166,11 +180,17 @@ export interface Hello {
   viewer: number;
 }
 
-/** The session's scene as it is now (with the live camera), and whether the stone moves; sent on every edit. */
+/**
+ * The session's scene as it is now (with the live camera), whether the stone moves, and the session's balance; sent
+ * on every edit.
+ */
 export interface State {
   type: "state";
   scene: JsonObject;
   falling: boolean;
+  /** 0 to 1 */
+  exactness?: number;
+  pinned?: boolean;
 }
 
 /** How many watch this session. */
@@ -204,7 +224,7 @@ export type Notice = Hello | State | Viewers | Problem | Engine | Pong;
 /** What each field of a notice may be. */
 export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {
   hello: { protocol: ["integer"], session: ["string"], viewer: ["integer"] },
-  state: { scene: ["object"], falling: ["boolean"] },
+  state: { scene: ["object"], falling: ["boolean"], exactness: ["number", "absent"], pinned: ["boolean", "absent"] },
   viewers: { count: ["integer"] },
   problem: { code: ["string"], message: ["string"], field: ["string", "null", "absent"] },
   engine: { status: ["down", "up"] },

@@ -22,7 +22,7 @@ def sessions() -> Sessions:
 
 def test_a_viewer_that_joins_has_the_latest_frame_at_once(sessions: Sessions) -> None:
     session = Session("ab" * 16, {})
-    frame = Frame(session.topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, b"picture")
+    frame = Frame(session.topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"picture")
     session.latest = (frame, frame.pack())
     assert sessions.join(session).next_frame(0) == frame.pack()
 

@@ -16,7 +16,7 @@ from culet.gateway.stream import MAX_CONTROL_BYTES
 from culet.scene import Scene
 from culet_protocol.close import CloseCode
 from culet_protocol.frame import Flags
-from culet_protocol.messages import Orbit, Ping, ResetStone, Resize, ToggleFall, Visibility
+from culet_protocol.messages import Balance, Orbit, Ping, ResetStone, Resize, ToggleFall, Visibility
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
 
@@ -55,6 +55,18 @@ async def test_two_viewers_see_the_same_and_are_told_of_each_other(gateway: Gate
         return gateway.parts.sessions.viewers == 0
 
     await eventually(nobody)
+
+
+async def test_viewers_share_the_balance(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as first, gateway.viewer(session) as second:
+        state = await second.notice("state")
+        assert (state["exactness"], state["pinned"]) == (0.5, False)
+        await first.say(Balance(exactness=0.25, pinned=True))
+        state = await second.notice("state")
+        assert (state["exactness"], state["pinned"]) == (0.25, True)
+        described = (await gateway.http.get(f"/api/sessions/{session}")).json()
+        assert (described["exactness"], described["pinned"]) == (0.25, True)
 
 
 async def test_a_late_viewer_gets_the_latest_picture_without_a_new_one_being_rendered(gateway: Gateway) -> None:
@@ -145,6 +157,7 @@ async def test_falling_frames_are_marked_and_a_reset_ends_them(gateway: Gateway)
         ('{"type": "fly"}', "malformed", None),
         ('{"type": "orbit", "yaw": "far", "pitch": 0}', "malformed", "orbit.yaw"),
         ('{"type": "orbit", "yaw": NaN, "pitch": 0}', "malformed", "orbit.yaw"),
+        ('{"type": "balance", "exactness": 1.5, "pinned": false}', "malformed", "balance.exactness"),
         ('{"type": "patch_scene", "patch": {"film": {"exposure": NaN}}}', "unusable_input", "film.exposure"),
         ('{"type": "patch_scene", "patch": {"film": {"exposure": 1e999}}}', "unusable_input", "film.exposure"),
         ('{"type": "patch_scene", "patch": {"film": {"exposure": -1}}}', "unusable_input", "film.exposure"),
@@ -152,8 +165,8 @@ async def test_falling_frames_are_marked_and_a_reset_ends_them(gateway: Gateway)
         (json.dumps({"type": "set_scene", "scene": {"x": "y" * MAX_CONTROL_BYTES}}), "too_large", None),
         (b"\x00\x01\x02", "binary_message", None),
     ],
-    ids=["no json", "unknown type", "wrong type", "nan", "nan in patch", "infinity in patch", "out of range", "path",
-         "oversized", "binary"],
+    ids=["no json", "unknown type", "wrong type", "nan", "too exact", "nan in patch", "infinity in patch",
+         "out of range", "path", "oversized", "binary"],
 )  # fmt: skip
 async def test_bad_control_messages_are_answered_and_the_session_lives_on(
     gateway: Gateway, message: str | bytes, code: str, field: str | None

@@ -9,7 +9,8 @@ from culet_protocol.messages import Pong, State, Viewers
 
 
 def offer(viewer: Viewer, sequence: int) -> bytes:
-    frame = Frame(bytes(16), Codec.JPEG, Flags.NONE, sequence, 1, 1, 1, sequence, 0, 0, 0, 0, 0, 0, 0, b"picture")
+    numbers = sequence, 1, 1, 1, 3, 1, 0, sequence, 0, 0, 0, 0, 0, 0, 0
+    frame = Frame(bytes(16), Codec.JPEG, Flags.NONE, *numbers, b"picture")
     message = frame.pack()
     viewer.offer(frame, message)
     return message

@@ -62,7 +62,7 @@ def test_golden_payloads_are_pictures_of_the_size_in_the_header(
 
 
 def test_the_header_has_no_padding_and_starts_with_the_topic() -> None:
-    assert sum(struct.calcsize("<" + field.format) for field in FIELDS) == HEADER_SIZE == 84
+    assert sum(struct.calcsize("<" + field.format) for field in FIELDS) == HEADER_SIZE == 93
     packed = MOVING.pack()
     assert packed[:16] == MOVING.session
     assert packed[16:20] == MAGIC

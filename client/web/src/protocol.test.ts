@@ -77,6 +77,7 @@ test("every control event has a TypeScript type", () => {
     { type: "toggle_walls" },
     { type: "patch_scene", patch: { camera: { fov_degrees: 30 } } },
     { type: "set_scene", scene: {} },
+    { type: "balance", exactness: 0.75, pinned: true },
     { type: "resize", width: 1280, height: 720 },
     { type: "visibility", visible: false },
     { type: "ack", sequence: 7 },

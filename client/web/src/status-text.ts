@@ -20,20 +20,28 @@ export function significant(value: number): string {
   return value === 0 || value >= 1e-4 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
 }
 
+/** A moving picture's error is not its own: it is what the measured front says of its settings. */
+export function errorName({ flags }: Pick<Frame, "flags">): string {
+  return flags & Flag.FRONTIER ? "frontier's error" : "error";
+}
+
 export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
   const parts: string[] = [];
   if (frame) {
-    const still = framesPerSecond === 0 && frame.flags & Flag.FINAL;
-    const { simulateMs, renderMs, encodeMs } = frame;
-    parts.push(still ? "still picture" : `${framesPerSecond.toFixed(1)} frames/s`);
+    const { flags, samples, simulateMs, renderMs, encodeMs } = frame;
+    const atRest = samples > 1 && (flags & Flag.MOVING) === 0;
+    if (flags & Flag.FINAL) parts.push("still picture");
+    else parts.push(atRest ? "refining" : `${framesPerSecond.toFixed(1)} frames/s`);
     parts.push(
-      `server ${milliseconds(simulateMs + renderMs + encodeMs)} ms (simulate ${milliseconds(simulateMs)}, ` +
-        `render ${milliseconds(renderMs)}, encode ${milliseconds(encodeMs)})`,
+      atRest
+        ? `render ${milliseconds(renderMs / samples)} ms a sample`
+        : `server ${milliseconds(simulateMs + renderMs + encodeMs)} ms (simulate ${milliseconds(simulateMs)}, ` +
+            `render ${milliseconds(renderMs)}, encode ${milliseconds(encodeMs)})`,
     );
   } else parts.push("waiting for the first picture");
   if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
   if (frame) {
-    if (!Number.isNaN(frame.error)) parts.push(`error ${significant(frame.error)}`);
+    if (!Number.isNaN(frame.error)) parts.push(`${errorName(frame)} ${significant(frame.error)}`);
     parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
   }
   parts.push(viewersText(viewers));

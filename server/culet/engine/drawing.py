@@ -25,6 +25,10 @@ class Picture(Protocol):
     """An image that gets better with every sample."""
 
     @property
+    def scene(self) -> Scene:
+        """What it shows."""
+
+    @property
     def samples(self) -> int:
         """Samples per pixel so far."""
 
@@ -45,7 +49,7 @@ class Picture(Protocol):
         """Mean weight of what the cut-off dropped."""
 
     def error_estimate(self) -> float:
-        """Root mean square error of the radiance, by reading all samples back; NaN below two samples."""
+        """Root mean square error of the radiance; NaN below two samples."""
 
 
 class Renderer(Protocol):

@@ -39,6 +39,8 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
             session.change(_with_walls_toggled(session.scene))
         case messages.PatchScene():
             _patch(session, event.patch, assets)
+        case messages.Balance():
+            session.balance = event
         case messages.SetScene():
             scene = Scene.read(event.scene)
             stone, sky = stone_for(scene, session, assets), sky_for(scene, session, assets)

@@ -1,8 +1,9 @@
 """The governor: how good a frame may be while things move, so that the frame rate asked for is held.
 
 It chooses from a ladder of settings, the front of least error for each cost that `python -m culet.study.ladder` has
-measured: down at once when a frame has taken too long, up only after a run of frames that would have had time to spare.
-At rest nothing is chosen: the picture is refined as the scene has it.
+measured: down at once when a frame has taken too long, up only after a run of frames that would have had time to spare,
+and then as far as there is time. The session's balance says which frame rate is asked for, or pins a setting. At rest
+nothing is chosen: the picture is refined as the scene has it.
 """
 
 from __future__ import annotations
@@ -12,15 +13,25 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 from culet.scene import Scene
+from culet_protocol.messages import Balance
 
+FASTEST_RATE, EXACTEST_RATE = 60.0, 15.0
+"""Frames per second that a balance of 0 and of 1 asks for; half way between them, 30."""
 SHARE = 0.8
-"""Of a frame's time that rendering may take; the rest is for simulation, tone mapping and the rest of the machine."""
+"""Of a frame's time that the render thread may work for it; the rest is for encoding and the rest of the machine."""
+LEAST_SHARE = 0.3
+"""Of a frame's time that rendering gets, however long simulation and tone mapping take."""
 SPARE = 0.85
 """A better setting must be expected to take less than this part of the time before it is tried."""
 PATIENCE = 12
 """Frames with time to spare before a better setting is tried: 0.4 s at 30 frames/s, or quality would flicker."""
+TRIAL = 60
+"""Frames for which a better setting must hold: if it does not, twice as many frames pass before the next try."""
+MOST_PATIENCE = 4 * PATIENCE
 MEMORY = 0.3
-"""Weight of the latest frame in the expected cost; one that took longer than expected counts in full."""
+"""Weight of the latest frame in the expected cost,"""
+LATE = 1.5
+"""but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
 LEAST_WIDTH, LEAST_HEIGHT = 640, 360
 """Pixels below which no frame is scaled, unless the viewer asked for less."""
 
@@ -37,12 +48,41 @@ class Setting:
     """Time over that of the first rung, measured."""
     error: float
     """Root mean square error of what is shown, 0 to 1, at one sample a pixel; measured on the default scene."""
+    radiance_error: float
+    """Root mean square error of the linear radiance, likewise."""
+
+    @property
+    def pixel_cost(self) -> float:
+        """Time of one pixel, over that of the first rung."""
+        return self.cost / self.scale**2
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How a moving frame is to be drawn."""
+
+    scene: Scene
+    """With the optics chosen."""
+    size: tuple[int, int]
+    """Pixels."""
+    wanted: tuple[int, int]
+    """Pixels that the viewer asked for."""
+    setting: Setting | None
+    """None if a balance is pinned to all that the scene asks for."""
+    error: float
+    """Root mean square error of the radiance that the front says of it."""
 
 
 def read_ladder() -> tuple[Setting, ...]:
     """As measured, the best first."""
     rungs = json.loads(files(__package__).joinpath("ladder.json").read_text(encoding="utf-8"))["rungs"]
     return tuple(Setting(**rung) for rung in rungs)
+
+
+def asked_rate(balance: Balance, most: float) -> float:
+    """Frames per second to hold for viewers that take `most`; as many as they take if the quality is pinned."""
+    asked: float = FASTEST_RATE * (EXACTEST_RATE / FASTEST_RATE) ** balance.exactness
+    return most if balance.pinned else min(most, asked)
 
 
 class Governor:
@@ -53,49 +93,77 @@ class Governor:
         self._rung = 0
         self._unit: float | None = None
         """Expected time of the first rung for one pixel."""
+        self._overhead = 0.0
+        """Expected time of the render thread for a frame besides rendering it."""
         self._spared = 0
+        self._patience = PATIENCE
+        self._since_rise = TRIAL
 
     @property
     def setting(self) -> Setting:
-        """For the next moving frame."""
+        """For the next moving frame, unless one is pinned."""
         return self._ladder[self._rung]
 
-    def size(self, width: int, height: int) -> tuple[int, int]:
-        """In pixels, of the next moving frame for a viewer of that size."""
-        least = min(1.0, max(LEAST_WIDTH / width, LEAST_HEIGHT / height))
-        scale = max(self.setting.scale, least)
-        return max(16, round(width * scale)), max(16, round(height * scale))
+    def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance) -> Plan:
+        """For the next moving frame: three indices, without polarisation, cut-off and size by the setting."""
+        setting = self._pinned(balance) if balance.pinned else self.setting
+        if setting is None:
+            return Plan(scene, wanted, wanted, None, self._ladder[0].radiance_error)
+        changes = {"bands": 3, "polarised": False, "cutoff": max(scene.optics.cutoff, setting.cutoff)}
+        simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
+        scale = _scale(setting, wanted)
+        size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))
+        return Plan(simplified, size, wanted, setting, setting.radiance_error)
 
-    def simplified(self, scene: Scene) -> Scene:
-        """The scene of the next moving frame: three indices, without polarisation, and a cut-off by the setting."""
-        optics = scene.optics
-        changes = {"bands": 3, "polarised": False, "cutoff": max(optics.cutoff, self.setting.cutoff)}
-        return scene.model_copy(update={"optics": optics.model_copy(update=changes)})
+    def rendered(self, plan: Plan, seconds: float, overhead: float, frames_per_second: float) -> None:
+        """A moving frame took that long to render, and that long besides; the next ones are to come at that rate.
 
-    def rendered(
-        self, seconds: float, size: tuple[int, int], wanted: tuple[int, int], frames_per_second: float
-    ) -> None:
-        """A moving frame of `size` took that long; a viewer wants `wanted` pixels at that rate. Chooses the next
-        setting."""
-        pixels = size[0] * size[1]
-        relative = self.setting.cost / (self.setting.scale**2)  # of a pixel, by the cut-off
-        unit = seconds / pixels / relative
-        self._unit = unit if self._unit is None or unit > self._unit else self._unit + MEMORY * (unit - self._unit)
-        budget = SHARE / frames_per_second
-        if self._expected(self._rung, wanted) > budget:
-            self._spared = 0
-            while self._rung + 1 < len(self._ladder) and self._expected(self._rung, wanted) > budget:
-                self._rung += 1
-        elif self._rung > 0 and self._expected(self._rung - 1, wanted) < SPARE * budget:
-            self._spared += 1
-            if self._spared >= PATIENCE:
-                self._spared = 0
-                self._rung -= 1
-        else:
-            self._spared = 0
+        Chooses the next setting.
+        """
+        if plan.setting is None:  # other optics than the ladder's: its time says nothing of theirs
+            return
+        unit = seconds / (plan.size[0] * plan.size[1] * plan.setting.pixel_cost)
+        late = seconds + overhead > LATE / frames_per_second
+        if self._unit is None or (late and unit > self._unit):
+            self._unit = unit
+        self._unit += MEMORY * (unit - self._unit)
+        self._overhead += MEMORY * (overhead - self._overhead)
+        budget = max(SHARE / frames_per_second - self._overhead, LEAST_SHARE / frames_per_second)
+        self._choose(plan.wanted, budget)
+
+    def _choose(self, wanted: tuple[int, int], budget: float) -> None:
+        self._since_rise += 1
+        if self._since_rise == TRIAL:
+            self._patience = PATIENCE
+        best = self._best(wanted, budget)
+        if best > self._rung:
+            if self._since_rise < TRIAL:
+                self._patience = min(2 * self._patience, MOST_PATIENCE)
+            self._rung, self._spared = best, 0
+            return
+        better = self._best(wanted, SPARE * budget)
+        self._spared = self._spared + 1 if better < self._rung else 0
+        if self._spared >= self._patience:
+            self._rung, self._spared, self._since_rise = better, 0, 0
+
+    def _pinned(self, balance: Balance) -> Setting | None:
+        """The last rung for speed, up to more than the first one for exactness."""
+        rung = round((1 - balance.exactness) * len(self._ladder))
+        return self._ladder[rung - 1] if rung else None
+
+    def _best(self, wanted: tuple[int, int], budget: float) -> int:
+        """The best rung that is expected to take no longer, or the last one."""
+        for rung in range(len(self._ladder)):
+            if self._expected(rung, wanted) <= budget:
+                return rung
+        return len(self._ladder) - 1
 
     def _expected(self, rung: int, wanted: tuple[int, int]) -> float:
         setting = self._ladder[rung]
-        least = min(1.0, max(LEAST_WIDTH / wanted[0], LEAST_HEIGHT / wanted[1]))
-        scale = max(setting.scale, least)
-        return (self._unit or 0) * wanted[0] * wanted[1] * scale**2 * setting.cost / setting.scale**2
+        return (self._unit or 0) * wanted[0] * wanted[1] * _scale(setting, wanted) ** 2 * setting.pixel_cost
+
+
+def _scale(setting: Setting, wanted: tuple[int, int]) -> float:
+    """Of width and height, within the limit."""
+    least = min(1.0, max(LEAST_WIDTH / wanted[0], LEAST_HEIGHT / wanted[1]))
+    return max(setting.scale, least)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from culet.engine.drawing import Picture
-from culet.engine.governor import Governor, read_ladder
+from culet.engine.governor import Governor, asked_rate, read_ladder
 from culet.engine.session import Session, Shown
 
 NATIVE_RATE = 30.0
@@ -61,7 +61,7 @@ class LivePicture:
     sent_at: float = 0.0
     """s, steady clock."""
     begun_at: float = -1e9
-    """s, steady clock: when the last frame was begun."""
+    """s, steady clock: when the last frame was begun, or should have been if it was a little late."""
     served_at: float = -1e9
     """s, steady clock: when a refinement last got its turn."""
     publishing: asyncio.Task[None] | None = None
@@ -70,7 +70,7 @@ class LivePicture:
     @property
     def frames_per_second(self) -> float:
         """The rate to keep to; a native viewer takes what the gateway's viewers take, if there are any."""
-        return self.rate or NATIVE_RATE
+        return asked_rate(self.session.balance, self.rate or NATIVE_RATE)
 
     @property
     def current(self) -> bool:
@@ -94,6 +94,12 @@ class LivePicture:
             if self.final or self.picture is not None:
                 return None
         return self.begun_at + 1 / self.frames_per_second
+
+    def begin(self, now: float) -> None:
+        """A frame is begun. One that is late by less than half a frame does not make the next one late."""
+        due = self.due_at()
+        little = due is not None and 0 <= now - due < 0.5 / self.frames_per_second
+        self.begun_at = due if due is not None and little else now
 
     def wants_refinement(self) -> bool:
         """Whether more samples would improve what is seen."""

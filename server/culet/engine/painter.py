@@ -14,17 +14,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from culet.engine import jpeg, schedule
 from culet.engine.drawing import Picture, Renderer, band_rows
+from culet.engine.governor import Plan
 from culet.engine.live import REST_SAMPLES, SETTLE_SECONDS, LivePicture
+from culet.engine.live_frame import LiveFrame
 from culet.engine.session import Shown
 from culet.engine.still import Still, StillQueue
 from culet.errors import CuletError, DeviceError
-from culet.scene import Scene
-from culet_protocol.frame import Codec, Flags, Frame
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -119,7 +116,8 @@ class Painter:
 
     async def _begin(self, live: LivePicture) -> None:
         """Simulate up to now and draw the first sample."""
-        live.begun_at = time.monotonic()
+        now = time.monotonic()
+        live.begin(now)
         session = live.session
         live.refinement = None
         async with session.lock:
@@ -134,22 +132,24 @@ class Painter:
         changed = shown is not live.painted  # if not, only the size did
         governed = shown.moving or (changed and live.begun_at - live.changed_at < SETTLE_SECONDS)
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
-        size = live.governor.size(*wanted) if governed else wanted
-        scene = live.governor.simplified(shown.scene) if governed else shown.scene
+        plan = live.governor.plan(shown.scene, wanted, session.balance) if governed else None
         if changed:
             live.changed_at = live.begun_at
         try:
-            picture = await self._in_render_thread(self._first_sample, scene, shown, size)
-            if governed:
-                live.governor.rendered(picture.seconds, size, wanted, live.frames_per_second)
+            picture = await self._in_render_thread(self._first_sample, plan, shown, wanted)
             live.reduced_until = live.begun_at + SETTLE_SECONDS if governed else None
             live.picture, live.painted, live.painted_size, live.final = picture, shown, wanted, REST_SAMPLES <= 1
             self.counters.frames_rendered += 1
-            await self._publish(live, picture, shown)
+            frame = await self._develop(live, picture, shown, plan)
+            if plan is not None:
+                overhead = time.monotonic() - now - picture.seconds
+                live.governor.rendered(plan, picture.seconds, overhead, live.frames_per_second)
+            await self._publish(live, frame)
         except Exception as error:  # one session's failure must not end the others'
             self._refuse(live, shown, error)
 
-    def _first_sample(self, scene: Scene, shown: Shown, size: tuple[int, int]) -> Picture:
+    def _first_sample(self, plan: Plan | None, shown: Shown, wanted: tuple[int, int]) -> Picture:
+        scene, size = (plan.scene, plan.size) if plan else (shown.scene, wanted)
         picture = self._renderer.picture(scene, shown.stone, *size, panorama=shown.panorama)
         picture.refine(1)
         return picture
@@ -169,7 +169,7 @@ class Painter:
             live.refinement = None
             self.counters.refinements += 1
             live.final = picture.samples >= REST_SAMPLES
-            await self._publish(live, picture, shown)
+            await self._publish(live, await self._develop(live, picture, shown, None))
             if live.final:
                 live.picture = None
         except Exception as error:  # as above
@@ -198,25 +198,23 @@ class Painter:
         if not still.done.done():
             still.done.set_result(data)
 
-    async def _publish(self, live: LivePicture, picture: Picture, shown: Shown) -> None:
-        """Tone-map in the render thread, then encode and send while the next frame is rendered."""
-        started = time.perf_counter()
-        rgb, cut, error = await self._in_render_thread(_developed, picture)
-        frame = _Unencoded(
-            rgb, shown, picture.samples, picture.seconds, cut, error, live.final, time.perf_counter() - started
-        )
+    async def _develop(self, live: LivePicture, picture: Picture, shown: Shown, plan: Plan | None) -> LiveFrame:
+        simulated = live.simulate_seconds
+        return await self._in_render_thread(LiveFrame.developed, picture, shown, plan, simulated, live.final)
+
+    async def _publish(self, live: LivePicture, frame: LiveFrame) -> None:
+        """Encode and send while the next frame is rendered."""
         if live.publishing is not None:
             await live.publishing  # one frame at a time, so that they leave in order
         live.publishing = asyncio.create_task(self._encode_and_send(live, frame))
 
-    async def _encode_and_send(self, live: LivePicture, frame: _Unencoded) -> None:
+    async def _encode_and_send(self, live: LivePicture, frame: LiveFrame) -> None:
         started = time.perf_counter()
         payload = await asyncio.get_running_loop().run_in_executor(
             self._encode_thread, lambda: jpeg.encode(frame.rgb, moving=frame.shown.moving)
         )
-        encode_seconds = frame.tone_map_seconds + time.perf_counter() - started
         live.session.sequence += 1
-        message = frame.pack(live, payload, encode_seconds)
+        message = frame.pack(live.session, payload, time.perf_counter() - started)
         live.message = message
         live.sent_at = time.monotonic()
         self.counters.frames_sent += 1
@@ -239,48 +237,6 @@ class Painter:
             return await asyncio.get_running_loop().run_in_executor(self._render_thread, call, *arguments)
         finally:
             self.counters.render_seconds += time.perf_counter() - started
-
-
-@dataclass(frozen=True, eq=False)
-class _Unencoded:
-    """A frame before its payload is there."""
-
-    rgb: NDArray[np.uint8]
-    shown: Shown
-    samples: int
-    render_seconds: float
-    cut: float
-    error: float
-    final: bool
-    tone_map_seconds: float
-
-    def pack(self, live: LivePicture, payload: bytes, encode_seconds: float) -> bytes:
-        """The message to send."""
-        flags = (Flags.MOVING if self.shown.moving else Flags.NONE) | (Flags.FINAL if self.final else Flags.NONE)
-        height, width, _ = self.rgb.shape
-        return Frame(
-            session=live.session.key,
-            codec=Codec.JPEG,
-            flags=flags,
-            sequence=live.session.sequence,
-            width=width,
-            height=height,
-            samples=self.samples,
-            step=self.shown.step,
-            simulation_time=self.shown.simulation_time,
-            timestamp=time.time(),
-            simulate_ms=live.simulate_seconds * 1e3,
-            render_ms=self.render_seconds * 1e3,
-            encode_ms=encode_seconds * 1e3,
-            cut=self.cut,
-            error=self.error,
-            payload=payload,
-        ).pack()
-
-
-def _developed(picture: Picture) -> tuple[NDArray[np.uint8], float, float]:
-    """Pixels, cut weight and estimated error; the last costs nothing for the single sample of a moving picture."""
-    return picture.rgb(), picture.cut(), picture.error_estimate()
 
 
 def _proceed(bands: Iterator[object]) -> bool:

@@ -232,6 +232,8 @@ def described(live: LivePicture) -> dict[str, Any]:
         "session": session.name,
         "scene": session.scene.model_dump(mode="json"),
         "falling": session.falling,
+        "exactness": session.balance.exactness,
+        "pinned": session.balance.pinned,
         "watched": live.watched,
         "step": session.shown.step,
         "simulation_time": session.shown.simulation_time,

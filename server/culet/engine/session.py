@@ -20,6 +20,7 @@ from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Scene
 from culet.simulation import FixedStepClock, Simulation, surfaces_of
 from culet_protocol.engine import SessionState
+from culet_protocol.messages import BALANCED, Balance
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +59,8 @@ class Session:
         """The 16 bytes that its frames begin with."""
         self.lock = asyncio.Lock()
         self.falling = False
+        self.balance = Balance(exactness=BALANCED, pinned=False)
+        """Of speed and exactness, while things move."""
         self.sequence = 0
         """Of the frame sent last."""
         self._history_length = history
@@ -87,6 +90,7 @@ class Session:
         session._clock = _clock(scene, snapshot.fraction)
         session.falling = snapshot.falling and session._simulation is not None
         session.sequence = snapshot.next_sequence
+        session.balance = Balance(exactness=snapshot.exactness, pinned=snapshot.pinned)
         if session._simulation is not None and snapshot.simulation is not None:
             session._simulation.restore(snapshot.simulation)
         session.shown = session._look(step=snapshot.next_step)
@@ -214,6 +218,8 @@ class Session:
             session=self.name,
             scene=self.scene.model_dump(mode="json"),
             falling=self.falling,
+            exactness=self.balance.exactness,
+            pinned=self.balance.pinned,
             edited=edited,
             snapshot=self.snapshot().model_dump(mode="json"),
         )
@@ -226,6 +232,8 @@ class Session:
             falling=self.falling,
             home=self.home,
             environment=self.sky.environment,
+            exactness=self.balance.exactness,
+            pinned=self.balance.pinned,
             step=self.shown.step,
             sequence=self.sequence,
         )

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from culet.errors import InputError
 from culet.scene import Camera, Environment
+from culet_protocol.messages import BALANCED, Exactness
 
 NUMBER_GAP = 1000
 """Steps and frames that an engine may have shown after its last snapshot: one second's at the highest rate, 240, and
@@ -30,6 +31,8 @@ class Snapshot(BaseModel):
     home: Camera
     environment: Environment | None = None
     """The session's own, which it goes back to from the light one; None if that is the scene's."""
+    exactness: Exactness = BALANCED
+    pinned: bool = False
     step: Annotated[int, Field(ge=1, lt=2**63)]
     sequence: Annotated[int, Field(ge=0, lt=2**63)]
 

@@ -42,6 +42,8 @@ class SessionAnswer(Model):
     id: Annotated[str, Field(description="Whoever knows it may watch and change the session.")]
     scene: Annotated[dict[str, Any], Field(description="With the camera and lights where they are now.")]
     falling: bool
+    exactness: Annotated[float, Field(description="While things move: 0 is many frames, 1 few and good ones.")]
+    pinned: Annotated[bool, Field(description="Whether `exactness` fixes the quality of moving frames instead.")]
     viewers: int
     stream: Annotated[str, Field(description="Path of the WebSocket; see the protocol's specification.")]
 
@@ -126,6 +128,8 @@ def _answer(session: Session) -> SessionAnswer:
         id=session.id,
         scene=session.scene,
         falling=session.falling,
+        exactness=session.exactness,
+        pinned=session.pinned,
         viewers=len(session.viewers),
         stream=f"/api/sessions/{session.id}/stream",
     )

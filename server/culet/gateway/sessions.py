@@ -18,7 +18,7 @@ from culet.gateway.viewer import DEFAULT_SIZE, Viewer
 from culet_protocol import engine as to_engine
 from culet_protocol.engine import SessionProblem, SessionState
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Engine, Message, Problem, SessionEvent, State, Viewers
+from culet_protocol.messages import BALANCED, Engine, Message, Problem, SessionEvent, State, Viewers
 
 log = logging.getLogger(__name__)
 
@@ -36,6 +36,7 @@ class Session:
         self.topic = bytes.fromhex(session)
         self.scene = scene
         self.falling = False
+        self.exactness, self.pinned = BALANCED, False
         self.snapshot: dict[str, Any] | None = None
         self.viewers: list[Viewer] = []
         self.latest: tuple[Frame, bytes] | None = None
@@ -45,7 +46,7 @@ class Session:
 
     def state(self) -> State:
         """The notice for viewers."""
-        return State(scene=self.scene, falling=self.falling)
+        return State(scene=self.scene, falling=self.falling, exactness=self.exactness, pinned=self.pinned)
 
     def tell(self, notice: Message) -> None:
         """Tell every viewer."""
@@ -214,6 +215,7 @@ class Sessions:
         if session is None:
             return
         session.scene, session.falling, session.snapshot = state.scene, state.falling, state.snapshot
+        session.exactness, session.pinned = state.exactness, state.pinned
         if state.edited:
             session.tell(session.state())
 

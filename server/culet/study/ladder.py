@@ -2,8 +2,9 @@
 
     python -m culet.study.ladder > server/culet/engine/ladder.json
 
-Each setting draws the default scene once, at one sample a pixel, as a moving frame is; the picture is brought to full
-size as a browser does, and compared, as it is shown, with a converged one.
+Each setting draws the default scene at one sample a pixel, as a moving frame is. They take turns, and what counts is
+the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them. The
+picture is brought to full size as a browser does, and compared, as it is shown and in radiance, with a converged one.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ import json
 import statistics
 import sys
 import time
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 import PIL.Image
@@ -22,14 +24,16 @@ from culet.engine.governor import Setting
 from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.optics.tone import tone_map
-from culet.rendering.renderer import Renderer
+from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
 
 SIZE = 1280, 720
 SCALES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5
 CUTOFFS = 0.01, 0.02, 0.05
+Pixels = NDArray[np.floating[Any]]
+
 REFERENCE_SAMPLES, REFERENCE_CUTOFF = 64, 1e-3
-REPEATS = 5
+TURNS = 9
 
 
 def measure_ladder(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> tuple[Setting, ...]:
@@ -41,40 +45,54 @@ def measure_ladder(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZ
     stone = stone_of(scene.stones[0], {})
     reference = renderer.picture(_with_cutoff(scene, REFERENCE_CUTOFF), stone, *size)
     reference.refine(REFERENCE_SAMPLES)
-    truth = tone_map(reference.linear())
-    measured = [_measure(renderer, scene, stone, size, s, c, truth) for s in SCALES for c in CUTOFFS]
-    best = measured[0]
+    best, *others = _measured(renderer, scene, stone, reference)
     rungs = [best]
-    for setting in sorted(measured[1:], key=lambda setting: setting.cost, reverse=True):
-        cheaper = [other for other in measured[1:] if other.cost <= setting.cost and other is not setting]
+    for setting in sorted(others, key=lambda setting: setting.cost, reverse=True):
+        cheaper = [other for other in others if other.cost <= setting.cost and other is not setting]
         if setting.cost < best.cost and all(other.error > setting.error for other in cheaper):
             rungs.append(setting)
-    return tuple(Setting(r.scale, r.cutoff, round(r.cost / best.cost, 3), round(r.error, 4)) for r in rungs)
+    return tuple(
+        replace(r, cost=round(r.cost, 3), error=round(r.error, 4), radiance_error=round(r.radiance_error, 4))
+        for r in rungs
+    )
 
 
-def _measure(
-    renderer: Renderer,
-    scene: Scene,
-    stone: Stone,
-    size: tuple[int, int],
-    scale: float,
-    cutoff: float,
-    truth: NDArray[np.float64],
-) -> Setting:
-    width, height = round(size[0] * scale), round(size[1] * scale)
-    times = []
-    for _ in range(REPEATS + 1):  # the first pays for the compiler
-        start = time.process_time()
-        picture = renderer.picture(_with_cutoff(scene, cutoff), stone, width, height)
-        picture.refine()
-        times.append(time.process_time() - start)
-    shown = tone_map(picture.linear())
-    channels = [
-        np.asarray(PIL.Image.fromarray(shown[..., k].astype(np.float32)).resize(size, PIL.Image.Resampling.BILINEAR))
-        for k in range(3)
-    ]
-    error = float(np.sqrt(np.mean((np.stack(channels, axis=-1) - truth) ** 2)))
-    return Setting(scale, cutoff, statistics.median(times[1:]), error)
+def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture) -> list[Setting]:
+    size = reference.width, reference.height
+    settings = [(scale, cutoff) for scale in SCALES for cutoff in CUTOFFS]
+    ratios: list[list[float]] = [[] for _ in settings]
+    pictures = [_draw(renderer, scene, stone, size, *setting)[1] for setting in settings]  # which pays for the compiler
+    for _ in range(TURNS):
+        seconds = [_draw(renderer, scene, stone, size, *setting)[0] for setting in settings]
+        for taken, of_setting in zip(seconds, ratios, strict=True):
+            of_setting.append(taken / seconds[0])
+    truth = reference.linear(), tone_map(reference.linear())
+    measured = []
+    for (scale, cutoff), costs, picture in zip(settings, ratios, pictures, strict=True):
+        radiance, shown = (_rms(_enlarged(p, size) - t) for p, t in zip(picture, truth, strict=True))
+        measured.append(Setting(scale, cutoff, statistics.median(costs), shown, radiance))
+    return measured
+
+
+def _draw(
+    renderer: Renderer, scene: Scene, stone: Stone, size: tuple[int, int], scale: float, cutoff: float
+) -> tuple[float, tuple[Pixels, Pixels]]:
+    """Processor's seconds; radiance and shown."""
+    start = time.process_time()
+    picture = renderer.picture(_with_cutoff(scene, cutoff), stone, round(size[0] * scale), round(size[1] * scale))
+    picture.refine()
+    seconds = time.process_time() - start
+    linear = picture.linear()
+    return seconds, (linear, tone_map(linear))
+
+
+def _enlarged(pixels: Pixels, size: tuple[int, int]) -> Pixels:
+    images = [PIL.Image.fromarray(pixels[..., channel].astype(np.float32)) for channel in range(3)]
+    return np.stack([np.asarray(image.resize(size, PIL.Image.Resampling.BILINEAR)) for image in images], axis=-1)
+
+
+def _rms(difference: Pixels) -> float:
+    return float(np.sqrt(np.mean(difference.astype(float) ** 2)))
 
 
 def _with_cutoff(scene: Scene, cutoff: float) -> Scene:

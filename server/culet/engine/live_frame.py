@@ -1,0 +1,94 @@
+"""A live frame on its way out: developed on the render thread, packed when its payload is encoded."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.engine.drawing import Picture
+from culet.engine.governor import Plan
+from culet.engine.session import Session, Shown
+from culet.scene.model import Optics
+from culet_protocol.frame import Codec, Flags, Frame
+
+
+@dataclass(frozen=True, eq=False)
+class LiveFrame:
+    """Before its payload is there. Times are in seconds."""
+
+    rgb: NDArray[np.uint8]
+    """(height, width, 3)"""
+    shown: Shown
+    optics: Optics
+    """As drawn."""
+    samples: int
+    simulate_seconds: float
+    render_seconds: float
+    develop_seconds: float
+    """Of tone mapping."""
+    cut: float
+    error: float
+    """Of the radiance: estimated, or NaN."""
+    expected_error: float
+    """That of the front, or NaN if the governor had no part in it."""
+    final: bool
+
+    @classmethod
+    def developed(
+        cls, picture: Picture, shown: Shown, plan: Plan | None, simulate_seconds: float, final: bool
+    ) -> LiveFrame:
+        """Of a picture that is done; estimating its error costs nothing for the single sample of a moving one."""
+        started = time.perf_counter()
+        rgb, cut, error = picture.rgb(), picture.cut(), picture.error_estimate()
+        return cls(
+            rgb=rgb,
+            shown=shown,
+            optics=picture.scene.optics,
+            samples=picture.samples,
+            simulate_seconds=simulate_seconds,
+            render_seconds=picture.seconds,
+            develop_seconds=time.perf_counter() - started,
+            cut=cut,
+            error=error,
+            expected_error=math.nan if plan is None else plan.error,
+            final=final,
+        )
+
+    def pack(self, session: Session, payload: bytes, encode_seconds: float) -> bytes:
+        """The message to send."""
+        height, width, _ = self.rgb.shape
+        frontier = math.isnan(self.error) and not math.isnan(self.expected_error)
+        return Frame(
+            session=session.key,
+            codec=Codec.JPEG,
+            flags=self._flags(frontier),
+            sequence=session.sequence,
+            width=width,
+            height=height,
+            samples=self.samples,
+            bands=self.optics.bands,
+            max_bounces=self.optics.max_bounces,
+            cutoff=self.optics.cutoff,
+            step=self.shown.step,
+            simulation_time=self.shown.simulation_time,
+            timestamp=time.time(),
+            simulate_ms=self.simulate_seconds * 1e3,
+            render_ms=self.render_seconds * 1e3,
+            encode_ms=(self.develop_seconds + encode_seconds) * 1e3,
+            cut=self.cut,
+            error=self.expected_error if frontier else self.error,
+            payload=payload,
+        ).pack()
+
+    def _flags(self, frontier: bool) -> Flags:
+        flags = {
+            Flags.MOVING: self.shown.moving,
+            Flags.FINAL: self.final,
+            Flags.POLARISED: self.optics.polarised,
+            Flags.FRONTIER: frontier,
+        }
+        return Flags(sum(flag for flag, is_set in flags.items() if is_set))
