@@ -23,6 +23,7 @@ def test_the_page_lists_every_request_of_the_api(view_of: ViewOf, server: Server
     view = open_docs(view_of())
     paths: dict[str, dict[str, Any]] = server.http.get("/openapi.json").json()["paths"]
     listed = [request_of(details) for details in view.page.locator("details").all()]
+    assert "GET /api/presets" in view.page.locator("main").inner_text()
     assert sorted(listed) == sorted((method.upper(), path) for path, methods in paths.items() for method in methods)
     for request in (("GET", "/api/render.tga"), ("POST", "/api/render"), ("GET", "/api/sessions/{session_id}")):
         assert request in listed

@@ -75,6 +75,7 @@ def test_a_broken_mesh_is_refused_with_what_is_wrong(
     view.open_file("Open a mesh", file)
     toast = view.page.locator(".toast.problem")
     toast.wait_for()
+    assert toast.inner_text().startswith(f"{name}: ")
     assert complaint in toast.inner_text()
     assert view.scene == before
     view.page.keyboard.press("m")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 
 import pytest
 
@@ -31,3 +33,24 @@ def test_the_canvas_shows_what_the_server_renders(view_of: ViewOf, server: Serve
     assert still.shape == (SMALL["height"], SMALL["width"], 3)
     assert still.std() > 5, "a picture of something"
     assert difference(seen.pixels, still) < JPEG
+
+
+def test_a_page_opened_while_the_engine_is_away_opens_by_itself_once_it_is_back(
+    view_of: ViewOf, server: Server
+) -> None:
+    view, engine = view_of(), server.engine_pid()
+    view.refusals.add(503)
+    os.kill(engine, signal.SIGSTOP)
+    try:
+        server.until_equal("engine_up", 0)
+        view.page.goto(f"{server.url}/?preset=matte")
+        card = view.page.get_by_role("alertdialog")
+        card.get_by_text("Trying again in 2 s").wait_for()  # the fourth pause
+        assert "the render process is not running" in card.inner_text()
+        card.get_by_role("button", name="Try now").click()
+        card.get_by_text("Trying again in 4 s").wait_for()
+    finally:
+        os.kill(engine, signal.SIGCONT)
+    view.until("() => culet.framesShown > 0")
+    assert not card.is_visible()
+    assert view.problems == []

@@ -9,12 +9,17 @@ export function bannerText(connection: Connection, engine: "down" | "up"): strin
     case "connecting":
       return "Connecting\u2026";
     case "waiting":
-      return `Connection lost. Trying again in ${Math.max(1, Math.round(connection.delay / 1000))} s\u2026`;
+      return `Connection lost. ${tryingAgainText(connection.delay)}`;
     case "closed":
       return "Not connected.";
     case "open":
       return engine === "down" ? "The render process stopped and is being restarted. The scene is kept." : null;
   }
+}
+
+/** When the next try is, after a pause of so many milliseconds. */
+export function tryingAgainText(delay: number): string {
+  return `Trying again in ${Math.max(1, Math.round(delay / 1000))} s\u2026`;
 }
 
 /** Why a stream is over for good, for the card. */
@@ -56,13 +61,15 @@ export class Obstacle {
   }
 
   show(text: string, label: string, act: () => void): void {
+    const wasHidden = this.card.hidden;
     this.text.textContent = text;
     this.button.textContent = label;
-    this.button.onclick = () => {
-      this.card.hidden = true;
-      act();
-    };
+    this.button.onclick = act;
     this.card.hidden = false;
-    this.button.focus();
+    if (wasHidden) this.button.focus();
+  }
+
+  hide(): void {
+    this.card.hidden = true;
   }
 }

@@ -2,7 +2,7 @@
 
 import { CloseCode } from "@culet/protocol/messages";
 import type { Action } from "./actions";
-import { Banner, bannerText, Obstacle, obstacleText } from "./banner";
+import { Banner, bannerText, Obstacle, obstacleText, tryingAgainText } from "./banner";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { listenToKeys } from "./keys";
 import { element } from "./page";
@@ -14,7 +14,7 @@ import { imageSky, patchOf, stonePatch } from "./scene-choices";
 import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { statusText } from "./status-text";
-import type { Connection } from "./stream";
+import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
@@ -90,16 +90,26 @@ async function openScene(file: File): Promise<void> {
   viewer?.send({ type: "set_scene", scene: parseScene(await file.text(), file.name) });
 }
 
-async function openMesh(file: File): Promise<void> {
+/** Upload a file, with words about it for as long as that takes; a refusal names the file. */
+async function read(file: File, upload: (file: File) => Promise<rest.Upload>): Promise<rest.Upload> {
   const clear = toasts.note(`Reading ${file.name}\u2026`);
-  const mesh = await rest.uploadMesh(file).finally(clear);
+  try {
+    return await upload(file);
+  } catch (error) {
+    throw new Error(`${file.name}: ${error instanceof Error ? error.message : error}`);
+  } finally {
+    clear();
+  }
+}
+
+async function openMesh(file: File): Promise<void> {
+  const mesh = await read(file, rest.uploadMesh);
   toasts.finding([`${file.name}:`, ...mesh.findings].join("\n"));
   viewer?.send({ type: "patch_scene", patch: stonePatch(viewer.state.scene, { mesh: mesh.id }) });
 }
 
 async function openSky(file: File): Promise<void> {
-  const clear = toasts.note(`Reading ${file.name}\u2026`);
-  const sky = await rest.uploadSky(file).finally(clear);
+  const sky = await read(file, rest.uploadSky);
   const summary = sky.findings.join("\n");
   toasts.finding(`${file.name}:\n${summary}`);
   panel.choices.addSkies([{ name: file.name, summary }], () => sky.id);
@@ -149,7 +159,8 @@ function watch(id: string): void {
   viewer.stream.open();
 }
 
-async function start(): Promise<void> {
+/** Find or make the session; after `tries` that failed, since the server was not ready. */
+async function start(tries = 0): Promise<void> {
   const wanted = wantedSession(location.search);
   if (wanted.kind === "invalid") {
     return obstacle.show(`${wanted.id} is not the id of a session.`, "Start a new session", startAnew);
@@ -157,14 +168,26 @@ async function start(): Promise<void> {
   try {
     if (wanted.kind === "session") await rest.findSession(wanted.id);
     watch(wanted.kind === "session" ? wanted.id : await rest.createSession(wanted.preset));
+    obstacle.hide();
   } catch (error) {
-    const known = error instanceof rest.ProblemError ? error : new rest.ProblemError(0, String(error));
+    const known = error instanceof rest.ProblemError ? error : new rest.ProblemError(500, String(error));
     banner.show(null);
     if (wanted.kind === "session" && known.status === 404) {
       return obstacle.show(obstacleText(CloseCode.UNKNOWN_SESSION, ""), "Start a new session", startAnew);
     }
-    obstacle.show(known.message, "Try again", () => attempt(start));
+    if (rest.isPassing(known)) startLater(known.message, tries);
+    else obstacle.show(known.message, "Try again", () => attempt(start));
   }
+}
+
+function startLater(why: string, tries: number): void {
+  const again = () => {
+    clearTimeout(timer);
+    attempt(() => start(tries + 1));
+  };
+  const delay = pauseBefore(tries);
+  const timer = setTimeout(again, delay);
+  obstacle.show(`${why}\n${tryingAgainText(delay)}`, "Try now", again);
 }
 
 setInterval(() => {

@@ -1,5 +1,15 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
-import { createSession, findSession, materials, ProblemError, problemText, targa, uploadMesh, uploadSky } from "./rest";
+import {
+  createSession,
+  findSession,
+  isPassing,
+  materials,
+  ProblemError,
+  problemText,
+  targa,
+  uploadMesh,
+  uploadSky,
+} from "./rest";
 
 afterEach(() => vi.unstubAllGlobals());
 
@@ -78,6 +88,11 @@ it("asks for a step that a double cannot hold by all its digits", async () => {
   const calls = answering(200, "tga");
   await targa("abc", 2n ** 53n + 1n);
   expect(calls[0]?.path).toBe("/api/sessions/abc/frame.tga?step=9007199254740993");
+});
+
+it("tells what passes by itself from what does not", () => {
+  const passing = [0, 404, 422, 429, 500, 503].filter((status) => isPassing(new ProblemError(status, "")));
+  expect(passing).toEqual([0, 429, 503]);
 });
 
 describe("a refusal in words", () => {

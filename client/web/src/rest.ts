@@ -13,6 +13,11 @@ export class ProblemError extends Error {
   }
 }
 
+/** Whether it may be gone by itself in a while: nothing answered, or what answered is not ready, or busy. */
+export function isPassing({ status }: ProblemError): boolean {
+  return [0, 429, 502, 503, 504].includes(status);
+}
+
 export interface Preset {
   name: string;
   summary: string;

@@ -23,6 +23,12 @@ export interface Listener {
 
 /** Milliseconds before each new try; the last one holds for all that follow. */
 export const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
+
+/** Milliseconds before the next try, after so many that failed. */
+export function pauseBefore(tries: number): number {
+  return PAUSES[Math.min(tries, PAUSES.length - 1)] ?? 0;
+}
+
 export const PING_MS = 1000;
 /** A connection that leaves so many pings unanswered is dead, whatever the operating system thinks. */
 export const LOST_PINGS = 8;
@@ -122,8 +128,7 @@ export class Stream {
       this.become({ status: "closed", code, reason });
       return;
     }
-    const pause = PAUSES[Math.min(this.tries, PAUSES.length - 1)] ?? 0;
-    const delay = Math.round(pause * this.jitter());
+    const delay = Math.round(pauseBefore(this.tries) * this.jitter());
     this.tries += 1;
     this.timer = setTimeout(() => this.open(), delay);
     this.become({ status: "waiting", delay });
