@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import logging
 import math
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from culet.errors import CuletError, InputError, MeshError, SceneError
+from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.subject import read_subject
+from culet.command.terminal import errors_in_one_line, progress_bar
+from culet.errors import InputError, SceneError
 from culet.study.command import study_app
-from culet_client.errors import ClientError
 
 if TYPE_CHECKING:
-    from culet.geometry.stone import Stone
-    from culet.rendering.panoramas import Panorama
     from culet.rendering.renderer import Picture
-    from culet.scene import Scene
 
 app = typer.Typer(
     help="Dispersive gemstones, traced exactly on the processor and streamed to thin clients.",
@@ -48,18 +45,6 @@ Origins = Annotated[
 ]
 
 
-SceneFile = Annotated[
-    Path | None,
-    typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
-]
-Preset = Annotated[str | None, typer.Option(help="Start from a named scene instead; a wrong name lists them.")]
-MeshFile = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
-]
-SkyFile = Annotated[
-    Path | None,
-    typer.Option("--sky", metavar="FILE", help="Panorama (.exr .hdr .png, twice as wide as high) as the scene's sky."),
-]
 Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
 SessionId = Annotated[
     str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
@@ -90,10 +75,9 @@ def render(
     with errors_in_one_line():
         if out.suffix.lower().lstrip(".") not in ENCODERS:  # before the work, not after it
             raise InputError(f"out: expected a name that ends in .{', .'.join(ENCODERS)}; got {out.name!r}", "out")
-        settings, stone = _subject(scene, preset, mesh)
-        settings, panorama = _with_sky(settings, sky)
+        settings, stone, panorama = read_subject(scene, preset, mesh, sky)
         picture = Renderer().picture(settings, stone, width, height, panorama=panorama)
-        with _progress(f"rendering {out.name}") as advance:
+        with progress_bar(f"rendering {out.name}") as advance:
             for part in picture.refine_in_bands(samples or settings.sampling.samples_per_pixel, BAND_ROWS):
                 advance(part)
         try:
@@ -128,10 +112,10 @@ def simulate(
     from culet.simulation.paths import write
 
     with errors_in_one_line():
-        settings, stone = _subject(scene, preset, mesh)
+        settings, stone, _ = read_subject(scene, preset, mesh)
         if stone is None:
             raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
-        with _progress("simulating") as advance:
+        with progress_bar("simulating") as advance:
             path = record_path(settings, stone, seconds, advance)
         write(path, out)
         if plot is not None:
@@ -174,7 +158,7 @@ def bench(
         console.print(case_table(timings))
         if features:
             costs = []
-            with _progress("compiling and measuring features") as advance:
+            with progress_bar("compiling and measuring features") as advance:
                 for cost in measure_features(renderer, width, height, repeats):
                     costs.append(cost)
                     advance(len(costs) / len(FEATURE_CASES))
@@ -194,16 +178,6 @@ def _appending(out: Path | None) -> Iterator[Callable[[str], None]]:
         raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
     with file:
         yield lambda line: print(line, file=file)
-
-
-@contextlib.contextmanager
-def errors_in_one_line() -> Iterator[None]:
-    """Errors on purpose are the user's to read: one line on stderr and exit code 1, no traceback."""
-    try:
-        yield
-    except (CuletError, ClientError) as error:
-        typer.echo(f"culet: {error}", err=True)
-        raise typer.Exit(1) from None
 
 
 @app.command()
@@ -291,70 +265,6 @@ def record(
     with errors_in_one_line():
         count = record_frames(endpoint, session, seconds, out, timeout_seconds=timeout)
         typer.echo(f"{out}: {count} frames")
-
-
-def _subject(file: Path | None, preset: str | None, mesh: Path | None) -> tuple[Scene, Stone | None]:
-    """The scene and its stone, from what the user named."""
-    from culet.geometry.load import stone_of
-    from culet.scene import Scene
-    from culet.scene import preset as preset_scene
-
-    if file is not None and preset is not None:
-        raise SceneError("expected a scene file or a preset, got both")
-    scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
-    meshes = {}
-    if mesh is not None:
-        from culet.geometry.mesh import stone_from_mesh
-
-        try:
-            data = mesh.read_bytes()
-        except OSError as error:
-            raise MeshError(f"cannot read {mesh}: {error.strerror}") from error
-        meshes["file"] = stone_from_mesh(data, mesh.suffix.lower().lstrip("."), name=mesh.stem)
-        for finding in meshes["file"].findings:
-            typer.echo(f"{mesh}: {finding}", err=True)
-        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": "file"})
-        scene = scene.model_copy(update={"stones": (stone,)})
-    return scene, stone_of(scene.stones[0], meshes) if scene.stones else None
-
-
-def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
-    """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
-    from culet.rendering.panoramas import read_panorama
-    from culet.scene.model import ImageEnvironment
-
-    if file is None:
-        return scene, None
-    try:
-        panorama = read_panorama(file.read_bytes(), file.suffix.lower().lstrip("."))
-    except OSError as error:
-        raise InputError(f"cannot read {file}: {error.strerror}", "sky") from error
-    image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
-    return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), panorama
-
-
-def _json(file: Path | None) -> object:
-    """What a JSON file holds; nothing named, the empty object."""
-    if file is None:
-        return {}
-    try:
-        return json.loads(sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes())
-    except OSError as error:
-        raise SceneError(f"cannot read {file}: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:  # JSONDecodeError, UnicodeDecodeError; nested beyond all reason
-        raise SceneError(f"{file} is not JSON: {error}") from error
-
-
-@contextlib.contextmanager
-def _progress(label: str) -> Iterator[Callable[[float], None]]:
-    """A bar on a terminal, gone when done; call it with the part done, 0 to 1."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task(label, total=1.0)
-        yield lambda done: progress.update(task, completed=done)
 
 
 app.add_typer(study_app, name="study")

@@ -56,9 +56,7 @@ def test_a_package_that_is_not_there_is_missing() -> None:
 def test_mitsuba_sees_the_same_stone(device: Device) -> None:
     """The race is fair only if both come to the same picture; 256 samples of noise of 0.25 are an RMSE of 0.016."""
     frame = race_frame(64, 36)
-    picture = Renderers(device).picture(
-        base_knobs(frame.scene, frame.stone, device.lanes), frame.scene, frame.stone, 64, 36
-    )
+    picture = Renderers(device).picture(base_knobs(frame.subject.scene, frame.subject.stone, device.lanes), frame)
     picture.refine(256)
     points = list(run_mitsuba(frame, picture.linear().astype(np.float64), 128, 0.01))
     assert points

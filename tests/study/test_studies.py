@@ -7,11 +7,17 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from culet.errors import InputError
 from culet.geometry.load import stone_of
+from culet.rendering.device import Device
+from culet.rendering.panoramas import Panorama, light_box
 from culet.scene import Scene
+from culet.study.frame import Frame, Studied
+from culet.study.knobs import base_knobs
+from culet.study.renderers import Renderers
 from culet.study.report import Report
 from culet.study.studies import Effort, study_rendering
 
@@ -40,10 +46,12 @@ class Told:
         yield advance
 
 
-def study(out: Path, cache: Path, progress: Told, scene: Scene | None = None) -> Report:
+def study(
+    out: Path, cache: Path, progress: Told, scene: Scene | None = None, panorama: Panorama | None = None
+) -> Report:
     subject = scene or Scene()
-    stone = stone_of(subject.stones[0], {})
-    return study_rendering(subject, stone, out, progress, effort=TINY, quick=True, cache=cache, groups=GROUPS)
+    studied = Studied(subject, stone_of(subject.stones[0], {}), panorama)
+    return study_rendering(studied, out, progress, effort=TINY, quick=True, cache=cache, groups=GROUPS)
 
 
 @pytest.fixture(scope="module")
@@ -122,6 +130,26 @@ def test_the_folder_of_another_scene_is_refused(finished: Report, folder: Path) 
     assert finished.points
     with pytest.raises(InputError, match="scene"):
         study(folder / "report", folder / "cache", Told(), Scene(lights=()))
+
+
+def test_the_folder_of_another_sky_is_refused(finished: Report, folder: Path) -> None:
+    assert finished.points
+    with pytest.raises(InputError, match="sky"):
+        study(folder / "report", folder / "cache", Told(), panorama=light_box(8))
+
+
+def test_a_sky_from_a_file_is_what_is_rendered(device: Device) -> None:
+    scene = Scene.read({"environment": {"kind": "image", "image": "file"}, "floor": {"kind": "none"}})
+    stone = stone_of(scene.stones[0], {})
+    grey, white = (np.full((4, 8, 3), level, np.float32) for level in (0.5, 1.0))
+    means = []
+    for panorama in (grey, white):
+        picture = Renderers(device).picture(
+            base_knobs(scene, stone, device.lanes), Frame(Studied(scene, stone, panorama), 32, 18)
+        )
+        picture.refine()
+        means.append(picture.linear().mean())
+    assert means[1] == pytest.approx(2 * means[0], rel=1e-5)
 
 
 def test_a_finished_study_measures_nothing_again(finished: Report, folder: Path) -> None:

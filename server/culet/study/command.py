@@ -9,24 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.subject import Subject, read_subject
+from culet.command.terminal import errors_in_one_line
+from culet.errors import InputError, SceneError
+
 if TYPE_CHECKING:
-    from culet.geometry.stone import Stone
-    from culet.scene import Scene
     from culet.study.comparison import Difference
+    from culet.study.frame import Studied
     from culet.study.report import Report
 
 study_app = typer.Typer(
     help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.", no_args_is_help=True
 )
 
-SceneFile = Annotated[
-    Path | None,
-    typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
-]
-Preset = Annotated[str | None, typer.Option(help="Start from a named scene instead; a wrong name lists them.")]
-MeshFile = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
-]
 Out = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the report; made if missing.")]
 Quick = Annotated[bool, typer.Option("--quick", help="Fewer settings and samples, a smaller picture: 2 minutes.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Measure anew what an earlier run has left in the folder.")]
@@ -45,6 +41,7 @@ def rendering(
     out: Out = Path("report/rendering"),
     preset: Preset = None,
     mesh: MeshFile = None,
+    sky: SkyFile = None,
     quick: Quick = False,
     fresh: Fresh = False,
     width: Width = None,
@@ -57,10 +54,10 @@ def rendering(
     from culet.study.studies import FULL, QUICK, study_rendering
 
     with _errors(), _interruptible(out):
-        subject, stone = _subject(scene, preset, mesh)
+        subject = _with_stone(read_subject(scene, preset, mesh, sky))
         effort = QUICK if quick else FULL
         effort = effort._replace(width=width or effort.width, height=height or effort.height)
-        _tell(study_rendering(subject, stone, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
+        _tell(study_rendering(subject, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
 
 
 @study_app.command()
@@ -76,8 +73,8 @@ def simulation(
     from culet.study.studies import study_simulation
 
     with _errors(), _interruptible(out):
-        subject, stone = _subject(scene, preset, mesh)
-        _tell(study_simulation(subject, stone, out, _progress, quick=quick, fresh=fresh), out)
+        subject = _with_stone(read_subject(scene, preset, mesh))
+        _tell(study_simulation(subject, out, _progress, quick=quick, fresh=fresh), out)
 
 
 @study_app.command()
@@ -86,6 +83,7 @@ def streaming(
     out: Out = Path("report/streaming"),
     preset: Preset = None,
     mesh: MeshFile = None,
+    sky: SkyFile = None,
     quick: Quick = False,
     fresh: Fresh = False,
     width: Width = None,
@@ -95,12 +93,9 @@ def streaming(
     with _errors(), _interruptible(out):
         from culet.study.studies import study_streaming
 
-        subject, stone = _subject(scene, preset, mesh)
+        subject = _with_stone(read_subject(scene, preset, mesh, sky))
         size = (width or (320 if quick else 640), height or (180 if quick else 360))
-        _tell(
-            study_streaming(subject, stone, out, _progress, width=size[0], height=size[1], quick=quick, fresh=fresh),
-            out,
-        )
+        _tell(study_streaming(subject, out, _progress, size=size, quick=quick, fresh=fresh), out)
 
 
 @study_app.command()
@@ -132,21 +127,16 @@ def headline(report: ReportFile) -> None:
         typer.echo(headline_markdown(Report.read(report)), nl=False)
 
 
-def _subject(file: Path | None, preset: str | None, mesh: Path | None) -> tuple[Scene, Stone]:
-    from culet.cli import _subject as subject
-    from culet.errors import SceneError
+def _with_stone(named: Subject) -> Studied:
+    from culet.study.frame import Studied
 
-    scene, stone = subject(file, preset, mesh)
-    if stone is None:
+    if named.stone is None:
         raise SceneError("stones: a study needs a stone; the scene has none", "stones")
-    return scene, stone
+    return Studied(named.scene, named.stone, named.panorama)
 
 
 @contextlib.contextmanager
 def _errors() -> Iterator[None]:
-    from culet.cli import errors_in_one_line
-    from culet.errors import InputError
-
     with errors_in_one_line():
         try:
             yield

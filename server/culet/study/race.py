@@ -19,9 +19,10 @@ from culet.geometry.load import stone_of
 from culet.scene.model import GradientEnvironment, Optics, Plane
 from culet.study.cases import CHECKER
 from culet.study.convergence import resting_error, time_to
+from culet.study.frame import Frame, Studied
 from culet.study.image_error import radiance_error
 from culet.study.knobs import base_knobs
-from culet.study.reference import Frame, Reference
+from culet.study.reference import Reference
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point, Race
 
@@ -48,15 +49,15 @@ ENTRANTS = {
 
 def race_frame(width: int, height: int) -> Frame:
     """The race's picture."""
-    return Frame(RACE, stone_of(RACE.stones[0], {}), width, height)
+    return Frame(Studied(RACE, stone_of(RACE.stones[0], {})), width, height)
 
 
 def run_culet(name: str, renderers: Renderers, frame: Frame, reference: Reference, seconds: float) -> Iterator[Point]:
     """One sample of each pixel after the other, judged at every power of two, for at most `seconds`."""
-    scene = frame.scene.model_copy(update={"optics": ENTRANTS[name]})
-    knobs = base_knobs(scene, frame.stone, renderers.device.lanes)
-    renderers.picture(knobs, scene, frame.stone, frame.width, frame.height).refine(1)  # compiles
-    picture = renderers.picture(knobs, scene, frame.stone, frame.width, frame.height)
+    scene = frame.subject.scene.model_copy(update={"optics": ENTRANTS[name]})
+    knobs = base_knobs(scene, frame.subject.stone, renderers.device.lanes)
+    renderers.picture(knobs, frame).refine(1)  # compiles
+    picture = renderers.picture(knobs, frame)
     taken, most = 0.0, max(reference.images) // 4  # the reference holds the same samples: it must have many more
     while taken < seconds and picture.samples < most:
         picture.refine(1)
@@ -68,8 +69,8 @@ def run_culet(name: str, renderers: Renderers, frame: Frame, reference: Referenc
 
 def run_mitsuba(frame: Frame, reference: NDArray[np.float64], spp: int, seconds: float) -> Iterator[Point]:
     """Passes of `spp` samples for at most `seconds` and a pass; nothing if it fails, see `mitsuba_missing`."""
-    camera, stone = frame.scene.camera, frame.stone
-    material = frame.scene.stones[0].material
+    scene, stone, _ = frame.subject
+    camera, material = scene.camera, scene.stones[0].material
     with tempfile.TemporaryDirectory() as folder:
         mesh, image = Path(folder) / "stone.ply", Path(folder) / "reference.npy"
         trimesh.Trimesh(stone.vertices, stone.triangles, process=False).export(mesh)

@@ -17,14 +17,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from platformdirs import user_cache_path
 
-from culet.geometry.stone import Stone
-from culet.scene import Scene
+from culet.study.frame import Frame
 from culet.study.knobs import Knobs
 from culet.study.provenance import IMAGE_PACKAGES, code_digest
 from culet.study.renderers import Renderers
@@ -36,15 +35,6 @@ PHYSICS_BANDS = 16
 """Wavelengths of a pixel's sample; they move from sample to sample, so that many samples see the whole spectrum."""
 
 Progress = Callable[[float], None]
-
-
-class Frame(NamedTuple):
-    """What is looked at."""
-
-    scene: Scene
-    stone: Stone
-    width: int
-    height: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +82,7 @@ def make_reference(
             images = {int(name): kept[name] for name in kept.files if name != "error"}
             return Reference(images, float(kept["error"]), 0.0)
     start = time.perf_counter()
-    picture = renderers.picture(knobs, frame.scene, frame.stone, frame.width, frame.height)
+    picture = renderers.picture(knobs, frame)
     images = {}
     while picture.samples < samples:
         picture.refine(1)
@@ -107,11 +97,12 @@ def make_reference(
 
 def _digest(frame: Frame, knobs: Knobs, samples: int, *, steps: bool) -> str:
     digest = hashlib.sha256()
-    scene = knobs.applied_to(frame.scene).model_dump_json(exclude={"film", "simulation"})
-    facts = (scene, knobs.key, frame.width, frame.height, samples, steps, code_digest(IMAGE_PACKAGES))
+    scene, stone, panorama = frame.subject
+    optics = knobs.applied_to(scene).model_dump_json(exclude={"film", "simulation"})
+    facts = (optics, knobs.key, frame.width, frame.height, samples, steps, code_digest(IMAGE_PACKAGES))
     digest.update(repr(facts).encode())
-    digest.update(np.ascontiguousarray(frame.stone.vertices).tobytes())
-    digest.update(np.ascontiguousarray(frame.stone.triangles).tobytes())
+    for array in (stone.vertices, stone.triangles, *(() if panorama is None else (panorama,))):
+        digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:32]
 
 

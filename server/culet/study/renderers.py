@@ -8,11 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from culet.geometry.stone import Stone
 from culet.rendering import program
 from culet.rendering.device import Device
 from culet.rendering.renderer import Picture, Renderer
-from culet.scene import Scene
+from culet.study.frame import Frame
 from culet.study.knobs import Knobs
 
 PRECISE_FLAGS = ("-cl-std=CL1.2",)
@@ -37,14 +36,15 @@ class Renderers:
         self.device = device
         self._made: dict[tuple[str, int, bool], Renderer] = {}
 
-    def picture(self, knobs: Knobs, scene: Scene, stone: Stone, width: int, height: int) -> Picture:
+    def picture(self, knobs: Knobs, frame: Frame) -> Picture:
         """An empty picture with these knobs; compiles what it needs."""
+        scene, stone, panorama = frame.subject
         if knobs.geometry == "triangles":
             stone = replace(stone, convex=False)
         with compiled_with(program.FLAGS if knobs.relaxed_maths else PRECISE_FLAGS):
             renderer = self._renderer(knobs)
-            columns, rows = (max(1, round(knobs.scale * length)) for length in (width, height))
-            return renderer.picture(knobs.applied_to(scene), stone, columns, rows)
+            columns, rows = (max(1, round(knobs.scale * length)) for length in (frame.width, frame.height))
+            return renderer.picture(knobs.applied_to(scene), stone, columns, rows, panorama=panorama)
 
     def _renderer(self, knobs: Knobs) -> Renderer:
         key = knobs.precision, knobs.lanes, knobs.relaxed_maths

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from culet.study.frame import Frame
 from culet.study.image_error import colour_difference, enlarged, non_finite, radiance_error
 from culet.study.journal import Journal
 from culet.study.knobs import Knobs, Setting
 from culet.study.pictures import write_pictures
-from culet.study.reference import Frame, Reference
+from culet.study.reference import Reference
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point
 
@@ -78,14 +79,14 @@ def measure(
     """One setting: a first time for the compiler, then `repeats` whole frames."""
     knobs = setting.knobs
     start = time.perf_counter()
-    picture = renderers.picture(knobs, frame.scene, frame.stone, frame.width, frame.height)
+    picture = renderers.picture(knobs, frame)
     prepare = time.perf_counter() - start
     picture.refine(1)  # the first launch pays for pages and caches
     kernel: list[float] = []
     whole: list[float] = []
     while len(whole) < repeats and (not whole or sum(whole) < BUDGET):
         start = time.perf_counter()
-        picture = renderers.picture(knobs, frame.scene, frame.stone, frame.width, frame.height)
+        picture = renderers.picture(knobs, frame)
         picture.refine(knobs.samples)
         picture.rgb()
         whole.append(time.perf_counter() - start)
@@ -102,12 +103,12 @@ def measure(
     }
     for name, reference in (("model", judges.model), ("physics", judges.physics)):
         figures |= {f"{kind}_{name}": value for kind, value in radiance_error(image, reference.image).items()}
-        figures[f"delta_e_{name}"] = colour_difference(image, reference.image, frame.scene.film)
+        figures[f"delta_e_{name}"] = colour_difference(image, reference.image, frame.subject.scene.film)
     same_samples = judges.model.images.get(knobs.samples) if knobs.scale == 1 else None
     paired = radiance_error(image, same_samples) if same_samples is not None else dict.fromkeys(("rmse", "max", "bias"))
     figures |= {f"{kind}_paired": value for kind, value in paired.items()}
     if setting.pictured:
-        write_pictures(pictures, knobs.key, np.nan_to_num(image), judges.model.image, frame.scene.film)
+        write_pictures(pictures, knobs.key, np.nan_to_num(image), judges.model.image, frame.subject.scene.film)
     return Point(
         key=knobs.key,
         group=setting.group,

@@ -9,18 +9,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from culet.geometry.stone import Stone
 from culet.rendering.device import open_device
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
 from culet.study import race, rendering, simulation, streaming
+from culet.study.frame import Frame, Studied
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.limits import measure_limits
 from culet.study.outcome import device_facts, rendering_report, simulation_report, streaming_report, write
 from culet.study.pictures import write_pictures
 from culet.study.provenance import IMAGE_PACKAGES, MOTION_PACKAGES, code_digest, processor
-from culet.study.reference import Frame, make_reference, reference_knobs
+from culet.study.reference import make_reference, reference_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
 
@@ -55,8 +54,7 @@ FULL = Effort(640, 360, 2048, 512, 7, 2048, 30.0, 32)
 
 
 def study_rendering(
-    scene: Scene,
-    stone: Stone,
+    subject: Studied,
     out: Path,
     progress: Progress,
     *,
@@ -72,14 +70,15 @@ def study_rendering(
     """
     device = open_device()
     renderers = Renderers(device)
-    frame = Frame(scene, stone, effort.width, effort.height)
+    scene, stone, _ = subject
+    frame = Frame(subject, effort.width, effort.height)
     base = base_knobs(scene, stone, device.lanes)
     settings = [
         setting
         for setting in settings_of(base, quick=quick)
         if groups is None or setting.group == "base" or setting.group in groups
     ]
-    identity = _identity("rendering", scene, stone, quick, code_digest(IMAGE_PACKAGES)) | effort._asdict()
+    identity = _identity("rendering", subject, quick, code_digest(IMAGE_PACKAGES)) | effort._asdict()
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         references = []
         for kind, samples in (("model", effort.model_samples), ("physics", effort.physics_samples)):
@@ -129,7 +128,7 @@ def _run_race(
         return []
     frame = race.race_frame(effort.width, effort.height)
     lanes = renderers.device.lanes
-    base = replace(base_knobs(frame.scene, frame.stone, lanes), cutoff=1e-6)
+    base = replace(base_knobs(frame.subject.scene, frame.subject.stone, lanes), cutoff=1e-6)
     with progress("reference of the race", effort.race_samples) as advance:
         reference = make_reference(
             renderers, frame, reference_knobs(base, "model", lanes // 2 or 1), effort.race_samples,
@@ -154,11 +153,10 @@ def _run_race(
     return []
 
 
-def study_simulation(
-    scene: Scene, stone: Stone, out: Path, progress: Progress, *, quick: bool, fresh: bool = False
-) -> Report:
+def study_simulation(subject: Studied, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
     """Sweep integrators and step sizes on the scene's stone."""
-    identity = _identity("simulation", scene, stone, quick, code_digest(MOTION_PACKAGES))
+    scene, stone, _ = subject
+    identity = _identity("simulation", subject, quick, code_digest(MOTION_PACKAGES))
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("motions", len(simulation.points_of(stone, quick=quick))) as advance:
             simulation.measure_all(stone, journal, quick=quick, progress=advance)
@@ -169,37 +167,32 @@ def study_simulation(
 
 
 def study_streaming(
-    scene: Scene,
-    stone: Stone,
-    out: Path,
-    progress: Progress,
-    *,
-    width: int,
-    height: int,
-    quick: bool,
-    fresh: bool = False,
+    subject: Studied, out: Path, progress: Progress, *, size: tuple[int, int], quick: bool, fresh: bool = False
 ) -> Report:
     """Sweep codecs and qualities on the scene's frames, moving and still."""
     device = open_device()
-    identity = _identity("streaming", scene, stone, quick, code_digest(IMAGE_PACKAGES))
+    width, height = size
+    identity = _identity("streaming", subject, quick, code_digest(IMAGE_PACKAGES))
     identity |= {"width": width, "height": height}
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("frames", 1):
-            shown = streaming.frames(Renderer(device), scene, stone, width, height)
+            shown = streaming.frames(Renderer(device), subject, width, height)
         with progress("codecs", len(streaming.settings_of(quick=quick))) as advance:
             streaming.measure_all(shown, journal, quick=quick, progress=advance)
         points = list(journal.points.values())
     settings = {"width": width, "height": height, "quick": quick}
-    report = streaming_report(scene.model_dump(mode="json"), dict(settings), device_facts(device), points)
+    report = streaming_report(subject.scene.model_dump(mode="json"), dict(settings), device_facts(device), points)
     write(report, out)
     return report
 
 
-def _identity(study: str, scene: Scene, stone: Stone, quick: bool, code: str) -> dict[str, object]:
+def _identity(study: str, subject: Studied, quick: bool, code: str) -> dict[str, object]:
     """What must be the same for points to belong together."""
+    scene, stone, panorama = subject
     shape = hashlib.sha256(stone.vertices.tobytes() + stone.triangles.tobytes())
+    sky = None if panorama is None else hashlib.sha256(panorama.tobytes()).hexdigest()[:16]
     text = hashlib.sha256(scene.model_dump_json().encode())
     return {
-        "study": study, "scene": text.hexdigest()[:16], "stone": shape.hexdigest()[:16], "quick": quick,
-        "processor": processor(), "code": code,
+        "study": study, "scene": text.hexdigest()[:16], "stone": shape.hexdigest()[:16], "sky": sky,
+        "quick": quick, "processor": processor(), "code": code,
     }  # fmt: skip

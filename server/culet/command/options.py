@@ -1,0 +1,21 @@
+"""Options that several commands have, so that they are the same everywhere."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+SceneFile = Annotated[
+    Path | None,
+    typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
+]
+Preset = Annotated[str | None, typer.Option(help="Start from a named scene instead; a wrong name lists them.")]
+MeshFile = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
+]
+SkyFile = Annotated[
+    Path | None,
+    typer.Option("--sky", metavar="FILE", help="Panorama (.exr .hdr .png, twice as wide as high) as the scene's sky."),
+]
