@@ -16,20 +16,10 @@ from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import rotate, rotate_back
 from culet.study.journal import Journal
+from culet.study.motions import Motion, bounce_truth, flat_orientation
 from culet.study.report import Point
-from culet.study.simulation import (
-    TOP_MOMENTS,
-    TOP_SPIN,
-    UPRIGHT,
-    Motion,
-    angle_between,
-    bounce_truth,
-    fits_of,
-    flat_orientation,
-    measure_all,
-    points_of,
-    rotation_truth,
-)
+from culet.study.simulation import fits_of, measure_all, points_of
+from culet.study.tops import TOP_MOMENTS, TOP_SPIN, UPRIGHT, angle_between, rotation_truth
 from simulation.jacobi import FreeTop
 
 
