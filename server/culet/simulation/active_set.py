@@ -15,9 +15,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact
-from culet.simulation.linear import Matrix, inverse, times
+from culet.simulation.linear import factorised, solution
 from culet.simulation.motion import Motion
 from culet.simulation.state import Triple
 
@@ -36,7 +39,7 @@ def refine(
     A contact that would have to pull is let go of, one that would need more friction than there is slips, and the rest
     is solved again; after a few attempts the impulses are what was found, put back onto their cones.
     """
-    mass_matrix, momenta = _mass_matrix(motion, body), [*motion.momentum, *motion.angular_momentum]
+    mass_matrix, momenta = _mass_matrix(motion, body), np.array([*motion.momentum, *motion.angular_momentum])
     impulses = [point.impulse for point in points]
     for _ in range(ATTEMPTS):
         solved = _solved(mass_matrix, momenta, points, targets, friction, impulses, STIFFNESS * body.mass)
@@ -50,15 +53,15 @@ def refine(
 
 
 def _solved(
-    mass_matrix: Matrix,
-    momenta: list[float],
+    mass_matrix: NDArray[np.float64],
+    momenta: NDArray[np.float64],
     points: Sequence[Contact],
     targets: Sequence[float],
     friction: float,
     impulses: Sequence[Triple],
     rho: float,
 ) -> list[Triple] | None:
-    right, bonds = momenta[:], []
+    bonds = []
     for index, (point, target, (ix, iy, iz)) in enumerate(zip(points, targets, impulses, strict=True)):
         a, b, c = point.normal
         normal = ix * a + iy * b + iz * c
@@ -72,30 +75,22 @@ def _solved(
             for axis, part, along in zip(AXES, (ix, iy, iz), (a, b, c), strict=True):
                 lever = _lever(point.arm, axis)
                 bonds.append((index, lever, lever, target * along, part))
-    rows = [row[:] for row in mass_matrix]
-    for _, out, back, target, _ in bonds:
-        for i, factor in enumerate(out):
-            if factor != 0:
-                stiff = rho * factor
-                rows[i] = [value + stiff * other for value, other in zip(rows[i], back, strict=True)]
-                right[i] += stiff * target
-    system = inverse(rows)
+    found = [(0.0, 0.0, 0.0)] * len(points)
+    if not bonds:
+        return found
+    # element by element and summed in one order: the same bits everywhere, which a product of matrices is not
+    out, back = np.array([bond[1] for bond in bonds]), np.array([bond[2] for bond in bonds])
+    wanted, parts = np.array([bond[3] for bond in bonds]), np.array([bond[4] for bond in bonds])
+    system = factorised((mass_matrix + (rho * out[:, :, None] * back[:, None, :]).sum(axis=0)).tolist())
     if system is None:
         return None
-    parts = [part for *_, part in bonds]
+    right = momenta + (rho * out * wanted[:, None]).sum(axis=0)
     for _ in range(ITERATIONS):
-        loaded = right[:]
-        for (_, out, *_), part in zip(bonds, parts, strict=True):
-            loaded = [value + part * factor for value, factor in zip(loaded, out, strict=True)]
-        w = times(system, loaded)
-        parts = [
-            part - rho * (sum([x * y for x, y in zip(back, w, strict=True)]) - target)
-            for (_, _, back, target, _), part in zip(bonds, parts, strict=True)
-        ]
-    found = [(0.0, 0.0, 0.0)] * len(points)
-    for (index, out, *_), part in zip(bonds, parts, strict=True):
+        w = np.array(solution(system, (right + (parts[:, None] * out).sum(axis=0)).tolist()))
+        parts = parts - rho * ((back * w).sum(axis=1) - wanted)
+    for (index, (a, b, c, *_), *_), part in zip(bonds, parts.tolist(), strict=True):
         x, y, z = found[index]
-        found[index] = (x + out[0] * part, y + out[1] * part, z + out[2] * part)
+        found[index] = (x + a * part, y + b * part, z + c * part)
     return found
 
 
@@ -119,12 +114,8 @@ def _lever(arm: Triple, force: Triple) -> list[float]:
     return [a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]
 
 
-def _mass_matrix(motion: Motion, body: RigidBody) -> Matrix:
-    m, q = body.mass, motion.orientation
-    turning = [body.angular_momentum(q, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
-    return [
-        [m, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [0.0, m, 0.0, 0.0, 0.0, 0.0],
-        [0.0, 0.0, m, 0.0, 0.0, 0.0],
-        *([0.0, 0.0, 0.0, *row] for row in turning),
-    ]
+def _mass_matrix(motion: Motion, body: RigidBody) -> NDArray[np.float64]:
+    """(6, 6): velocities to momenta."""
+    matrix = np.diag(np.full(6, body.mass, np.float64))
+    matrix[3:, 3:] = [body.angular_momentum(motion.orientation, axis) for axis in AXES]
+    return matrix

@@ -102,7 +102,9 @@ def _kicked_and_stopped(
     kicked = motion._replace(momentum=(px, py - body.mass * gravity * length, pz))
     targets = [-point.gap / length if point.gap > TOUCH else 0.0 for point in points]
     solved = solve(kicked, body, points, targets, friction)
-    return stopped(solved) if speed(solved, body) <= REST * gravity * length else solved
+    limit = REST * gravity * length
+    held = math.hypot(*solved.momentum) <= limit * body.mass and speed(solved, body) <= limit
+    return stopped(solved) if held else solved
 
 
 def _resisted(motion: Motion, body: RigidBody, moment: float) -> Motion:

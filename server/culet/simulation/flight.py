@@ -13,7 +13,7 @@ import math
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import TOUCH
 from culet.simulation.free_rotation import Integrator
-from culet.simulation.motion import Motion, flown, gaps, speed, sphere_centre_gap
+from culet.simulation.motion import Motion, flown, gaps, sphere_centre_gap
 from culet.simulation.state import Triple
 
 SAGITTA = 1e-5
@@ -45,7 +45,7 @@ def fly(motion: Motion, body: RigidBody, gravity: float, time: float, integrator
     inside = _depth(end, body)
     if inside <= 0:
         return end, part
-    return _touch(motion, body, gravity, part, inside, integrator)
+    return _touch(motion, body, gravity, turning, part, inside, integrator)
 
 
 def _approach(motion: Motion, body: RigidBody, normal: Triple, gravity: float, time: float) -> float:
@@ -65,12 +65,15 @@ def _depth(motion: Motion, body: RigidBody) -> float:
 
 
 def _touch(
-    motion: Motion, body: RigidBody, gravity: float, late: float, inside: float, integrator: Integrator
+    motion: Motion, body: RigidBody, gravity: float, turning: float, late: float, inside: float, integrator: Integrator
 ) -> tuple[Motion, float]:
-    """The last instant found before `late`, when a vertex is `inside`, at which all are outside."""
+    """The last instant found before `late`, when a vertex is `inside`, at which all are outside.
+
+    `turning` bounds the speed of any point about the centre, R/s.
+    """
     outside, early, at_early = -_depth(motion, body), 0.0, motion
     for attempt in range(MAX_REFINEMENTS):
-        bound = speed(at_early, body) + gravity * (late - early)
+        bound = math.hypot(*at_early.momentum) / body.mass + turning + gravity * (late - early)
         if (early > 0 and outside <= TOUCH / 2) or bound * (late - early) <= TOUCH / 2:
             break
         if attempt % 3 == 2 or not math.isfinite(outside):

@@ -130,13 +130,15 @@ def turned(body: RigidBody, q: Quaternion, angular_momentum: Triple, time: float
     """
     if angular_momentum == (0.0, 0.0, 0.0):
         return q
-    divisions = math.ceil(body.fastest_turn(q, angular_momentum) * time / MAX_TURN)
+    divisions = 1
+    if math.hypot(*angular_momentum) * time > MAX_TURN * body.principal_axes[0].moment:  # else no turn can be longer
+        divisions = math.ceil(body.fastest_turn(q, angular_momentum) * time / MAX_TURN)
     if divisions > MAX_DIVISIONS:
         return _about_angular_momentum(body, q, angular_momentum, time)
     if body.principal_axes[2].moment > STIFF * body.principal_axes[0].moment:
         integrator = symmetric_top
-    for _ in range(max(divisions, 1)):
-        q = integrator(body, q, angular_momentum, time / max(divisions, 1))
+    for _ in range(divisions):
+        q = integrator(body, q, angular_momentum, time / divisions)
     return q
 
 

@@ -26,8 +26,9 @@ from culet.simulation.state import Triple
 PASSES = 8
 """Over all contacts before the active set is refined."""
 LAST_PASSES = 200
-"""Of the last round: where the contacts' states do not settle, as with friction far above 1."""
-ROUNDS = 6
+"""Of the last round: where the contacts' states do not settle, as with friction far above 1. And of a contact alone,
+whose slip only has to find its direction."""
+ROUNDS = 8
 STALLED = 1e-8
 """Of the largest impulse: a smaller change that passes no longer reduce is two vertices that push against each other
 along the edge between them, more and more: it moves nothing."""
@@ -43,7 +44,7 @@ def solve(
     for point in points:
         point.impulse = (0.0, 0.0, 0.0)
     for round_ in range(ROUNDS):
-        passes = PASSES if round_ < ROUNDS - 1 else LAST_PASSES
+        passes = PASSES if round_ < ROUNDS - 1 and len(points) > 1 else LAST_PASSES
         if _converged(motion, body, turning, points, targets, friction, passes, STALLED if round_ > 0 else 0.0):
             break
         if round_ < ROUNDS - 1:
