@@ -1,0 +1,261 @@
+"""Measures the governor: a real engine, one subscriber, the default stone that falls again and again.
+
+    python -m culet.study.governor [--seconds 60] [--width 1280] [--height 720] [-o record.json]
+
+First the scene stays and the stone falls anew whenever it has come to rest, or is about to; then things change while it
+falls: walls, sky, floor, camera. What counts is what a viewer gets: the headers of its frames, and when they came.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import json
+import math
+import os
+import secrets
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from culet.engine.governor import asked_rate
+from culet.gateway.link import EngineLink
+from culet.gateway.settings import GatewaySettings
+from culet.scene import Scene
+from culet.study.motion_record import LATE_MS, Change, Seen, Settled, Summary, settle, summarise
+from culet.study.provenance import commit, processor
+from culet_protocol.engine import CloseSession, Control, Demand, OpenSession
+from culet_protocol.frame import Frame
+from culet_protocol.messages import (
+    BALANCED,
+    Balance,
+    Dolly,
+    ResetCamera,
+    ResetStone,
+    SessionEvent,
+    ToggleEnvironment,
+    ToggleFall,
+    ToggleMirror,
+    ToggleWalls,
+)
+
+VIEWER_RATE = 60.0
+"""Frames per second that the subscriber can take, as a browser's gateway says."""
+START_SECONDS = 60.0
+"""Patience with an engine that starts, and with the first frame: programs may have to be compiled."""
+WARM_SECONDS = 4.0
+"""Of falling that do not count: programs are compiled, the governor learns what a frame costs."""
+CHANGE_SECONDS = 4.0
+"""Between two changes of the scene."""
+CHANGES: tuple[tuple[str, SessionEvent], ...] = (
+    ("walls", ToggleWalls()),
+    ("light sky", ToggleEnvironment()),
+    ("checker", ToggleMirror()),
+    ("mirror again", ToggleMirror()),
+    ("no walls", ToggleWalls()),
+    ("studio again", ToggleEnvironment()),
+    ("nearer", Dolly(forward=2.0)),
+    ("far again", ResetCamera()),
+)
+
+
+@dataclass
+class Recorder:
+    """Keeps the headers of one session's frames as they come, and says when the stone has come to rest."""
+
+    seen: list[Seen] = field(default_factory=list)
+    rested: asyncio.Event = field(default_factory=asyncio.Event)
+    came: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def take(self, frame: Frame, _message: bytes) -> None:
+        """A frame has come."""
+        seen = Seen.of(frame, time.monotonic())
+        if not seen.moving and self.seen and self.seen[-1].moving:
+            self.rested.set()
+        self.seen.append(seen)
+        self.came.set()
+
+
+@dataclass(frozen=True)
+class Measured:
+    """All that was recorded, of the steady scene and of the changes."""
+
+    steady: tuple[Seen, ...]
+    changing: tuple[Seen, ...]
+    changes: tuple[Change, ...]
+    processor_seconds: float
+    """Of the engine, with the steady scene."""
+
+
+class Play:
+    """One session of a running engine."""
+
+    def __init__(self, link: EngineLink, recorder: Recorder) -> None:
+        self.session = secrets.token_hex(16)
+        self._link = link
+        self._recorder = recorder
+
+    async def open(self, scene: Scene, size: tuple[int, int], balance: Balance) -> None:
+        """With one subscriber; returns when the first frame has come."""
+        await self._link.request(OpenSession(session=self.session, scene=scene.model_dump(mode="json")))
+        await self.control(balance)
+        demand = Demand(session=self.session, frames_per_second=VIEWER_RATE, width=size[0], height=size[1])
+        await self._link.request(demand)
+        self._link.subscribe(bytes.fromhex(self.session))
+        async with asyncio.timeout(START_SECONDS):
+            await self._recorder.came.wait()
+
+    async def control(self, event: SessionEvent) -> None:
+        """Apply an event."""
+        await self._link.request(Control(session=self.session, event=event))
+
+    async def fall(self, seconds: float) -> None:
+        """Let the stone fall, again and again, for so long."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self._recorder.rested.clear()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(left):
+                    await self._recorder.rested.wait()
+                    await self.drop()
+
+    async def drop(self) -> None:
+        """Put the stone back and let it fall."""
+        await self.control(ResetStone())
+        await self.control(ToggleFall())
+
+    async def close(self) -> None:
+        """Forget the session."""
+        await self._link.request(CloseSession(session=self.session))
+
+
+async def measure(seconds: float, size: tuple[int, int], balance: Balance) -> Measured:
+    """Run an engine and play to it; takes the seconds and half a minute more."""
+    async with running_engine() as (link, process):
+        recorder = Recorder()
+        link.on_frame = recorder.take
+        play = Play(link, recorder)
+        await play.open(Scene(), size, balance)
+        await play.drop()
+        await play.fall(WARM_SECONDS)
+        recorder.seen.clear()
+        before = processor_seconds(process)
+        await play.drop()
+        await play.fall(seconds)
+        spent = processor_seconds(process) - before
+        steady = tuple(recorder.seen)
+        recorder.seen.clear()
+        changes = []
+        for name, event in CHANGES:
+            changes.append(Change(name, time.monotonic()))
+            await play.control(event)
+            await play.fall(CHANGE_SECONDS)
+        await play.close()
+        return Measured(steady, tuple(recorder.seen), tuple(changes), spent)
+
+
+@asynccontextmanager
+async def running_engine() -> AsyncIterator[tuple[EngineLink, int]]:
+    """An engine of its own: a connection to it, and its process id."""
+    with tempfile.TemporaryDirectory(prefix="culet-") as folder:
+        control, frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
+        command = [sys.executable, "-m", "culet", "engine", "--control", control, "--frames", frames]
+        with subprocess.Popen(command) as process:  # noqa: ASYNC220, S603 - it is there before anything else happens
+            link = EngineLink(GatewaySettings(control, frames))
+            running = asyncio.create_task(link.run())
+            try:
+                async with asyncio.timeout(START_SECONDS):
+                    await link.ready.wait()
+                yield link, process.pid
+            finally:
+                running.cancel()
+                await asyncio.gather(running, return_exceptions=True)
+                process.terminate()
+
+
+def processor_seconds(process: int) -> float:
+    """User and system time of a process so far (proc(5): fields 14 and 15; a name may hold spaces)."""
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return sum(int(ticks) for ticks in fields[11:13]) / os.sysconf("SC_CLK_TCK")
+
+
+def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
+    """A page of text."""
+    summary = summarise(measured.steady, rate)
+    milliseconds = 1e3 * measured.processor_seconds / len(measured.steady)
+    rows = [
+        f"asked for            {size[0]}x{size[1]}, {rate:g} frames/s",
+        f"of a moving stone    {summary.moving_seconds:.1f} s",
+        *_rows(summary),
+        f"processor            {milliseconds:.1f} ms a frame, on {os.cpu_count()} cores",
+        "",
+        "after a change       settled after   settings in 4 s",
+        *(_change_row(settled) for settled in settle(measured.changing, measured.changes, rate)),
+        "",
+        "with all of these changes",
+        *_rows(summarise(measured.changing, rate)),
+    ]
+    return "\n".join(rows)
+
+
+def _rows(summary: Summary) -> list[str]:
+    render = summary.render_ms_median, summary.render_ms_99, summary.render_ms_longest
+    return [
+        f"frames per second    {summary.frames_per_second:.2f}, {summary.late_intervals:.2%} late by half a frame or more",
+        f"least size           {summary.lowest_size[0]}x{summary.lowest_size[1]}",
+        f"largest cut-off      {summary.largest_cutoff:g}, {summary.fewest_bands} indices",
+        "render ms            median {:.1f}, 99 % {:.1f}, longest {:.1f}".format(*render),
+        f"in a row over {LATE_MS:g} ms  {summary.longest_late_run}",
+        f"simulate, encode ms  median {summary.simulate_ms_median:.2f}, {summary.encode_ms_median:.2f}",
+        f"changes of setting   {summary.setting_changes_per_minute:.1f} a minute",
+        f"frontier's error     mean {summary.error_mean:.4f}",
+    ]
+
+
+def _change_row(settled: Settled) -> str:
+    when = "not in 4 s" if settled.seconds is None else f"{settled.seconds:.2f} s"
+    return f"{settled.name:<20} {when:<15} {settled.setting_changes + 1}"
+
+
+def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
+    """JSON: the summary, and every frame's header."""
+    frames = [asdict(seen) | {"error": None if math.isnan(seen.error) else seen.error} for seen in measured.steady]
+    return json.dumps(
+        {
+            "commit": commit(),
+            "processor": processor(),
+            "size": size,
+            "rate": rate,
+            "steady": summarise(measured.steady, rate).as_json(),
+            "processor_seconds": measured.processor_seconds,
+            "changes": [asdict(settled) for settled in settle(measured.changing, measured.changes, rate)],
+            "frames": frames,
+        }
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry of the command."""
+    parser = argparse.ArgumentParser(prog="python -m culet.study.governor", description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=60, help="of the scene that stays")
+    parser.add_argument("--width", type=int, default=1280)
+    parser.add_argument("--height", type=int, default=720)
+    parser.add_argument("--exactness", type=float, default=BALANCED, help="0 many frames, 1 good ones")
+    parser.add_argument("-o", "--out", type=Path, help="JSON with every frame's header")
+    options = parser.parse_args(arguments)
+    size, balance = (options.width, options.height), Balance(exactness=options.exactness, pinned=False)
+    measured = asyncio.run(measure(options.seconds, size, balance))
+    rate = asked_rate(balance, VIEWER_RATE)
+    print(described(measured, size, rate))
+    if options.out:
+        options.out.write_text(document(measured, size, rate) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
