@@ -207,7 +207,7 @@ def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
 def _rows(summary: Summary) -> list[str]:
     render = summary.render_ms_median, summary.render_ms_99, summary.render_ms_longest
     return [
-        f"frames per second    {summary.frames_per_second:.2f}, {summary.late_intervals:.2%} late by half a frame or more",
+        f"frames per second    {summary.frames_per_second:.2f}, {summary.late_intervals:.2%} late by half a frame",
         f"least size           {summary.lowest_size[0]}x{summary.lowest_size[1]}",
         f"largest cut-off      {summary.largest_cutoff:g}, {summary.fewest_bands} indices",
         "render ms            median {:.1f}, 99 % {:.1f}, longest {:.1f}".format(*render),
