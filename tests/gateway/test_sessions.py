@@ -7,7 +7,7 @@ import pytest
 from culet.gateway.link import EngineLink
 from culet.gateway.sessions import Session, Sessions
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.uploads import Uploads, uploads_of
+from culet.gateway.uploads import Uploads, words
 from culet.gateway.viewer import DEFAULT_SIZE
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Engine, State, Viewers
@@ -17,7 +17,8 @@ SETTINGS = GatewaySettings("ipc://unused", "ipc://unused")
 
 @pytest.fixture
 def sessions() -> Sessions:
-    return Sessions(SETTINGS, EngineLink(SETTINGS), Uploads(0))
+    link = EngineLink(SETTINGS)
+    return Sessions(SETTINGS, link, Uploads(link, 0))
 
 
 def test_a_viewer_that_joins_has_the_latest_frame_at_once(sessions: Sessions) -> None:
@@ -47,7 +48,6 @@ def test_the_demand_is_the_fastest_viewers_rate_at_the_size_last_asked_for(sessi
     assert session.wanted(3) == (0, *DEFAULT_SIZE)
 
 
-def test_the_uploads_of_a_scene_are_those_that_its_stones_and_its_sky_name() -> None:
-    assert uploads_of({"stones": [{"mesh": "a"}, {"mesh": None}, {}]}) == {"a"}
-    assert uploads_of({"environment": {"kind": "image", "image": "b"}}) == {"b"}
-    assert uploads_of({}) == uploads_of({"environment": {"kind": "dark"}}) == set()
+def test_the_words_of_a_document_are_all_its_texts() -> None:
+    scene = {"stones": [{"mesh": "a"}, {"mesh": None}, {}], "environment": {"kind": "image", "image": "b"}}
+    assert words((scene, None, 3)) == {"a", "b", "image"}

@@ -71,6 +71,7 @@ class Session:
         self.sky = sky or Sky(scene.environment)
         """Its environment is the scene's, or was, before the scene was put under the light one."""
         self._place(scene, stone)
+        self._clock = _clock(scene)
         self.shown = self._look(step=1)
 
     @classmethod
@@ -139,6 +140,7 @@ class Session:
         """As `change`, with the stone put to the scene's start, from where it falls at once if it was falling."""
         self._place(scene, self._stone)
         self._advanced_at = None
+        self._clock.restart()
         self.change(scene, home=home, sky=sky)
 
     def replace_stone(
@@ -271,7 +273,6 @@ class Session:
             simulation = Simulation(scene.simulation, stone, start.position, start.orientation, surfaces_of(scene))
         self._stone = stone
         self._simulation = simulation
-        self._clock = _clock(scene)
 
 
 def _clock(scene: Scene, fraction: float = 0.0) -> FixedStepClock:

@@ -91,7 +91,8 @@ def _log_failure(task: asyncio.Task[None]) -> None:
 
 
 def _gateway(settings: GatewaySettings) -> Gateway:
-    link, uploads = EngineLink(settings), Uploads(settings.max_kept_upload_bytes)
+    link = EngineLink(settings)
+    uploads = Uploads(link, settings.max_kept_upload_bytes)
     return Gateway(settings, link, uploads, Sessions(settings, link, uploads), Counters())
 
 

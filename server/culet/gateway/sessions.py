@@ -13,7 +13,7 @@ from typing import Any
 from culet.errors import BusyError, CuletError, NotFoundError
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.uploads import Uploads, uploads_of
+from culet.gateway.uploads import Uploads, words
 from culet.gateway.viewer import DEFAULT_SIZE, Viewer
 from culet_protocol import engine as to_engine
 from culet_protocol.engine import SessionProblem, SessionState
@@ -76,6 +76,7 @@ class Sessions:
         link.on_problem = self._on_problem
         link.on_down = self._on_down
         link.on_up = self._on_up
+        uploads.used = self._words
 
     def __len__(self) -> int:
         return len(self._sessions)
@@ -100,7 +101,7 @@ class Sessions:
         session = Session(secrets.token_hex(16), scene)
         self._sessions[session.id] = session  # before the engine tells its state
         try:
-            await self._link.request(to_engine.OpenSession(session=session.id, scene=scene))
+            await self._uploads.request(to_engine.OpenSession(session=session.id, scene=scene))
         except BaseException:
             self._sessions.pop(session.id, None)
             raise
@@ -194,13 +195,16 @@ class Sessions:
     async def _ask(self, session: Session, message: Message) -> dict[str, Any]:
         """A request about a session; one that the engine does not know, because it is new, is opened there first."""
         try:
-            result, _ = await self._link.request(message)
+            result, _ = await self._uploads.request(message, session.scene)
         except NotFoundError:
             if session.id not in self._sessions:
                 raise
             await self._reopen(session)
-            result, _ = await self._link.request(message)
+            result, _ = await self._uploads.request(message, session.scene)
         return result
+
+    def _words(self) -> set[str]:
+        return words([(session.scene, session.snapshot) for session in self._sessions.values()])
 
     def _on_frame(self, frame: Frame, message: bytes) -> None:
         session = self._sessions.get(frame.session.hex())
@@ -230,27 +234,20 @@ class Sessions:
 
     async def _on_up(self, new_process: bool) -> None:
         if new_process:
-            sessions = list(self._sessions.values())
-            needed = {
-                name for session in sessions for name in uploads_of(session.scene) | uploads_of(session.snapshot or {})
-            }
-            await self._uploads.restore(self._link, needed)
-            for session in sessions:
+            for session in list(self._sessions.values()):
                 try:
                     await self._reopen(session)
                 except CuletError as error:
                     session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
         for session in self._sessions.values():
             session.tell(Engine(status="up"))
-        if new_process:
-            await self._uploads.restore(self._link, None)
 
     async def _reopen(self, session: Session) -> None:
         """Give a session, as last heard of, to an engine that does not know it."""
         session.latest = None
         for viewer in session.viewers:
             viewer.restart()
-        await self._link.request(
+        await self._uploads.request(
             to_engine.OpenSession(session=session.id, scene=session.scene, snapshot=session.snapshot)
         )
         session.demand = (0.0, *DEFAULT_SIZE)

@@ -33,7 +33,7 @@ class GatewaySettings:
     max_upload_bytes: int = 64 * MEBIBYTE
     """Of an uploaded file."""
     max_kept_upload_bytes: int = 256 * MEBIBYTE
-    """Of all uploads kept to be given to a restarted engine; the oldest go first."""
+    """Of all uploads kept to be given to an engine again; the oldest go first, but for those that sessions use."""
     request_seconds: float = 10
     """An engine that lives but does not answer a small request for so long is reported as unavailable."""
     engine_silence_seconds: float = 3.5

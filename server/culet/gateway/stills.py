@@ -89,5 +89,5 @@ async def _picture(
     http: Request, gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format
 ) -> Response:
     message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format)
-    _, data = await while_waited_for(http, gateway.link.request(message, patient=True))
+    _, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
     return Response(data, media_type=MEDIA_TYPES[file_format])

@@ -57,5 +57,5 @@ async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> UploadAn
     limit = gateway.settings.max_upload_bytes
     body = await read_limited(request.stream(), limit)
     file = uploaded_file(body, request.headers.get("content-type"), limit)
-    name, description = await gateway.uploads.put(gateway.link, kind, file)
+    name, description = await gateway.uploads.put(kind, file)
     return UploadAnswer(id=name, description=description)

@@ -1,11 +1,14 @@
-"""Uploads: named by their content, described by the engine, kept for an engine that is started later."""
+"""Uploads: named by their content, described by the engine, and kept to be given to it again.
+
+The engine forgets what was not used for long, and a new one knows nothing. It refuses a scene then by the field that
+names the upload; it is given that, and asked once more.
+"""
 
 from __future__ import annotations
 
 import hashlib
-import logging
 from collections import OrderedDict
-from collections.abc import Set
+from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any, get_args
@@ -14,8 +17,7 @@ from culet.errors import BusyError, InputError
 from culet.gateway.form import UploadedFile
 from culet.gateway.link import EngineLink
 from culet_protocol.engine import MeshType, PutMesh, PutSky, SkyType
-
-log = logging.getLogger(__name__)
+from culet_protocol.messages import Message
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,8 @@ class Kind:
 
 MESH = Kind("mesh", get_args(MeshType))
 SKY = Kind("sky", get_args(SkyType))
+KIND_OF_FIELD = {"mesh": MESH, "image": SKY}
+"""By the last part of the field that names an upload."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +62,12 @@ class _Upload:
 
 
 class Uploads:
-    """The bytes of accepted uploads, the latest used last; bounded in sum."""
+    """The bytes of accepted uploads, the latest used last; bounded in sum. What sessions use is not forgotten."""
 
-    def __init__(self, max_bytes: int) -> None:
+    def __init__(self, link: EngineLink, max_bytes: int) -> None:
+        self.used: Callable[[], Set[str]] = frozenset
+        """Ids that sessions name, maybe among other words."""
+        self._link = link
         self._max_bytes = max_bytes
         self._kept: OrderedDict[str, _Upload] = OrderedDict()
 
@@ -69,28 +76,63 @@ class Uploads:
         """Bytes of all kept uploads."""
         return sum(len(upload.data) for upload in self._kept.values())
 
-    async def put(self, link: EngineLink, kind: Kind, file: UploadedFile) -> tuple[str, dict[str, Any]]:
-        """Have the engine read a file; its id and what the engine says about it. The same file has the same id."""
+    async def put(self, kind: Kind, file: UploadedFile) -> tuple[str, dict[str, Any]]:
+        """Have the engine read a file; its id and what the engine says about it. The same file has the same id.
+
+        BusyError if there is no room for it besides what sessions use.
+        """
         upload = _Upload(kind, kind.file_type(file.name), file.data)
-        described = await upload.give(link)
-        self._kept[upload.id] = upload
-        self._kept.move_to_end(upload.id)
-        while self.kept_bytes > self._max_bytes:
-            self._kept.popitem(last=False)
+        used = self.used() - {upload.id}
+        in_use = sum(len(kept.data) for name, kept in self._kept.items() if name in used)
+        if in_use + len(file.data) > self._max_bytes:
+            raise BusyError(
+                f"sessions use uploads of {in_use} bytes; with these {len(file.data)} they would be over the limit of "
+                f"{self._max_bytes}; close a session, or try again later"
+            )
+        described = await upload.give(self._link)
+        self._keep(upload)
         return upload.id, described
 
-    async def restore(self, link: EngineLink, wanted: Set[str] | None) -> None:
-        """Give a new engine the kept uploads of these ids, or all."""
-        for name, upload in list(self._kept.items()):
-            if wanted is None or name in wanted:
-                try:
-                    await upload.give(link)
-                except (InputError, BusyError) as error:
-                    log.warning("%s %s was not taken again: %s", upload.kind.name, name, error)
+    async def request(
+        self, message: Message, *about: dict[str, Any] | None, patient: bool = False
+    ) -> tuple[dict[str, Any], bytes]:
+        """As `EngineLink.request`; the engine is given what it lacks of the uploads that `message` or `about` name."""
+        for _ in KIND_OF_FIELD:  # a scene can lack one of each kind
+            try:
+                return await self._link.request(message, patient=patient)
+            except InputError as error:
+                lacking = self._lacking(error.field or "", words(message.model_dump()), words(about))
+                if not lacking:
+                    raise
+            for upload in lacking:
+                await upload.give(self._link)
+                self._keep(upload)
+        return await self._link.request(message, patient=patient)
+
+    def _lacking(self, field: str, named: set[str], about: set[str]) -> list[_Upload]:
+        """Those of the kind that the field names; the message's own last, in case the engine keeps only few."""
+        kind = KIND_OF_FIELD.get(field.rpartition(".")[2])
+        found = [upload for name, upload in self._kept.items() if upload.kind is kind and name in named | about]
+        return sorted(found, key=lambda upload: upload.id in named)
+
+    def _keep(self, upload: _Upload) -> None:
+        self._kept[upload.id] = upload
+        self._kept.move_to_end(upload.id)
+        needed = self.used() | {upload.id}
+        for name in [name for name in self._kept if name not in needed]:
+            if self.kept_bytes <= self._max_bytes:
+                break
+            del self._kept[name]
 
 
-def uploads_of(document: dict[str, Any]) -> set[str]:
-    """Ids that a scene, or the snapshot of a session, may name."""
-    named = [stone.get("mesh") for stone in document.get("stones", ())]
-    named.append((document.get("environment") or {}).get("image"))
-    return {name for name in named if name}
+def words(document: object) -> set[str]:
+    """All texts in parsed JSON; the ids of uploads are among them."""
+    return set(_words(document))
+
+
+def _words(document: object) -> Iterator[str]:
+    if isinstance(document, str):
+        yield document
+    elif isinstance(document, dict | list | tuple):
+        for part in document.values() if isinstance(document, dict) else document:
+            yield from _words(part)
