@@ -56,7 +56,7 @@ validate: $(DONE)/validation opencl
 	$(BIN)/pytest -m validation $(ARGS) || [ $$? -eq 5 ]
 
 bench: opencl
-	$(BIN)/culet bench $(ARGS)
+	$(BIN)/culet bench --against tests/benchmarks/baseline.jsonl $(ARGS)
 
 study: $(DONE)/study opencl
 	$(BIN)/culet study rendering $(ARGS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -112,8 +113,9 @@ def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_pa
     for _ in range(2):
         run = culet("bench", *TINY, "--repeats", "1", "-o", out)
         assert run.returncode == 0, run.stderr
-    shown = culet("bench", *TINY, "--repeats", "1", "--features").stdout.decode()
-    rows = {line.strip().split("  ")[0]: line.split() for line in shown.splitlines()}
+    shown = culet("bench", *TINY, "--repeats", "2", "--features", "--against", out).stdout.decode()
+    assert len(re.findall(r"1\.000 +1\.000 +1\.000 *$", shown, re.MULTILINE)) == len(CASES), "the same work, as exact"
+    rows = {line.strip().split("  ")[0]: line.split() for line in reversed(shown.splitlines())}  # ratios come last
     lines = [json.loads(line) for line in out.read_text().splitlines()]
     assert [line["width"] for line in lines] == [48, 48], "a second run is appended"
     assert lines[0]["machine"]["device"] in shown

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import logging
 import math
 from collections.abc import Callable, Iterator
@@ -13,7 +14,7 @@ import typer
 
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.subject import read_subject
-from culet.command.terminal import errors_in_one_line, progress_bar
+from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.errors import InputError, SceneError
 from culet.study.command import study_app
 
@@ -29,8 +30,6 @@ app = typer.Typer(
 
 BAND_ROWS = 64
 """Of a picture, between two looks at the progress bar."""
-REPORT_COLUMNS = 110
-"""Of tables that go to a file or a pipe."""
 
 Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")]
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
@@ -137,20 +136,24 @@ def bench(
         Path | None,
         typer.Option("-o", "--out", metavar="FILE", help="Append the figures and the machine's, one line of JSON."),
     ] = None,
+    against: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Compare with the last line of an earlier file, as ratios; fails on none."),
+    ] = None,
 ) -> None:
     """Measure the time of a frame of named scenes on this machine, the scenes taken in turns."""
     from rich.console import Console
 
     from culet.rendering.renderer import Renderer
+    from culet.study.baseline import last_line
     from culet.study.bench import measure_cases, measure_features
     from culet.study.bench import record as record_line
     from culet.study.cases import FEATURE_CASES
-    from culet.study.tables import case_table, feature_table
+    from culet.study.tables import case_table, feature_table, print_comparison
 
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=REPORT_COLUMNS)
+    console = report_console()
     with errors_in_one_line(), _appending(out) as append:
+        baseline = last_line(against) if against is not None else None
         renderer = Renderer()
         with Console(stderr=True).status("measuring"):
             timings = measure_cases(renderer, width, height, repeats)
@@ -163,7 +166,10 @@ def bench(
                     costs.append(cost)
                     advance(len(costs) / len(FEATURE_CASES))
             console.print(feature_table(costs))
-        append(record_line(renderer, width, height, timings))
+        line = record_line(renderer, width, height, timings)
+        if baseline is not None:
+            print_comparison(console, baseline, json.loads(line))
+        append(line)
 
 
 @contextlib.contextmanager

@@ -1,15 +1,13 @@
-"""Two reports, or two benches, as ratios."""
+"""Two reports as ratios."""
 
 from __future__ import annotations
 
-import json
 import math
-from pathlib import Path
 
 import pytest
 
 from culet.errors import InputError
-from culet.study.comparison import compare, compare_benches, medians
+from culet.study.comparison import compare, medians
 from culet.study.report import Figure
 from study.reports import report
 
@@ -51,24 +49,3 @@ def test_a_mean_error_of_either_sign_has_no_ratio() -> None:
     points = [report().points[0].model_copy(update={"figures": {"bias": value}}) for value in (0.1, -0.2)]
     before, after = (report(points=(point,), figures=signed, fronts=()) for point in points)
     assert compare(before, after).ratios == []
-
-
-def bench(path: Path, seconds: float, **changes: object) -> Path:
-    old = {"machine": {"processor": "P"}, "cases": [{"name": "default", "seconds": 9.0}]}
-    line = {"machine": {"processor": "P"}, "cases": [{"name": "default", "seconds": seconds}], **changes}
-    path.write_text(f"{json.dumps(old)}\n{json.dumps(line)}\n\n")
-    return path
-
-
-def test_the_last_lines_of_two_benches_are_compared(tmp_path: Path) -> None:
-    found = compare_benches(bench(tmp_path / "a", 0.1), bench(tmp_path / "b", 0.3, machine={"processor": "Q"}))
-    assert [(ratio.label, ratio.figure) for ratio in found.ratios] == [("default", "seconds")]
-    assert found.ratios[0].ratio == pytest.approx(3)
-    assert len(found.warnings) == 1
-
-
-@pytest.mark.parametrize("content", ["", "{}", "nonsense", '{"cases": [1]}'])
-def test_a_file_that_is_no_bench_is_refused(tmp_path: Path, content: str) -> None:
-    (tmp_path / "b").write_text(content)
-    with pytest.raises(InputError, match="culet bench"):
-        compare_benches(bench(tmp_path / "a", 1), tmp_path / "b")

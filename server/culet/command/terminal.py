@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import typer
 
 from culet.errors import CuletError
 from culet_client.errors import ClientError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+REPORT_COLUMNS = 120
 
 
 @contextlib.contextmanager
@@ -31,3 +37,11 @@ def progress_bar(label: str) -> Iterator[Callable[[float], None]]:
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task(label, total=1.0)
         yield lambda done: progress.update(task, completed=done)
+
+
+def report_console() -> Console:
+    """For tables, which a file or a pipe gets in REPORT_COLUMNS."""
+    from rich.console import Console
+
+    console = Console()
+    return console if console.is_terminal else Console(width=REPORT_COLUMNS)

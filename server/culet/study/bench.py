@@ -1,14 +1,18 @@
-"""`culet bench`: seconds a frame of named scenes, taken in turns so that a noisy machine is noisy for all of them."""
+"""`culet bench`: seconds a frame of named scenes, taken in turns so that a noisy machine is noisy for all of them, and
+how exact those frames are."""
 
 from __future__ import annotations
 
+import datetime as dt
 import json
 import platform
 import statistics
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 import pyopencl as cl
 
 from culet import __version__
@@ -20,7 +24,7 @@ from culet.scene.model import Scene
 from culet.study.cases import CASES, FEATURE_CASES
 from culet.study.provenance import commit, processor
 
-Progress = Callable[[str], None]
+EXACT_CUTOFF, EXACT_BOUNCES = 1e-5, 65536
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,8 @@ class Timing:
     """Median."""
     fastest: float
     """s."""
+    processor_seconds: float
+    """Median of all cores' time together, which other work on the machine does not lengthen much."""
     ratio: float
     """Median over that of the first scene."""
     segments: int
@@ -39,6 +45,8 @@ class Timing:
     nanoseconds_per_segment: float
     cut: float
     """Mean weight dropped."""
+    rmse: float
+    """Radiance, against the same sample in double precision with every chain followed down to EXACT_CUTOFF."""
 
 
 @dataclass(frozen=True)
@@ -57,16 +65,36 @@ class FeatureCost:
 
 def measure_cases(renderer: Renderer, width: int, height: int, repeats: int) -> list[Timing]:
     """Every case of CASES, in turns."""
+    firsts = {name: first_sample(renderer, scene, width, height) for name, scene in CASES.items()}
     pictures = {name: _picture(renderer, scene, width, height) for name, scene in CASES.items()}
-    seconds = _take_turns(list(pictures.values()), repeats)
-    medians = [statistics.median(times) for times in seconds]
+    turns = _take_turns(list(pictures.values()), repeats)
+    medians = [_median(each) for each in turns]
     return [
         Timing(
-            name, median, min(times), median / medians[0], picture.segments(),
-            1e9 * median / max(1, picture.segments()), picture.cut(),
+            name, median, min(turn.seconds for turn in each), statistics.median(turn.processor for turn in each),
+            median / medians[0], first.segments, 1e9 * median / max(1, first.segments), first.cut, first.rmse,
         )
-        for (name, picture), times, median in zip(pictures.items(), seconds, medians, strict=True)
+        for (name, first), each, median in zip(firsts.items(), turns, medians, strict=True)
     ]  # fmt: skip
+
+
+class FirstSample(NamedTuple):
+    """What does not depend on the machine's speed."""
+
+    segments: int
+    cut: float
+    rmse: float
+
+
+def first_sample(renderer: Renderer, scene: Scene, width: int, height: int) -> FirstSample:
+    """Of every pixel, against double precision."""
+    optics = scene.optics.model_copy(update={"cutoff": EXACT_CUTOFF, "max_bounces": EXACT_BOUNCES})
+    exact = _picture(
+        Renderer(renderer.device, real=np.float64), scene.model_copy(update={"optics": optics}), width, height
+    )
+    picture = _picture(renderer, scene, width, height)
+    difference = picture.linear() - exact.linear()
+    return FirstSample(picture.segments(), picture.cut(), float(np.sqrt(np.mean(difference**2))))
 
 
 def measure_features(renderer: Renderer, width: int, height: int, repeats: int) -> Iterator[FeatureCost]:
@@ -79,7 +107,9 @@ def measure_features(renderer: Renderer, width: int, height: int, repeats: int) 
             _picture(renderer, off, width, height, idle),
             _picture(renderer, on, width, height),
         ]
-        milliseconds = [1e3 * statistics.median(times) for times in _take_turns(pictures, repeats)]
+        milliseconds = [
+            1e3 * statistics.median(turn.seconds for turn in each) for each in _take_turns(pictures, repeats)
+        ]
         yield FeatureCost(
             name,
             milliseconds[0],
@@ -94,6 +124,7 @@ def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -
     """One JSON line: the figures and what they were measured on."""
     return json.dumps(
         {
+            "made": dt.datetime.now(dt.UTC).isoformat(timespec="seconds"),
             "version": __version__,
             "commit": commit(),
             "machine": {"processor": processor(), "system": platform.platform(), **renderer.describe()},
@@ -111,13 +142,24 @@ def _picture(renderer: Renderer, scene: Scene, width: int, height: int, features
     return picture
 
 
-def _take_turns(pictures: list[Picture], repeats: int) -> list[list[float]]:
-    seconds: list[list[float]] = [[] for _ in pictures]
+class _Turn(NamedTuple):
+    seconds: float
+    processor: float
+    """s of all cores together."""
+
+
+def _take_turns(pictures: list[Picture], repeats: int) -> list[list[_Turn]]:
+    turns: list[list[_Turn]] = [[] for _ in pictures]
     for _ in range(repeats):
-        for picture, times in zip(pictures, seconds, strict=True):
+        for picture, own in zip(pictures, turns, strict=True):
+            before = time.process_time()
             picture.refine()
-            times.append(picture.seconds)
-    return seconds
+            own.append(_Turn(picture.seconds, time.process_time() - before))
+    return turns
+
+
+def _median(turns: list[_Turn]) -> float:
+    return statistics.median(turn.seconds for turn in turns)
 
 
 def _program_size(picture: Picture) -> int:

@@ -11,7 +11,7 @@ import typer
 
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.subject import Subject, read_subject
-from culet.command.terminal import errors_in_one_line
+from culet.command.terminal import errors_in_one_line, report_console
 from culet.errors import InputError, SceneError
 
 if TYPE_CHECKING:
@@ -111,10 +111,11 @@ def diff(before: ReportFile, after: ReportFile) -> None:
 @study_app.command("compare-bench")
 def compare_bench(before: BenchFile, after: BenchFile) -> None:
     """Compare the last lines of two files of `culet bench -o`, as ratios after / before. Fails on no ratio."""
-    from culet.study.comparison import compare_benches
+    from culet.study.baseline import last_line
+    from culet.study.tables import print_comparison
 
     with _errors():
-        _print_difference(compare_benches(before, after))
+        print_comparison(report_console(), last_line(before), last_line(after))
 
 
 @study_app.command()

@@ -1,4 +1,4 @@
-"""Two measurements side by side, as ratios: what changed between two states of the code, or two machines."""
+"""Two reports side by side, as ratios: what changed between two states of the code, or two machines."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import json
 import math
 import statistics
 from collections.abc import Iterable
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from culet.errors import InputError
 from culet.study.report import Report
@@ -75,43 +74,6 @@ def medians(ratios: Iterable[Ratio]) -> dict[str, float]:
         if math.isfinite(ratio.ratio):
             by_figure.setdefault(ratio.figure, []).append(ratio.ratio)
     return {name: statistics.median(values) for name, values in by_figure.items()}
-
-
-def compare_benches(before: Path, after: Path) -> Difference:
-    """Ratios of the last line of two files of `culet bench -o`, case by case."""
-    old, new = _last_line(before), _last_line(after)
-    warnings = [
-        f"{name} differs: {_shown(old.get(name))}, then {_shown(new.get(name))}"
-        for name in ("machine", "flags", "width", "height")
-        if old.get(name) != new.get(name)
-    ]
-    cases = {case["name"]: case for case in old["cases"]}
-    ratios = [
-        Ratio("bench", case["name"], name, float(cases[case["name"]][name]), float(value))
-        for case in new["cases"]
-        if case["name"] in cases
-        for name, value in case.items()
-        if isinstance(value, int | float) and isinstance(cases[case["name"]].get(name), int | float)
-    ]
-    names = {case["name"] for case in new["cases"]}
-    return Difference(
-        ratios, [name for name in cases if name not in names], [name for name in names if name not in cases], warnings
-    )
-
-
-def _last_line(path: Path) -> dict[str, Any]:
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read {path}: {error}") from error
-    try:
-        record = json.loads([line for line in lines if line.strip()][-1])
-        for case in record["cases"]:
-            str(case["name"])
-    except (ValueError, IndexError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: expected JSON lines of `culet bench -o`") from error
-    found: dict[str, Any] = record
-    return found
 
 
 def _shown(value: object) -> str:

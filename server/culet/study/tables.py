@@ -1,18 +1,21 @@
-"""What `culet bench` prints."""
+"""What `culet bench` and `culet study compare-bench` print."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from rich import box
+from rich.console import Console
 from rich.table import Table
 
+from culet.study.baseline import FIGURES, Comparison, compare
 from culet.study.bench import FeatureCost, Timing
 
 
 def case_table(timings: Sequence[Timing]) -> Table:
     """A row for each scene: one sample of every pixel."""
-    table = _table("scene", "median ms", "fastest ms", "ratio", "segments", "ns / segment", "cut")
+    table = _table("scene", "median ms", "fastest ms", "ratio", "segments", "ns / segment", "cut", "rmse")
     for timing in timings:
         table.add_row(
             timing.name,
@@ -22,6 +25,7 @@ def case_table(timings: Sequence[Timing]) -> Table:
             str(timing.segments),
             f"{timing.nanoseconds_per_segment:.2f}",
             f"{timing.cut:.2g}",
+            f"{timing.rmse:.2g}",
         )
     return table
 
@@ -39,6 +43,23 @@ def feature_table(costs: Sequence[FeatureCost]) -> Table:
             str(cost.idle_bytes),
         )
     return table
+
+
+def ratio_table(comparison: Comparison) -> Table:
+    """A row for each scene: after / before."""
+    table = _table("after / before", *(figure.replace("_", " ") for figure in FIGURES))
+    for case in comparison.cases:
+        table.add_row(case.name, *("-" if ratio is None else f"{ratio:.3f}" for ratio in case.ratios.values()))
+    return table
+
+
+def print_comparison(console: Console, before: dict[str, Any], after: dict[str, Any]) -> None:
+    """Of two lines of `culet bench -o`, with what each was measured on."""
+    compared = compare(before, after)
+    console.print(f"against commit {before.get('commit')} of {str(before.get('made'))[:10]}")
+    for remark in compared.remarks:
+        console.print(f"note: {remark}", soft_wrap=True)
+    console.print(ratio_table(compared))
 
 
 def _table(name: str, *figures: str) -> Table:
