@@ -110,7 +110,7 @@ class Requests:
             "uptime_seconds": time.monotonic() - self._started,
             "sessions": len(pictures),
             "sessions_watched": sum(live.watched for live in pictures),
-            "sessions_moving": sum(live.session.moving for live in pictures),
+            "sessions_moving": sum(live.watched and live.session.moving for live in pictures),
             "stills_waiting": len(self._stills),
             "meshes": len(self._meshes),
             "skies": len(self._skies),

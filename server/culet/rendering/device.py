@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections import OrderedDict
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -91,8 +93,29 @@ def open_device() -> Device:
             context, queue, candidate.name.strip(), candidate.platform.version.strip(), lanes,
             candidate.max_compute_units,
         )  # fmt: skip
-    found = "; ".join(tried) or "none matches" + (f" CULET_DEVICE={wanted!r}" if wanted else "")
-    raise DeviceError(f"no OpenCL device works ({found}); on Debian: apt-get install pocl-opencl-icd")
+    if not tried:
+        tried = [f"none matches CULET_DEVICE={wanted!r}" if wanted and candidates else "the drivers offer none"]
+    raise DeviceError(f"no OpenCL device works ({'; '.join(tried)}); {_remedy()}")
+
+
+def _remedy() -> str:
+    """What to do about it. Without a folder for its machine code PoCL offers no device, and does not say why."""
+    folder = _pocl_cache()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return "on Debian: apt-get install pocl-opencl-icd"
+    except OSError as error:
+        return f"PoCL cannot write to its cache {folder} ({error.strerror}); name another folder by POCL_CACHE_DIR"
+
+
+def _pocl_cache() -> Path:
+    """As PoCL's `pocl_cache_init_topdir` finds it."""
+    if own := os.environ.get("POCL_CACHE_DIR"):
+        return Path(own)
+    if cache := os.environ.get("XDG_CACHE_HOME"):
+        return Path(cache, "pocl", "kcache")
+    return Path(os.environ.get("HOME", "/tmp"), ".cache", "pocl", "kcache")  # noqa: S108 - PoCL's choice
 
 
 def _probe(context: Any, queue: Any) -> None:  # noqa: ANN401 - pyopencl has no types
