@@ -68,7 +68,8 @@ def step(state: RigidState, settings: SimulationSettings, body: RigidBody) -> Ri
     momentum = (px, py, pz)
     if asleep:
         momentum = angular = (0.0, 0.0, 0.0)
-    return RigidState(state.step + 1, state.time + h, (x, y, z), orientation, momentum, angular, impacts, asleep)
+    time = state.time + h
+    return RigidState(state.step + 1, time, (x, y, z), orientation, momentum, angular, impacts, asleep, state.coarse)
 
 
 def touch(state: RigidState, body: RigidBody) -> Touch:

@@ -95,6 +95,16 @@ def contact_step(
     return limited(end, body, highest - body.mass * gravity * end.position[1]), length
 
 
+def slid(motion: Motion, body: RigidBody, braking: float, time: float) -> Motion:
+    """Level, without turning, slower by `braking` R/s^2: what is left of a step too long to follow how it rocks."""
+    (px, _, pz), speed_now = motion.momentum, math.hypot(motion.momentum[0], motion.momentum[2]) / body.mass
+    part = max(1 - braking * time / speed_now, 0.0) if speed_now > 0 else 0.0
+    mean = (1 + part) / 2 * time / body.mass
+    x, y, z = motion.position
+    moved = motion._replace(position=(x + px * mean, y, z + pz * mean))
+    return pushed_out(moved._replace(momentum=(px * part, 0.0, pz * part), angular_momentum=(0.0, 0.0, 0.0)), body)
+
+
 def _kicked_and_stopped(
     motion: Motion, body: RigidBody, points: list[Contact], gravity: float, friction: float, length: float
 ) -> Motion:

@@ -1,9 +1,10 @@
 """Free flight up to the first touch, by conservative advancement: nothing is passed through, at any speed and step.
 
-No point of the stone moves faster than B = |V| + |omega| r, so that nothing can touch for gap / B seconds. That alone
-would creep towards a touch, and never get away from one. So a step may also be as long as the vertices' paths are
-straight: their acceleration is below A = g + |omega|^2 r, and between two instants at which a vertex is outside it dips
-in by no more than A t^2 / 8; `SAGITTA` bounds that. Where a step ends inside, the touch is found by regula falsi.
+No point of the stone moves faster than B = |V| + |omega| r, so that nothing can touch for gap / B seconds, nor before
+the sphere about the stone does, however it turns. That alone would creep towards a touch, and never get away from one.
+So a step may also be as long as the vertices' paths are straight: their acceleration is below A = g + |omega|^2 r, and
+between two instants at which a vertex is outside it dips in by no more than A t^2 / 8; `SAGITTA` bounds that. Where a
+step ends inside, the touch is found by regula falsi.
 """
 
 from __future__ import annotations
@@ -21,26 +22,31 @@ SAGITTA = 1e-5
 MAX_REFINEMENTS = 80
 
 
-def fly(motion: Motion, body: RigidBody, gravity: float, time: float, integrator: Integrator) -> tuple[Motion, float]:
+def fly(
+    motion: Motion, body: RigidBody, gravity: float, time: float, integrator: Integrator, shortest: float = 0.0
+) -> tuple[Motion, float]:
     """Fly for at most `time` seconds, until a vertex touches; the motion then, and the time that it took.
 
-    The stone must be outside the surfaces (`pushed_out`); it is outside at the end, at a touch by less than TOUCH.
+    The stone must be outside the surfaces (`pushed_out`); it is outside at the end, at a touch by less than TOUCH. A
+    flight that no touch ends takes `shortest` seconds or more, whatever dips in and out in them: the centre of mass,
+    on its parabola, cannot.
     """
     omega = body.fastest_turn(motion.orientation, motion.angular_momentum)
     turning = omega * body.hull.radius
     part = time
     for surface in body.surfaces:
-        closing = turning + _approach(motion, body, surface.normal, gravity, time)
+        approach = _approach(motion, body, surface.normal, gravity, time)
         room = sphere_centre_gap(motion, surface) - body.hull.radius
-        if room > closing * time:
-            continue
+        if room > approach * time:
+            continue  # however it turns
+        safe = room / approach if room > 0 else 0.0
         room = max(float(gaps(motion, body, surface).min()), 0.0)
-        if room <= closing * part:
-            part = min(part, room / closing) if closing > 0 else part
+        if room <= (approach + turning) * part:
+            part = min(part, max(safe, room / (approach + turning)))
     if part < time:
         bend = gravity + omega * turning
         straight = math.sqrt(8 * SAGITTA / bend) if bend > 0 else time
-        part = min(max(part, straight), time)
+        part = min(max(part, straight, shortest), time)
     end = flown(motion, body, gravity, part, integrator)
     inside = _depth(end, body)
     if inside <= 0:

@@ -53,6 +53,8 @@ class Path:
     """(N,)"""
     impacts: NDArray[np.int64]
     """(N,), hard impacts so far"""
+    coarse: NDArray[np.int64]
+    """(N,), steps so far whose events were too many to be followed exactly; classic: 0"""
     contacts: NDArray[np.int64]
     """(N,), vertices that touch a surface; classic: 1 where the bounding sphere touches the floor"""
     penetration: Floats
@@ -70,7 +72,7 @@ class Path:
             ("angular_velocity", "xyz"),
         ):
             table |= {f"{name}_{axis}": getattr(self, name)[:, index] for index, axis in enumerate(axes)}
-        for name in ("energy", "asleep", "impacts", "contacts", "penetration", "clearance"):
+        for name in ("energy", "asleep", "impacts", "coarse", "contacts", "penetration", "clearance"):
             table[name] = getattr(self, name)
         return table
 
@@ -122,6 +124,7 @@ def _empty_path(settings: dict[str, Any], length: int) -> Path:
         energy=floats(),
         asleep=np.empty(length, np.bool_),
         impacts=counts(),
+        coarse=counts(),
         contacts=counts(),
         penetration=floats(),
         clearance=floats(),
@@ -140,6 +143,7 @@ def _record_state(path: Path, index: int, simulation: Simulation) -> None:
     path.energy[index] = simulation.energy()
     path.asleep[index] = state.asleep
     path.impacts[index] = state.impacts
+    path.coarse[index] = state.coarse
     path.contacts[index] = touch.contacts
     path.penetration[index] = touch.penetration
     path.clearance[index] = touch.clearance

@@ -34,6 +34,7 @@ class _StateRecord(_Record):
     angular_momentum: tuple[Number, Number, Number]
     impacts: Count
     asleep: StrictBool
+    coarse: Count = 0
 
     @model_validator(mode="after")
     def _is_a_rotation(self) -> Self:

@@ -40,3 +40,5 @@ class RigidState:
     """Hard impacts so far; with the seed it fixes the next random torque."""
     asleep: bool = False
     """At rest until something disturbs it."""
+    coarse: int = 0
+    """Steps so far with more events than were followed exactly (rigid)."""
