@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import pytest
 from playwright.sync_api import FloatRect, Locator
 
 from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.server import Server
 from e2e.view import View
 
-PHONE = {"viewport": {"width": 375, "height": 667}, "has_touch": True, "is_mobile": True}
+PHONE: dict[str, Any] = {"viewport": {"width": 375, "height": 667}, "has_touch": True, "is_mobile": True}
 FINGER = 28
 """CSS pixels: lower than this is hard to hit."""
 
@@ -43,6 +47,8 @@ def test_a_phone_shows_picture_status_and_a_folded_panel(view_of: ViewOf) -> Non
         heading.wait_for()
         assert box(heading)["height"] >= FINGER
         assert inside(box(heading))
+    folded, below = (box(page.get_by_role("button", name=name)) for name in ("Move", "Stone and surroundings"))
+    assert below["y"] - folded["y"] - folded["height"] == pytest.approx(0, abs=2), "a folded folder takes no room"
     page.get_by_role("button", name="Stone and surroundings").tap()
     checkbox = page.get_by_role("checkbox", name="Mirror")
     checkbox.tap()
@@ -50,6 +56,20 @@ def test_a_phone_shows_picture_status_and_a_folded_panel(view_of: ViewOf) -> Non
     assert checkbox.is_checked()
     assert view.scene["floor"]["kind"] == "mirror"
     assert [message["type"] for message in view.sent] == ["toggle_mirror"]
+
+
+def test_a_session_made_in_a_narrow_window_has_the_whole_stone_in_view(view_of: ViewOf, server: Server) -> None:
+    wide, narrow = view_of().open(), view_of(**PHONE).open()
+    near, far = (np.array(view.scene["camera"]["position"]) for view in (wide, narrow))
+    target = np.array(wide.scene["camera"]["target"])
+    farther = 0.7 * PHONE["viewport"]["height"] / PHONE["viewport"]["width"]
+    np.testing.assert_allclose(far - target, (near - target) * farther, rtol=1e-12)
+    narrow.page.keyboard.press("o")
+    narrow.until("far => culet.state.scene.camera.position[2] !== far", far[2])
+    narrow.page.keyboard.press("f")
+    narrow.until("far => culet.state.scene.camera.position[2] === far", far[2])
+    guest = view_of(**PHONE).open(f"?session={wide.session}")
+    assert guest.scene["camera"] == server.session(wide.session)["scene"]["camera"] == wide.scene["camera"]
 
 
 def test_the_panel_shows_the_state_and_every_key(view_of: ViewOf) -> None:

@@ -1,7 +1,7 @@
 /** How the stone falls, as a scene says it, and the merge patches that change it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { number, part, text } from "./json";
+import { number, part, text, triple } from "./json";
 import { stoneOf, stonePatch } from "./scene-choices";
 
 export interface Fall {
@@ -81,9 +81,4 @@ export function fallPatch<K extends keyof Fall>(
     default:
       return { simulation: { [name === "rolling" ? "rolling_resistance" : name]: value } };
   }
-}
-
-function triple(value: unknown): Direction | null {
-  const numbers = Array.isArray(value) ? value.filter((one) => typeof one === "number") : [];
-  return numbers.length === 3 ? (numbers as unknown as Direction) : null;
 }

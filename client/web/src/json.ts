@@ -17,3 +17,8 @@ export function text(value: unknown, otherwise: string): string {
 export function number(value: unknown, otherwise: number): number {
   return typeof value === "number" ? value : otherwise;
 }
+
+export function triple(value: unknown): readonly [number, number, number] | null {
+  const numbers = Array.isArray(value) ? value.filter((one) => typeof one === "number") : [];
+  return numbers.length === 3 ? (numbers as [number, number, number]) : null;
+}

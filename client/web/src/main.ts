@@ -4,6 +4,7 @@ import { CloseCode } from "@culet/protocol/messages";
 import type { Action } from "./actions";
 import { Banner, bannerText, Obstacle, obstacleText, tryingAgainText } from "./banner";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
+import { framingPatch } from "./framing";
 import { listenToKeys } from "./keys";
 import { element } from "./page";
 import { Panel } from "./panel";
@@ -159,6 +160,14 @@ function watch(id: string): void {
   viewer.stream.open();
 }
 
+/** The id of a session that is made for this window. */
+async function newSession(preset?: string): Promise<string> {
+  const { id, scene } = await rest.createSession(preset);
+  const patch = framingPatch(scene, window.innerWidth / window.innerHeight);
+  if (patch) await rest.patchSession(id, patch);
+  return id;
+}
+
 /** Find or make the session; after `tries` that failed, since the server was not ready. */
 async function start(tries = 0): Promise<void> {
   const wanted = wantedSession(location.search);
@@ -167,7 +176,7 @@ async function start(tries = 0): Promise<void> {
   }
   try {
     if (wanted.kind === "session") await rest.findSession(wanted.id);
-    watch(wanted.kind === "session" ? wanted.id : await rest.createSession(wanted.preset));
+    watch(wanted.kind === "session" ? wanted.id : await newSession(wanted.preset));
     obstacle.hide();
   } catch (error) {
     const known = error instanceof rest.ProblemError ? error : new rest.ProblemError(500, String(error));

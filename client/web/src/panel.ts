@@ -38,7 +38,7 @@ export class Panel {
 
   constructor(container: HTMLElement, actions: PanelActions) {
     this.actions = actions;
-    this.gui = new GUI({ container, title: "culet", injectStyles: false, width: 250 });
+    this.gui = new GUI({ container, title: "culet", injectStyles: false });
     this.addMoves();
     const surroundings = this.addSwitches();
     this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);

@@ -5,6 +5,7 @@ import {
   isPassing,
   materials,
   ProblemError,
+  patchSession,
   problemText,
   targa,
   uploadMesh,
@@ -23,10 +24,17 @@ function answering(status: number, body: unknown) {
   return calls;
 }
 
+it("patches a session", async () => {
+  const calls = answering(200, {});
+  await patchSession("abc", { floor: { kind: "none" } });
+  expect(calls[0]?.path).toBe("/api/sessions/abc");
+  expect(calls[0]?.init).toMatchObject({ method: "PATCH", body: '{"floor":{"kind":"none"}}' });
+});
+
 describe("a new session", () => {
   it("is of the default scene, or of a preset", async () => {
     const calls = answering(201, { id: "abc", scene: {} });
-    expect(await createSession()).toBe("abc");
+    expect(await createSession()).toEqual({ id: "abc", scene: {} });
     await createSession("classic");
     expect(calls.map(({ path }) => path)).toEqual(["/api/sessions", "/api/sessions"]);
     expect(calls.map(({ init }) => init?.body)).toEqual(["{}", '{"preset":"classic"}']);

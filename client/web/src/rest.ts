@@ -1,6 +1,7 @@
 /** The gateway's REST interface. Errors are problem documents (RFC 9457). */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import { object } from "./json";
 
 /** An answer other than 2xx; the message is fit to be shown. */
 export class ProblemError extends Error {
@@ -66,12 +67,17 @@ function post(body: JsonObject): RequestInit {
   return { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
 }
 
-/** The id of a new session, of the default scene or of a preset. */
-export async function createSession(preset?: string): Promise<string> {
+/** A new session, of the default scene or of a preset. */
+export async function createSession(preset?: string): Promise<{ id: string; scene: JsonObject }> {
   const response = await request("/api/sessions", post(preset === undefined ? {} : { preset }));
-  const { id } = (await response.json()) as JsonObject;
+  const { id, scene } = (await response.json()) as JsonObject;
   if (typeof id !== "string") throw new ProblemError(response.status, "expected the id of a session, got none");
-  return id;
+  return { id, scene: object(scene) };
+}
+
+/** Change a session's scene by a merge patch. */
+export async function patchSession(id: string, patch: JsonObject): Promise<void> {
+  await request(`/api/sessions/${encodeURIComponent(id)}`, { ...post(patch), method: "PATCH" });
 }
 
 /** Ends well if there is such a session; throws ProblemError with status 404 if not. */
