@@ -187,7 +187,7 @@ def test_another_shape_is_put_at_the_start_at_rest() -> None:
 )
 @pytest.mark.parametrize("falls", [True, False])
 def test_another_start_is_shown_and_a_falling_stone_falls_from_there(patch: dict[str, Any], falls: bool) -> None:
-    subject = falling(session())
+    subject = falling(session(), 0.204)  # between two steps
     if not falls:
         after(subject, messages.ToggleFall())
     scene = after(subject, messages.PatchScene(patch=patch))
