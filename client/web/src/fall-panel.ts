@@ -25,11 +25,14 @@ const SLIDERS: readonly Slider[] = [
   { name: "rolling", label: "Rolling resistance", most: 0.5, step: 0.005, hint: "As a lever arm, R" },
 ];
 
+/** For so long after it was let go, a slider stays where it is: what the server says of it may still be on its way. */
+const ECHO_MS = 500;
+
 export class FallPanel {
   private readonly shown: Fall = { ...NOTHING_FALLS };
   private readonly controllers = new Map<keyof Fall, Controller>();
-  /** Being dragged: shows where the finger is, not what the server last said. */
-  private readonly held = new Set<keyof Fall>();
+  /** Show where the finger is or was, not what the server last said; with the timer that ends this, if let go. */
+  private readonly held = new Map<keyof Fall, ReturnType<typeof setTimeout> | undefined>();
   private readonly waiting = new Map<keyof Fall, never>();
   private readonly folder: GUI;
   private readonly send: (patch: Values) => void;
@@ -68,7 +71,7 @@ export class FallPanel {
       .name(label);
     controller.domElement.title = hint;
     this.listen(name, controller);
-    controller.onFinishChange(() => this.held.delete(name));
+    controller.onFinishChange(() => this.letGo(name));
   }
 
   private listen(name: keyof Fall, controller: Controller): void {
@@ -76,11 +79,24 @@ export class FallPanel {
     controller.onChange((value: never) => {
       const list = controller.domElement.querySelector("select");
       list?.blur(); // or the next key would choose something else
-      if (!list) this.held.add(name);
+      if (!list) this.hold(name);
       this.display(); // what is not held shows what is, until the server says that it changed
       if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
       this.waiting.set(name, value);
     });
+  }
+
+  private hold(name: keyof Fall, timer?: ReturnType<typeof setTimeout>): void {
+    clearTimeout(this.held.get(name));
+    this.held.set(name, timer);
+  }
+
+  private letGo(name: keyof Fall): void {
+    const end = () => {
+      this.held.delete(name);
+      this.display();
+    };
+    this.hold(name, setTimeout(end, ECHO_MS));
   }
 
   private flush(): void {
@@ -90,7 +106,7 @@ export class FallPanel {
 
   private display(): void {
     const now = fallOf(this.scene);
-    for (const name of this.held) now[name] = this.shown[name] as never;
+    for (const name of this.held.keys()) now[name] = this.shown[name] as never;
     Object.assign(this.shown, now);
     for (const [name, controller] of this.controllers) {
       controller.updateDisplay();

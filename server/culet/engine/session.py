@@ -146,7 +146,7 @@ class Session:
     def replace_stone(
         self, scene: Scene, stone: Stone | None, *, home: Camera | None = None, sky: Sky | None = None
     ) -> None:
-        """As `change`, with a stone that is new, or starts anew: at rest where the scene has it."""
+        """As `change`, with another stone, or none: at rest where the scene has it."""
         self._place(scene, stone)
         self._stop()
         self.change(scene, home=home, sky=sky)
