@@ -33,52 +33,97 @@ static inline uint mask_bits(maskW mask) {
 }
 static inline int lowest_bit(uint bits) { return popcount((bits & -bits) - 1); }
 
-// Part of a triangle's extent, or of R along a ray, within which rounding may place a hit on the wrong side of an edge or
-// of the ray's start. Neighbours overlap by this much, which closes the cracks between them.
+// R by which rounding may place a ray's start behind a facet that is ahead of it, and cosines that it may turn about.
 #if IS_DOUBLE
-#define OVERLAP 1e-12
-#define WIDE_OVERLAP 1e-9
+#define SLACK 1e-12
 #else
-#define OVERLAP 2e-6f
-#define WIDE_OVERLAP                                                                                                   \
-  1e-4f // for a ray inside that has found nothing, which no ray inside can: it is at an edge or a vertex
+#define SLACK 2e-6f
 #endif
+// A ray inside that starts outside by rounding, at an edge, may pass the stone by. Triangles are then widened, by this many
+// R at first and WIDER times as much each time, until it finds one. It does: some facet is turned away from any ray, and no
+// triangle is LAST_WIDENING away. 6e-6 was enough for most stones that were tried, 5e-5 for a needle of 1000 : 1.
+#define FIRST_WIDENING SMALLEST_GAP
+#define LAST_WIDENING ((real)16)
+#define WIDER ((real)8)
 
 typedef struct {
   // For each node the children's boxes and those of their normals: lower x, y, z and upper x, y, z, TREE_WIDTH of each.
   __global const real *boxes;
   __global const int *links;    // for each child the node, or ~leaf
-  __global const real *corners; // for each leaf one corner, two edges and the facet's normal, TREE_WIDTH of each
+  __global const real *corners; // for each leaf three corners and the facet's normal, TREE_WIDTH of each
 } tree_t;
 
 typedef struct {
   real origin[3], direction[3];
-  real start;   // hits before this do not count,
-  real overlap;
-  real limit;   // nor do those behind this; becomes the nearest hit
-  int triangle; // leaf x TREE_WIDTH + place, -1 for none
+  int axis[3];   // z is the direction's longest; x and y are so that triangles that count turn left
+  real shear[2]; // how far the ray goes along x and y for each step along z
+  real start;    // hits before this do not count,
+  real limit;    // nor do those behind this; becomes the nearest hit
+  real widening; // of triangles, R
+  int triangle;  // leaf x TREE_WIDTH + place, -1 for none
 } probe_t;
 
-// Moller & Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997). Only triangles that the ray meets from the
-// right side count (side 1: from outside, -1: from inside): one that it has just left is turned away and needs no epsilon.
+static inline void set_shear(probe_t *probe, real side) {
+  const real *d = probe->direction;
+  const int z = fabs(d[0]) > fabs(d[1]) ? (fabs(d[0]) > fabs(d[2]) ? 0 : 2) : (fabs(d[1]) > fabs(d[2]) ? 1 : 2);
+  const int next = (z + 1) % 3, last = (z + 2) % 3, turned = side * d[z] > 0;
+  probe->axis[0] = turned ? last : next;
+  probe->axis[1] = turned ? next : last;
+  probe->axis[2] = z;
+  const real inverse = 1 / d[z];
+  probe->shear[0] = d[probe->axis[0]] * inverse;
+  probe->shear[1] = d[probe->axis[1]] * inverse;
+}
+
+typedef struct {
+  realW x, y, z;
+} cornerW;
+
+// A corner of each triangle as seen from the ray's start along the ray: the same numbers in every triangle that shares it.
+static inline cornerW sheared(__global const real *rows, int corner, const probe_t *probe) {
+  cornerW c;
+  c.z = load_wide(rows, 3 * corner + probe->axis[2]) - probe->origin[probe->axis[2]];
+  c.x =
+      fma((realW)(-probe->shear[0]), c.z, load_wide(rows, 3 * corner + probe->axis[0]) - probe->origin[probe->axis[0]]);
+  c.y =
+      fma((realW)(-probe->shear[1]), c.z, load_wide(rows, 3 * corner + probe->axis[1]) - probe->origin[probe->axis[1]]);
+  return c;
+}
+
+// Twice a.x b.y - a.y b.x: on which side of an edge the ray passes. Rounding is monotonic, so written like this the result
+// never has the wrong sign; it may be 0, and then the ray passes both neighbours. No ray slips between them.
+static inline realW turn(cornerW a, cornerW b) { return fma(a.x, b.y, -(a.y * b.x)) - fma(a.y, b.x, -(a.x * b.y)); }
+
+// An edge's length as the ray sees it, from 1 to 1.4 times as much.
+static inline realW length_about(cornerW a, cornerW b) { return fabs(a.x - b.x) + fabs(a.y - b.y); }
+
+static inline maskW spans_zero(realW a, realW b, realW c, real margin) {
+  return (fmin(fmin(a, b), c) <= margin) & (fmax(fmax(a, b), c) >= -margin);
+}
+
+// Woop, Benthin & Wald, Watertight Ray/Triangle Intersection (2013). Only facets that the ray meets from the right side count
+// (side 1: from outside, -1: from inside): one that it has just left is turned away and needs no epsilon. The distance is
+// that to the facet's plane, so that the crossing is on it to rounding however the ray grazes it.
 static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) {
   __global const real *rows = tree.corners + leaf * 12 * TREE_WIDTH;
-  const realW dx = (realW)(probe->direction[0]), dy = (realW)(probe->direction[1]), dz = (realW)(probe->direction[2]);
-  const realW ax = load_wide(rows, 3), ay = load_wide(rows, 4), az = load_wide(rows, 5);
-  const realW bx = load_wide(rows, 6), by = load_wide(rows, 7), bz = load_wide(rows, 8);
-  const realW px = dy * bz - dz * by, py = dz * bx - dx * bz, pz = dx * by - dy * bx;
-  const realW det = ax * px + ay * py + az * pz;
-  const maskW faces = side * det > (real)1e-30;
-  const realW inverse = (real)1 / select((realW)(1), det, faces);
-  const realW tx = probe->origin[0] - load_wide(rows, 0), ty = probe->origin[1] - load_wide(rows, 1),
-              tz = probe->origin[2] - load_wide(rows, 2);
-  const realW u = (tx * px + ty * py + tz * pz) * inverse;
-  const realW qx = ty * az - tz * ay, qy = tz * ax - tx * az, qz = tx * ay - ty * ax;
-  const realW v = (dx * qx + dy * qy + dz * qz) * inverse;
-  const realW t = (bx * qx + by * qy + bz * qz) * inverse;
-  const maskW hits = faces & (u >= -probe->overlap) & (v >= -probe->overlap) & (u + v <= 1 + probe->overlap) &
-                     (t >= probe->start - probe->overlap) & (t < probe->limit);
-  uint hit = mask_bits(hits);
+  const cornerW a = sheared(rows, 0, probe), b = sheared(rows, 1, probe), c = sheared(rows, 2, probe);
+  const realW u = turn(b, c), v = turn(c, a), w = turn(a, b);
+  maskW hits;
+  if (probe->widening == 0)
+    hits = (fmin(fmin(u, v), w) >= 0) & (u + v + w > 0);
+  else
+    hits = (u >= -probe->widening * length_about(b, c)) & (v >= -probe->widening * length_about(c, a)) &
+           (w >= -probe->widening * length_about(a, b)) & spans_zero(a.x, b.x, c.x, probe->widening) &
+           spans_zero(a.y, b.y, c.y, probe->widening);
+  const realW nx = load_wide(rows, 9 + probe->axis[0]), ny = load_wide(rows, 9 + probe->axis[1]),
+              nz = load_wide(rows, 9 + probe->axis[2]);
+  const realW slope = fma(nx, (realW)(probe->shear[0]), fma(ny, (realW)(probe->shear[1]), nz));
+  const realW speed = -side * probe->direction[probe->axis[2]] * slope;
+  const realW gap = -side * fma(nx, a.x, fma(ny, a.y, slope * a.z));
+  // From outside, light that skims a facet to rounding passes it by: reflected, it would skim it again, without end.
+  hits &= (speed > (side > 0 ? SLACK : PARALLEL)) & (gap - probe->start * speed >= -SLACK - probe->widening);
+  const realW t = (side < 0 ? fmax(gap, (realW)(SMALLEST_GAP)) : gap) / fmax(speed, (realW)(PARALLEL));
+  uint hit = mask_bits(hits & (t < probe->limit));
   if (hit == 0) return;
   real distance[TREE_WIDTH];
   JOIN(vstore, TREE_WIDTH)(t, 0, distance);
@@ -108,7 +153,7 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
   int most_facing[3];
   for (int k = 0; k < 3; k++) {
     inverse[k] = 1 / away_from_zero(probe->direction[k]);
-    const real offset = -probe->origin[k] * inverse[k], widening = (probe->overlap - OVERLAP) * fabs(inverse[k]);
+    const real offset = -probe->origin[k] * inverse[k], widening = probe->widening * fabs(inverse[k]);
     enter[k] = offset - widening;
     leave[k] = offset + widening;
     first_side[k] = inverse[k] < 0 ? 3 + k : k;
@@ -123,7 +168,7 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
       continue;
     }
     __global const real *rows = tree.boxes + node * 12 * TREE_WIDTH;
-    realW near = (realW)(probe->start - probe->overlap), far = (realW)(probe->limit), facing = (realW)(0);
+    realW near = (realW)(probe->start - SLACK - probe->widening), far = (realW)(probe->limit), facing = (realW)(0);
     for (int k = 0; k < 3; k++) {
       facing = fma(load_wide(rows, most_facing[k]), (realW)(-side * probe->direction[k]), facing);
       near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(inverse[k]), (realW)(enter[k])));
@@ -133,16 +178,10 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
     if (entered == 0) continue;
     real distance[TREE_WIDTH];
     JOIN(vstore, TREE_WIDTH)(near, 0, distance);
-    const int base = size;
-    for (; entered != 0; entered &= entered - 1) {
+    for (; entered != 0; entered &= entered - 1) { // in any order: to sort them costs more than it saves
       const int child = lowest_bit(entered);
-      int place = size++; // sorted, the nearest on top
-      for (; place > base && nearness[place - 1] < distance[child]; place--) {
-        stack[place] = stack[place - 1];
-        nearness[place] = nearness[place - 1];
-      }
-      stack[place] = tree.links[node * TREE_WIDTH + child];
-      nearness[place] = distance[child];
+      stack[size] = tree.links[node * TREE_WIDTH + child];
+      nearness[size++] = distance[child];
     }
   }
 }
@@ -157,6 +196,37 @@ static inline vec3L to_world(__constant const parameters_t *scene, vec3L v) {
   return vec3(v.x * scene->axes[0][0] + v.y * scene->axes[0][1] + v.z * scene->axes[0][2],
               v.x * scene->axes[1][0] + v.y * scene->axes[1][1] + v.z * scene->axes[1][2],
               v.x * scene->axes[2][0] + v.y * scene->axes[2][1] + v.z * scene->axes[2][2]);
+}
+
+// Cosine to a facet below which rounding of the ray's start moves the crossing by more than 1e-5 R along the ray.
+#define GRAZING (100000 * SMALLEST_GAP)
+
+static inline real dot_real(const real a[3], const real b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Where a ray that grazes a facet crosses it: where it does so to rounding, but while it is abreast of the triangle.
+static inline real abreast(__global const real *rows, const probe_t *probe) {
+  real normal[3], enter = -1e30f, leave = 1e30f, first = 1e30f, last = -1e30f;
+  for (int k = 0; k < 3; k++) normal[k] = rows[(9 + k) * TREE_WIDTH];
+  if (fabs(dot_real(normal, probe->direction)) > GRAZING) return probe->limit;
+  for (int corner = 0; corner < 3; corner++) {
+    real from[3], edge[3];
+    for (int k = 0; k < 3; k++) {
+      from[k] = rows[(3 * corner + k) * TREE_WIDTH];
+      edge[k] = rows[(3 * ((corner + 1) % 3) + k) * TREE_WIDTH] - from[k];
+      from[k] -= probe->origin[k];
+    }
+    const real outward[3] = {edge[1] * normal[2] - edge[2] * normal[1], edge[2] * normal[0] - edge[0] * normal[2],
+                             edge[0] * normal[1] - edge[1] * normal[0]};
+    const real margin = 2 * (SLACK + probe->widening) * (fabs(edge[0]) + fabs(edge[1]) + fabs(edge[2]));
+    const real speed = dot_real(outward, probe->direction);
+    const real t = (dot_real(outward, from) + margin) / away_from_zero(speed);
+    enter = speed < 0 ? fmax(enter, t) : enter;
+    leave = speed > 0 ? fmin(leave, t) : leave;
+    const real depth = from[probe->axis[2]] / probe->direction[probe->axis[2]];
+    first = fmin(first, depth);
+    last = fmax(last, depth);
+  }
+  return clamp(fmax(enter, fmin(probe->limit, leave)), first, last);
 }
 
 // The nearest crossing of each lane's ray between t_min and t_max, from outside (side 1) or from inside (side -1).
@@ -185,17 +255,18 @@ static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree
     probe.start = quantity[6][lane];
     probe.limit = t_max;
     probe.triangle = -1;
-    probe.overlap = OVERLAP;
+    set_shear(&probe, side);
+    probe.widening = 0;
     probe_tree(tree, side, &probe);
-    if (probe.triangle < 0 && side < 0) {
-      probe.overlap = WIDE_OVERLAP;
+    while (side < 0 && probe.triangle < 0 && probe.widening < LAST_WIDENING) {
+      probe.widening = fmax(FIRST_WIDENING, WIDER * probe.widening);
       probe_tree(tree, side, &probe);
     }
     if (probe.triangle < 0) continue;
-    t[lane] = fmax(probe.limit, probe.start);
     __global const real *rows =
-        tree.corners + (probe.triangle / TREE_WIDTH * 12 + 9) * TREE_WIDTH + probe.triangle % TREE_WIDTH;
-    for (int k = 0; k < 3; k++) normal[k][lane] = rows[k * TREE_WIDTH];
+        tree.corners + probe.triangle / TREE_WIDTH * 12 * TREE_WIDTH + probe.triangle % TREE_WIDTH;
+    t[lane] = fmax(abreast(rows, &probe), probe.start);
+    for (int k = 0; k < 3; k++) normal[k][lane] = rows[(9 + k) * TREE_WIDTH];
   }
   const realL found = load_lanes(t);
   const maskL hit = mask & (found > (real)-1e29);

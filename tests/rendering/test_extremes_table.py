@@ -19,8 +19,6 @@ MANY = (
     "needle, 1000 : 1",
 )
 """Cases that take seconds."""
-LOSE_RAYS = ("rays at and along every edge",)
-"""Where triangles let a few rays from inside slip between them, at edges that they are aimed at."""
 QUICK = [extreme for extreme in EXTREMES if extreme.name not in MANY]
 
 
@@ -40,14 +38,7 @@ def test_no_pixel_is_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> N
 @pytest.mark.validation
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("extreme", [e for e in EXTREMES if e.name in MANY], ids=lambda extreme: extreme.name)
-def test_no_pixel_of_many_views_is_wrong(
-    renderer: Renderer, extreme: Extreme, mode: str, request: pytest.FixtureRequest
-) -> None:
-    if mode == "triangles" and extreme.name in LOSE_RAYS:
-        known = pytest.mark.xfail(
-            reason="one ray of 9600, aimed at an edge exactly, misses both triangles", strict=True
-        )
-        request.applymarker(known)
+def test_no_pixel_of_many_views_is_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> None:
     assert_nothing_wrong(renderer, extreme, mode)
 
 

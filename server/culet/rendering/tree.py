@@ -24,7 +24,7 @@ BINS = 16
 
 MARGIN = 4e-6
 """R by which boxes are larger than what they hold: single precision rounds coordinates of up to 1, and the products of
-a ray's crossing with a box's side, by 6e-8 each; the triangles' own overlap is 2e-6."""
+a ray's crossing with a box's side, by 6e-8 each; a ray may start outside by a few times that."""
 
 Array = NDArray[np.float64]
 NOWHERE = (1e15, -2e15, 3e15)
@@ -41,7 +41,7 @@ class Tree:
     links: NDArray[np.int32]
     """(N, WIDTH): the child's node, or ~leaf."""
     corners: Array
-    """(L, 12, WIDTH): a corner, two edges, the facet's normal; zeros where a leaf is not full. The first is empty."""
+    """(L, 12, WIDTH): three corners, the facet's normal; zeros where a leaf is not full. The first is empty."""
 
 
 @dataclass(eq=False)
@@ -149,7 +149,7 @@ def _collapse(root: _Branch, stone: Stone, corners: Array) -> tuple[Tree, int]:
     normals = stone.planes[stone.facet_of_triangle, :3]
     for number, triangles in enumerate(leaves):
         a, b, c = corners[triangles].transpose(1, 0, 2)
-        rows[number, :, : len(triangles)] = np.hstack([a, b - a, c - a, normals[triangles]]).T
+        rows[number, :, : len(triangles)] = np.hstack([a, b, c, normals[triangles]]).T
     return Tree(np.array(boxes), np.array(links), rows), depth
 
 

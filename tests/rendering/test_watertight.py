@@ -1,0 +1,134 @@
+"""No ray slips between two triangles: rays aimed at edges and vertices exactly, and reflected inside many times."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pytest
+import trimesh
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+import culet_kernels
+from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.stone import Stone
+from culet.rendering.device import Device
+from culet.rendering.parameters import layout
+from culet.rendering.program import FLAGS, Variant
+from culet.rendering.projection import rotation_matrix
+from culet.rendering.tree import tree_of
+from culet.study.extremes import ball, box
+from geometry.shapes import obj, prism, star_outline
+from rendering.views import Array
+from validation.stones import brilliant, ring
+
+BOUNCES = 40
+ETA = 2.42
+TURNS = 4
+"""Orientations of the stone, the first of which is that of its file."""
+
+
+def star() -> Stone:
+    """Ten dents and points between two flat faces."""
+    return stone_from_mesh(obj(*prism(star_outline(), 0.8)), "obj", name="star")
+
+
+def thorns(seed: int) -> Callable[[], Stone]:
+    """300 random directions, at random distances from the centre: skinny triangles, sharp peaks and dents."""
+
+    def make() -> Stone:
+        random = np.random.default_rng(seed)
+        directions = random.normal(size=(300, 3))
+        directions /= np.linalg.norm(directions, axis=1)[:, None]
+        triangles = ConvexHull(directions).simplices
+        a, b, c = directions[triangles].transpose(1, 0, 2)
+        inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+        triangles[inward] = triangles[inward][:, ::-1]
+        body = trimesh.Trimesh(directions * random.uniform(0.3, 1, (300, 1)), triangles, process=False)
+        return stone_from_mesh(body.export(file_type="obj").encode(), "obj", name="thorns")
+
+    return make
+
+
+STONES: dict[str, Callable[[], Stone]] = {
+    "brilliant": brilliant,
+    "ring": ring,
+    "star": star,
+    "thorns": thorns(0),
+    "more thorns": thorns(1),
+    "5000 facets": ball(5000),
+    "needle": box(1, 1e-3, 1e-3),
+    "wafer": box(1, 1e-3, 1),
+}
+
+
+def aimed(stone: Stone, count: int, random: np.random.Generator) -> Array:
+    """(count, 6) starts and unit directions: from all around, at vertices, middles of edges and anywhere on edges; one
+    in ten along an edge."""
+    triangles = stone.triangles
+    edges = np.unique(np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])), axis=0)
+    a, b = stone.vertices[edges[random.integers(len(edges), size=count)]].transpose(1, 0, 2)
+    place = random.choice([0, 0.5, np.nan, np.nan], size=(count, 1))
+    target = a + np.where(np.isnan(place), random.random((count, 1)), place) * (b - a)
+    side = random.normal(size=(count, 3))
+    eye = 3 * side / np.linalg.norm(side, axis=1, keepdims=True)
+    along = random.random((count, 1)) < 0.1
+    eye = np.where(along, a + 2 * (a - b) / np.linalg.norm(a - b, axis=1, keepdims=True), eye)
+    direction = (target - eye) / np.linalg.norm(target - eye, axis=1, keepdims=True)
+    return np.hstack([eye, direction])
+
+
+def walk(device: Device, real: Any, stone: Stone, count: int) -> tuple[NDArray[Any], NDArray[Any]]:  # noqa: ANN401 - a NumPy type
+    """Of `count` rays, those that meet the stone: how many segments each has inside, and how far from the centre."""
+    lanes = device.lanes_for(real)
+    text = culet_kernels.source("mesh.cl") + Path(__file__).with_name("walk.cl").read_text(encoding="utf-8")
+    options = [*FLAGS, *Variant(lanes=lanes, real=real).options, "-DGEOMETRY=2"]
+    kernel = cl.Kernel(cl.Program(device.context, text).build(options), "walk")
+    random, tree = np.random.default_rng(7), tree_of(stone)
+    rows = count // TURNS // lanes
+    found, farthest = np.zeros((TURNS, rows * lanes), np.int32), np.zeros((TURNS, rows * lanes), real)
+    flags = cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR
+
+    def upload(array: Any) -> cl.Buffer:  # noqa: ANN401
+        return cl.Buffer(device.context, flags, hostbuf=np.ascontiguousarray(array))
+
+    mesh = [upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
+    for turn in range(TURNS):
+        orientation = random.normal(size=4) if turn else np.array([1.0, 0, 0, 0])
+        w, x, y, z = orientation / np.linalg.norm(orientation)
+        rotation = rotation_matrix((w, x, y, z))
+        parameters = np.zeros((), layout(real))
+        parameters["axes"] = rotation
+        rays = aimed(stone, rows * lanes, random).reshape(-1, 2, 3) @ rotation.T
+        results = upload(found[turn]), upload(farthest[turn])
+        kernel(
+            device.queue, (rows,), (1,), upload(parameters), *mesh, upload(rays.reshape(-1, 6).T.astype(real)),
+            real(ETA), np.int32(BOUNCES), *results,
+        )  # fmt: skip
+        for array, buffer in zip((found, farthest), results, strict=True):
+            cl.enqueue_copy(device.queue, array[turn], buffer)
+    enters = found >= 0
+    return found[enters], farthest[enters]
+
+
+def assert_all_find_their_way(device: Device, real: Any, stone: Stone, count: int) -> None:  # noqa: ANN401
+    found, farthest = walk(device, real, stone, count)
+    assert len(found) > 0.6 * count  # measured 0.69 to 0.97: edges seen against the sky are often missed
+    assert (found == BOUNCES).all()
+    assert farthest.max() < 1 + 5e-6  # measured 1 + 1e-6: none goes on outside
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["single", "double"])
+@pytest.mark.parametrize("name", STONES)
+def test_every_ray_that_goes_in_finds_its_way(device: Device, name: str, real: Any) -> None:  # noqa: ANN401
+    assert_all_find_their_way(device, real, STONES[name](), 20_000)
+
+
+@pytest.mark.validation
+@pytest.mark.parametrize("name", STONES)
+def test_every_ray_of_a_million_finds_its_way(device: Device, name: str) -> None:
+    assert_all_find_their_way(device, np.float32, STONES[name](), 1_000_000)
