@@ -65,7 +65,7 @@ FIELDS = (
     HeaderField("simulation_time", "d", "s since the stone was put at its start"),
     HeaderField("timestamp", "d", "s since the Unix epoch, engine's clock, when encoded"),
     HeaderField("simulate_ms", "f", "milliseconds spent on the simulation for this frame"),
-    HeaderField("render_ms", "f", "milliseconds spent on rendering"),
+    HeaderField("render_ms", "f", "milliseconds spent on rendering, all samples"),
     HeaderField("encode_ms", "f", "milliseconds spent on tone mapping and encoding"),
     HeaderField("cut", "f", "mean weight of what the cut-off dropped, 0 to 1"),
     HeaderField("error", "f", "root mean square error of radiance: estimated, or the frontier's (bit 3), or NaN"),

@@ -95,6 +95,11 @@ def messages_typescript() -> str:
         _constants("CloseCode", {code.name: code.value for code in close.CloseCode}),
         "/** After these a client does not try again by itself. */\n",
         f"export const FINAL_CLOSE_CODES: readonly number[] = {sorted(int(code) for code in close.FINAL)};\n\n",
+        "/** What a new session's `Balance` has. */\n",
+        f"export const BALANCED = {messages.BALANCED:g};\n",
+        "/** Frames per second that an exactness of 0 and of 1 asks for, geometric between them. */\n",
+        f"export const FASTEST_RATE = {messages.FASTEST_RATE:g};\n",
+        f"export const EXACTEST_RATE = {messages.EXACTEST_RATE:g};\n\n",
         "export type JsonObject = Record<string, unknown>;\n",
     ]
     unions: dict[str, Schema] = {

@@ -19,6 +19,8 @@ Pixels = Annotated[int, Field(ge=16, le=8192)]
 Exactness = Annotated[float, Field(ge=0, le=1)]
 BALANCED: Exactness = 0.5
 """What a new session has."""
+FASTEST_RATE, EXACTEST_RATE = 60.0, 15.0
+"""Frames per second that a balance of 0 and of 1 asks for, if viewers can take them; half way between them, 30."""
 
 
 class Message(BaseModel):

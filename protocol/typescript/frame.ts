@@ -47,7 +47,7 @@ export interface Frame {
   timestamp: number;
   /** milliseconds spent on the simulation for this frame */
   simulateMs: number;
-  /** milliseconds spent on rendering */
+  /** milliseconds spent on rendering, all samples */
   renderMs: number;
   /** milliseconds spent on tone mapping and encoding */
   encodeMs: number;

@@ -18,6 +18,12 @@ export type CloseCode = (typeof CloseCode)[keyof typeof CloseCode];
 /** After these a client does not try again by itself. */
 export const FINAL_CLOSE_CODES: readonly number[] = [1000, 1002, 4403, 4404];
 
+/** What a new session's `Balance` has. */
+export const BALANCED = 0.5;
+/** Frames per second that an exactness of 0 and of 1 asks for, geometric between them. */
+export const FASTEST_RATE = 60;
+export const EXACTEST_RATE = 15;
+
 export type JsonObject = Record<string, unknown>;
 
 /**

@@ -10,8 +10,6 @@ from itertools import pairwise
 import pytest
 
 from culet.engine.governor import (
-    EXACTEST_RATE,
-    FASTEST_RATE,
     PATIENCE,
     TRIAL,
     Governor,
@@ -21,7 +19,7 @@ from culet.engine.governor import (
     read_ladder,
 )
 from culet.scene import Scene
-from culet_protocol.messages import BALANCED, Balance
+from culet_protocol.messages import BALANCED, EXACTEST_RATE, FASTEST_RATE, Balance
 
 WANTED = 1280, 720
 RATE = 30.0

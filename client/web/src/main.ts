@@ -6,6 +6,7 @@ import { Banner, bannerText, Obstacle, obstacleText, tryingAgainText } from "./b
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { framingPatch } from "./framing";
 import { listenToKeys } from "./keys";
+import { Meter } from "./meter";
 import { element } from "./page";
 import { Panel } from "./panel";
 import { listenToPointers } from "./pointer-input";
@@ -46,6 +47,7 @@ const panel = new Panel(element("panel", HTMLElement), {
   patch: (patch) => viewer?.send({ type: "patch_scene", patch }),
   newSession: startAnew,
 });
+const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance));
 listenToKeys(window, perform);
 listenToPointers(
   canvas,
@@ -141,6 +143,7 @@ async function leaveIfUnknown(id: string): Promise<void> {
 
 function stateChanged(before: ViewState, after: ViewState): void {
   panel.update(after);
+  meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
   if (viewer) banner.show(bannerText(viewer.stream.connection, after.engine));
@@ -150,7 +153,10 @@ function watch(id: string): void {
   session = id;
   history.replaceState(null, "", sessionAddress(id));
   viewer = new Viewer(streamUrl(location, id), {
-    show: (picture) => screen.show(picture),
+    show: (picture, frame, arrival) => {
+      screen.show(picture);
+      meter.take(frame, arrival);
+    },
     size: () => screen.size,
     connection: connectionChanged,
     state: stateChanged,

@@ -21,6 +21,12 @@ describe("the state after a notice", () => {
     expect(withNotice(INITIAL, shown(other))).toMatchObject({ mirror: false, light: true, walls: true });
   });
 
+  it("has the session's balance, half way if none is said", () => {
+    const balance = { exactness: 0.75, pinned: true };
+    expect(withNotice(INITIAL, { type: "state", scene: DEFAULT, falling: false, ...balance })).toMatchObject(balance);
+    expect(withNotice(INITIAL, shown(DEFAULT))).toMatchObject({ exactness: 0.5, pinned: false });
+  });
+
   it("survives a scene without the parts it looks at", () => {
     expect(withNotice(INITIAL, shown({ floor: null }))).toMatchObject({ mirror: false, light: false, walls: false });
   });

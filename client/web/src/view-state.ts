@@ -1,6 +1,6 @@
 /** What the page knows of its session: an immutable value, changed by notices. */
 
-import type { JsonObject, Notice } from "@culet/protocol/messages";
+import { BALANCED, type JsonObject, type Notice } from "@culet/protocol/messages";
 import type { Target } from "./events";
 
 export interface ViewState {
@@ -10,6 +10,10 @@ export interface ViewState {
   mirror: boolean;
   light: boolean;
   walls: boolean;
+  /** Of moving frames: 0 many, 1 good ones. */
+  exactness: number;
+  /** Exactness fixes their quality instead. */
+  pinned: boolean;
   viewers: number;
   engine: "down" | "up";
 }
@@ -21,6 +25,8 @@ export const INITIAL: ViewState = {
   mirror: false,
   light: false,
   walls: false,
+  exactness: BALANCED,
+  pinned: false,
   viewers: 1,
   engine: "up",
 };
@@ -44,6 +50,8 @@ export function withNotice(state: ViewState, notice: Notice): ViewState {
         mirror,
         light: kind(scene, "environment") === "light",
         walls: walls !== "none",
+        exactness: notice.exactness ?? BALANCED,
+        pinned: notice.pinned ?? false,
       };
     }
     case "viewers":
@@ -68,6 +76,7 @@ export function describeChange(before: ViewState, after: ViewState): string {
     if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");
     if (before.light !== after.light) said.push(after.light ? "light sky" : "the scene's own sky");
     if (before.walls !== after.walls) said.push(after.walls ? "walls shown" : "walls hidden");
+    if (before.pinned !== after.pinned) said.push(after.pinned ? "quality pinned" : "quality follows the frame rate");
   }
   if (before.viewers !== after.viewers) said.push(viewersText(after.viewers));
   return said.join(", ");

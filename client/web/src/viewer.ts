@@ -3,6 +3,7 @@
 import type { Frame } from "@culet/protocol/frame";
 import type { ControlEvent, Notice } from "@culet/protocol/messages";
 import type { Target } from "./events";
+import type { Arrival } from "./frame-history";
 import { FramePlayer } from "./frame-player";
 import { FrameRate } from "./frame-rate";
 import type { Size } from "./picture-size";
@@ -10,7 +11,7 @@ import { type Connection, Stream } from "./stream";
 import { INITIAL, type ViewState, withNotice } from "./view-state";
 
 export interface ViewerListener {
-  show: (picture: ImageBitmap) => void;
+  show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
   size: () => Size;
   connection: (connection: Connection) => void;
   state: (before: ViewState, after: ViewState) => void;
@@ -24,11 +25,12 @@ export class Viewer {
   lastFrame: Frame | null = null;
   state: ViewState = INITIAL;
   private readonly listener: ViewerListener;
+  private decodeMs = 0;
 
   constructor(url: string, listener: ViewerListener) {
     this.listener = listener;
     this.player = new FramePlayer<ImageBitmap>({
-      decode: (encoded) => createImageBitmap(encoded),
+      decode: (encoded) => this.decode(encoded),
       show: (picture, frame) => this.show(picture, frame),
       acknowledge: (frame) => this.stream.send({ type: "ack", sequence: frame.sequence }),
       fail: (frame, reason) => listener.problem(`Picture ${frame.sequence} cannot be decoded: ${reason}`),
@@ -83,7 +85,19 @@ export class Viewer {
 
   private show(picture: ImageBitmap, frame: Frame): void {
     this.lastFrame = frame;
-    this.rate.shown(performance.now());
-    this.listener.show(picture);
+    const time = performance.now();
+    this.rate.shown(time);
+    this.listener.show(picture, frame, {
+      time,
+      decodeMs: this.decodeMs,
+      roundTripMs: this.stream.latency.milliseconds,
+    });
+  }
+
+  private async decode(encoded: Blob): Promise<ImageBitmap> {
+    const started = performance.now();
+    const picture = await createImageBitmap(encoded);
+    this.decodeMs = performance.now() - started;
+    return picture;
   }
 }

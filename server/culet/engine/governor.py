@@ -13,10 +13,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 from culet.scene import Scene
-from culet_protocol.messages import Balance
+from culet_protocol.messages import EXACTEST_RATE, FASTEST_RATE, Balance
 
-FASTEST_RATE, EXACTEST_RATE = 60.0, 15.0
-"""Frames per second that a balance of 0 and of 1 asks for; half way between them, 30."""
 SHARE = 0.8
 """Of a frame's time that the render thread may work for it; the rest is for encoding and the rest of the machine."""
 LEAST_SHARE = 0.3

@@ -65,7 +65,9 @@ class LivePicture:
     served_at: float = -1e9
     """s, steady clock: when a refinement last got its turn."""
     publishing: asyncio.Task[None] | None = None
-    simulate_seconds: float = field(default=0.0)
+    simulate_seconds: float = 0.0
+    render_seconds: float = 0.0
+    """Of all samples of the picture."""
 
     @property
     def frames_per_second(self) -> float:

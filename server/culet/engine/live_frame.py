@@ -28,6 +28,7 @@ class LiveFrame:
     samples: int
     simulate_seconds: float
     render_seconds: float
+    """Of all samples."""
     develop_seconds: float
     """Of tone mapping."""
     cut: float
@@ -39,9 +40,12 @@ class LiveFrame:
 
     @classmethod
     def developed(
-        cls, picture: Picture, shown: Shown, plan: Plan | None, simulate_seconds: float, final: bool
+        cls, picture: Picture, shown: Shown, plan: Plan | None, spent: tuple[float, float], final: bool
     ) -> LiveFrame:
-        """Of a picture that is done; estimating its error costs nothing for the single sample of a moving one."""
+        """Of a picture that is done, and took that long to simulate and to render.
+
+        Estimating its error costs nothing for the single sample of a moving one.
+        """
         started = time.perf_counter()
         rgb, cut, error = picture.rgb(), picture.cut(), picture.error_estimate()
         return cls(
@@ -49,8 +53,8 @@ class LiveFrame:
             shown=shown,
             optics=picture.scene.optics,
             samples=picture.samples,
-            simulate_seconds=simulate_seconds,
-            render_seconds=picture.seconds,
+            simulate_seconds=spent[0],
+            render_seconds=spent[1],
             develop_seconds=time.perf_counter() - started,
             cut=cut,
             error=error,

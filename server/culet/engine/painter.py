@@ -139,6 +139,7 @@ class Painter:
             picture = await self._in_render_thread(self._first_sample, plan, shown, wanted)
             live.reduced_until = live.begun_at + SETTLE_SECONDS if governed else None
             live.picture, live.painted, live.painted_size, live.final = picture, shown, wanted, REST_SAMPLES <= 1
+            live.render_seconds = picture.seconds
             self.counters.frames_rendered += 1
             frame = await self._develop(live, picture, shown, plan)
             if plan is not None:
@@ -167,6 +168,7 @@ class Painter:
             if await self._in_render_thread(_proceed, live.refinement):
                 return
             live.refinement = None
+            live.render_seconds += picture.seconds
             self.counters.refinements += 1
             live.final = picture.samples >= REST_SAMPLES
             await self._publish(live, await self._develop(live, picture, shown, None))
@@ -199,8 +201,8 @@ class Painter:
             still.done.set_result(data)
 
     async def _develop(self, live: LivePicture, picture: Picture, shown: Shown, plan: Plan | None) -> LiveFrame:
-        simulated = live.simulate_seconds
-        return await self._in_render_thread(LiveFrame.developed, picture, shown, plan, simulated, live.final)
+        spent = live.simulate_seconds, live.render_seconds
+        return await self._in_render_thread(LiveFrame.developed, picture, shown, plan, spent, live.final)
 
     async def _publish(self, live: LivePicture, frame: LiveFrame) -> None:
         """Encode and send while the next frame is rendered."""

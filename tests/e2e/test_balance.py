@@ -1,0 +1,117 @@
+"""The balance between speed and exactness: dragged, pinned, shared, and what comes of it plotted."""
+
+from __future__ import annotations
+
+import pytest
+
+from culet_protocol.frame import Flags
+from e2e.conftest import ViewOf
+from e2e.server import Server
+from e2e.view import View
+
+PAGE = {"width": 800, "height": 450}
+"""Pixels: enough for the governor to scale."""
+FINE = {
+    "optics": {"cutoff": 0.005, "bands": 4},
+    "floor": {"kind": "matte"},
+    "stones": [{"position": [0, 500, 0]}],
+    "simulation": {"restitution": 0.97},
+}
+"""More than a moving frame gets unless it is pinned; falls for ten seconds, and then bounces for long."""
+FLAGS = [int(Flags.MOVING), int(Flags.FRONTIER)]
+
+
+@pytest.fixture
+def pair(view_of: ViewOf, server: Server) -> tuple[View, View]:
+    """Two pages on one session."""
+    session = server.http.post("/api/sessions", json={"scene": FINE}).json()["id"]
+    first, second = (view_of(viewport=PAGE).open(f"?session={session}") for _ in range(2))
+    return first, second
+
+
+def open_meter(view: View) -> None:
+    view.page.get_by_role("button", name="Speed and exactness").click()
+
+
+def choose(view: View, exactness: float) -> None:
+    """Type a number beside the slider."""
+    number = view.page.locator("#meter input[type=text], #meter input[type=number]").first
+    number.fill(str(exactness))
+    number.press("Enter")
+
+
+def test_a_dragged_balance_reaches_every_viewer_and_the_engine(pair: tuple[View, View], server: Server) -> None:
+    first, second = pair
+    open_meter(first)
+    slider = first.page.locator("#meter .lil-slider")
+    slider.hover()  # once the meter has unfolded
+    box = slider.bounding_box()
+    assert box is not None
+    mouse = first.page.mouse
+    mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    mouse.down()
+    mouse.move(box["x"] + box["width"] * 0.9, box["y"] + box["height"] / 2, steps=4)
+    mouse.up()
+    for view in pair:
+        view.until("() => Math.abs(culet.state.exactness - 0.9) < 0.051")
+    assert server.session(first.session)["exactness"] == first.state["exactness"] == second.state["exactness"]
+    assert not first.state["pinned"]
+    frames = round(60 / 4 ** first.state["exactness"])
+    assert f"{frames} frames/s" in first.page.locator("#meter").inner_text()
+
+
+def test_a_pinned_balance_draws_moving_frames_as_the_scene_asks(pair: tuple[View, View]) -> None:
+    first, second = pair
+    open_meter(first)
+    first.page.keyboard.press("p")
+    first.until("([moving, frontier]) => culet.lastFrame.flags & moving && culet.lastFrame.flags & frontier", FLAGS)
+    assert first.look().frame["bands"] == 3
+
+    choose(first, 1)
+    first.page.get_by_label("Pin the quality").click()
+    for view in pair:
+        view.until("() => culet.state.pinned && culet.state.exactness === 1")
+        view.until("moving => culet.lastFrame.flags & moving && culet.lastFrame.bands === 4", int(Flags.MOVING))
+        frame = view.look().frame
+        assert (frame["width"], frame["height"]) == (PAGE["width"], PAGE["height"])
+        assert frame["cutoff"] == pytest.approx(0.005)
+    assert "all that the scene asks for" in first.page.locator("#meter").inner_text()
+
+    open_meter(second)
+    second.page.get_by_label("Pin the quality").click()
+    first.until("() => !culet.state.pinned && culet.lastFrame.bands === 3")
+
+
+def test_folded_plots_are_not_even_loaded_and_open_ones_follow_the_frames(view_of: ViewOf, server: Server) -> None:
+    session = server.http.post("/api/sessions", json={"scene": FINE}).json()["id"]
+    view = view_of(viewport=PAGE)
+    asked: list[str] = []
+    view.page.on("request", lambda request: asked.append(request.url))
+    view.open(f"?session={session}")
+    view.page.keyboard.press("p")
+    view.until("() => culet.framesShown > 10")
+    assert not [url for url in asked if "plots" in url]
+    assert view.page.locator("#meter canvas").count() == 0
+
+    open_meter(view)
+    canvases = view.page.locator("#meter canvas")
+    canvases.nth(1).wait_for()
+    for canvas in (canvases.nth(0), canvases.nth(1)):
+        before = canvas.evaluate("canvas => canvas.toDataURL()")
+        view.until("shown => culet.framesShown > shown + 20", view.number("framesShown"))
+        assert canvas.evaluate("canvas => canvas.toDataURL()") != before
+    words = view.page.locator("#meter").inner_text()
+    for name in ("simulate", "render", "encode", "network", "decode", "frontier's, moving", "3 bands"):
+        assert name in words
+    view.page.keyboard.press("p")
+    view.at_rest()
+    view.until("() => /estimated, at rest 0\\.\\d+/.test(document.getElementById('meter').innerText)")
+    view.until("() => document.getElementById('meter').innerText.includes('16 samples')")
+
+
+def test_a_number_beyond_the_ends_of_the_slider_is_taken_as_its_end(pair: tuple[View, View]) -> None:
+    first, _ = pair
+    open_meter(first)
+    choose(first, 7)
+    first.until("() => culet.state.exactness === 1")
+    assert first.problems == []
