@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 import pyopencl as cl
 import pytest
-import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 import culet_kernels
 from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
-from culet.rendering.device import Device
+from culet.rendering.device import Device, Real
 from culet.rendering.parameters import layout
 from culet.rendering.program import FLAGS, Variant
 from culet.rendering.projection import rotation_matrix
@@ -48,8 +47,7 @@ def thorns(seed: int) -> Callable[[], Stone]:
         a, b, c = directions[triangles].transpose(1, 0, 2)
         inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
         triangles[inward] = triangles[inward][:, ::-1]
-        body = trimesh.Trimesh(directions * random.uniform(0.3, 1, (300, 1)), triangles, process=False)
-        return stone_from_mesh(body.export(file_type="obj").encode(), "obj", name="thorns")
+        return stone_from_mesh(obj(directions * random.uniform(0.3, 1, (300, 1)), triangles), "obj", name="thorns")
 
     return make
 
@@ -82,7 +80,7 @@ def aimed(stone: Stone, count: int, random: np.random.Generator) -> Array:
     return np.hstack([eye, direction])
 
 
-def walk(device: Device, real: Any, stone: Stone, count: int) -> tuple[NDArray[Any], NDArray[Any]]:  # noqa: ANN401 - a NumPy type
+def walk(device: Device, real: Real, stone: Stone, count: int) -> tuple[NDArray[Any], NDArray[Any]]:
     """Of `count` rays, those that meet the stone: how many segments each has inside, and how far from the centre."""
     lanes = device.lanes_for(real)
     text = culet_kernels.source("mesh.cl") + Path(__file__).with_name("walk.cl").read_text(encoding="utf-8")
@@ -115,7 +113,7 @@ def walk(device: Device, real: Any, stone: Stone, count: int) -> tuple[NDArray[A
     return found[enters], farthest[enters]
 
 
-def assert_all_find_their_way(device: Device, real: Any, stone: Stone, count: int) -> None:  # noqa: ANN401
+def assert_all_find_their_way(device: Device, real: Real, stone: Stone, count: int) -> None:
     found, farthest = walk(device, real, stone, count)
     assert len(found) > 0.6 * count  # measured 0.69 to 0.97: edges seen against the sky are often missed
     assert (found == BOUNCES).all()
@@ -124,7 +122,7 @@ def assert_all_find_their_way(device: Device, real: Any, stone: Stone, count: in
 
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["single", "double"])
 @pytest.mark.parametrize("name", STONES)
-def test_every_ray_that_goes_in_finds_its_way(device: Device, name: str, real: Any) -> None:  # noqa: ANN401
+def test_every_ray_that_goes_in_finds_its_way(device: Device, name: str, real: Real) -> None:
     assert_all_find_their_way(device, real, STONES[name](), 20_000)
 
 
