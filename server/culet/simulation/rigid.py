@@ -143,6 +143,8 @@ def _in_contact(
         time=time,
         integrator=law.integrator,
     )
+    if after == motion and taken > 0:  # at rest, and held: nor will any further step move it
+        return course._replace(left=0.0)
     weight = body.mass * law.gravity
     highest = kinetic_energy(motion, body) + weight * motion.position[1]
     if course.shortest > 0 and weight * after.position[1] > highest:
