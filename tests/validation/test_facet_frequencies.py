@@ -1,7 +1,7 @@
 """On which facets dropped brilliants come to rest, here and in MuJoCo, an independent engine.
 
 MuJoCo's contacts are soft and have no coefficient of restitution, and its plane takes three contacts of a mesh at most;
-so both drop without restitution, MuJoCo's stone onto a thick box. Install it with `pip install mujoco`.
+so both drop without restitution, MuJoCo's stone onto a thick box. `make validate` installs it.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from simulation.solids import rigid
 
 pytestmark = pytest.mark.validation
 DROPS = 200
+MISSING = "the comparison needs MuJoCo, which is not installed: pip install -e '.[validation]'"
 FRICTION = 0.3
 
 Drop = tuple[float, Quaternion, Triple]
@@ -55,7 +56,9 @@ def rest_here(stone: Stone, drop: Drop) -> str:
 
 
 def rests_in_mujoco(stone: Stone, tried: list[Drop]) -> list[str]:
-    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed; it is an optional comparison")
+    mujoco = pytest.importorskip(
+        "mujoco", reason="the comparison needs MuJoCo, which is not installed: pip install -e '.[validation]'"
+    )
     vertices = " ".join(f"{c:.17g}" for c in stone.vertices.ravel())
     moments = " ".join(f"{2 * moment:.17g}" for moment in np.diag(stone.mass.inertia))
     model = mujoco.MjModel.from_xml_string(f"""
