@@ -44,11 +44,14 @@ async def test_a_picture_at_rest_is_refined_to_its_end_and_then_costs_nothing(en
         frames = [await watcher.until(lambda frame: frame.width == SIZE["width"])]
         while Flags.FINAL not in frames[-1].flags:
             frames.append(await watcher.next())
-        assert [frame.samples for frame in frames] == [1, 2, 4, 8, 16]
+        # Each frame sent has a number more and twice the samples; a subscriber that is slow for a moment misses some.
+        assert frames[-1].samples == 16
+        for frame in frames:
+            assert frame.samples * 2 ** (frames[-1].sequence - frame.sequence) == 16
         assert len({frame.step for frame in frames}) == 1
-        assert math.isnan(frames[0].error), "of one sample nothing is known"
-        assert all(0 < frame.error < 1 for frame in frames[1:])
-        assert len({frame.sequence for frame in frames}) == 5
+        for frame in frames:
+            assert math.isnan(frame.error) if frame.samples == 1 else 0 < frame.error < 1  # of one nothing is known
+        assert len(frames) == len({frame.sequence for frame in frames}) > 1
         before = await peer.status()
         repeated = await watcher.next()  # a second later, since it could have been lost
         assert (repeated.sequence, repeated.payload) == (frames[-1].sequence, frames[-1].payload)
