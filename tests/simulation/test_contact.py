@@ -58,6 +58,18 @@ def test_each_apex_is_restitution_squared_times_the_one_before(box: Stone, e: fl
     assert max(tops) <= height
 
 
+def test_how_high_a_stone_bounces_does_not_depend_on_the_time_step(brilliant: Stone) -> None:
+    """Touches are found within a step: after the first impact of a tilted, spinning stone its energy is the same."""
+    energies = []
+    for step in (1 / 1000, 1 / 120, 1 / 30, 0.1):
+        moving = rigid(brilliant, (0.0, 2.0, 0.0), about((0.6, 0.0, 0.8), 0.7), spin=(1, 2, 3), time_step=step)
+        while moving.state.impacts == 0:
+            moving.step()
+        energies.append(moving.energy())
+        assert moving.state.impacts == 1
+    assert energies == pytest.approx([energies[0]] * 4, rel=2e-7)  # measured 5e-8
+
+
 def test_a_hundred_elastic_bounces_keep_their_height(box: Stone) -> None:
     moving = rigid(box, (0.0, lowest(box) + 0.5, 0.0), restitution=1, time_step=1 / 30)
     start = moving.energy()
@@ -193,7 +205,7 @@ def test_a_slender_block_rocks_with_housners_period(box: Stone) -> None:
             break
     rate = math.sqrt(G * arm / inertia)
     expected = math.acosh(1 / (1 - theta / alpha)) / rate
-    assert moving.state.time == pytest.approx(expected, rel=0.01)
+    assert moving.state.time == pytest.approx(expected, rel=2e-3)  # measured 1.2e-3, in steps of 1/2000 s
 
 
 def test_a_push_from_the_side_needs_more_than_the_topple_threshold(box: Stone) -> None:

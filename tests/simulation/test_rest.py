@@ -84,8 +84,8 @@ def test_a_stone_at_rest_that_may_not_sleep_does_not_move_for_a_minute(brilliant
     drift = max(math.dist(state.position, start.position) for state in path)
     turned = max(math.dist(state.orientation, start.orientation) for state in path)
     assert not path[-1].asleep
-    assert drift < 1e-6
-    assert turned < 1e-6
+    assert drift < 1e-9  # measured 0, and of the turn
+    assert turned < 1e-9
 
 
 def test_a_stone_balanced_on_an_edge_does_not_sleep(box: Stone) -> None:

@@ -15,6 +15,7 @@ import pytest
 import trimesh
 
 from culet.geometry.load import stone_of
+from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import MassProperties, Stone
 from culet.scene.model import StoneSettings
 from culet.simulation.clock import FixedStepClock
@@ -116,6 +117,16 @@ def test_the_same_drop_of_a_stone_in_another_unit_of_length_agrees(unit: float) 
     paths = [np.array(scaled_drop(stone, 1, 1, 1)) for stone in (ours, other)]
     length = min(map(len, paths)) - 1
     assert paths[1][:length] == pytest.approx(paths[0][:length], abs=1e-9)
+
+
+@pytest.mark.parametrize("unit", [2.0**-10, 2.0**7])
+def test_the_same_mesh_in_a_unit_of_a_power_of_two_falls_to_the_bit(brilliant: Stone, unit: float) -> None:
+    def read(unit: float) -> Stone:
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (unit * brilliant.vertices).tolist()]
+        lines += [f"f {a} {b} {c}" for a, b, c in (brilliant.triangles + 1).tolist()]
+        return stone_from_mesh("\n".join(lines).encode(), "obj")
+
+    assert scaled_drop(read(unit), 1, 1, 1000) == scaled_drop(read(1), 1, 1, 1000)
 
 
 def test_a_stone_that_is_not_convex_touches_with_its_hull(ring: Stone) -> None:

@@ -94,7 +94,7 @@ EXTREMES = (
     Extreme("gravity 0, thrown down", {"gravity": 0, "velocity": (0, -3, 0)}),
     Extreme("gravity 1e6 R/s^2", {"gravity": 1e6}),
     Extreme("gravity 1e6 R/s^2, steps of 0.25 s", {"gravity": 1e6, "time_step": 0.25}),
-    Extreme("gravity 1e6 R/s^2, no friction, no sleep", {"gravity": 1e6, "friction": 0, "sleeping": False}, steps=30),
+    Extreme("gravity 1e6 R/s^2, no friction, no sleep", {"gravity": 1e6, "friction": 0, "sleeping": False}, steps=5),
     Extreme("mass 1e-9", {"mass": 1e-9}),
     Extreme("mass 1e9", {"mass": 1e9}),
     Extreme("restitution 0", {"restitution": 0}),
