@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -96,6 +97,29 @@ def streaming(
         subject = _with_stone(read_subject(scene, preset, mesh, sky))
         size = (width or (320 if quick else 640), height or (180 if quick else 360))
         _tell(study_streaming(subject, out, _progress, size=size, quick=quick, fresh=fresh), out)
+
+
+@study_app.command()
+def governor(
+    scene: SceneFile = None,
+    preset: Preset = None,
+    seconds: Annotated[float, typer.Option(min=5, help="Of the stone that falls in a scene that stays.")] = 60,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 1280,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels, likewise.")] = 720,
+    exactness: Annotated[float, typer.Option(min=0, max=1, help="Of the balance: 0 many frames, 1 good ones.")] = 0.5,
+    out: Annotated[Path | None, typer.Option("-o", metavar="FILE", help="JSON with every frame's header.")] = None,
+) -> None:
+    """Let a stone fall again and again, then change things around it: what does a viewer get, and how soon."""
+    from culet.study.governor import described, document, measure, rate_of
+
+    with errors_in_one_line():
+        subject, size = read_subject(scene, preset, None, None), (width, height)
+        if subject.stone is None:
+            raise SceneError("stones: expected a scene with a stone, got none: nothing can fall", "stones")
+        measured = asyncio.run(measure(subject.scene, seconds, size, exactness))
+        typer.echo(described(measured, size, rate_of(exactness)))
+        if out is not None:
+            out.write_text(document(measured, size, rate_of(exactness)) + "\n", encoding="utf-8")
 
 
 @study_app.command()

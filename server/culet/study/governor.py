@@ -1,6 +1,4 @@
-"""Measures the governor: a real engine, one subscriber, the default stone that falls again and again.
-
-    python -m culet.study.governor [--seconds 60] [--width 1280] [--height 720] [-o record.json]
+"""`culet study governor`: a real engine, one subscriber, and a stone that falls again and again.
 
 First the scene stays and the stone falls anew whenever it has come to rest, or is about to; then things change while it
 falls: walls, sky, floor, camera. What counts is what a viewer gets: the headers of its frames, and when they came.
@@ -8,7 +6,6 @@ falls: walls, sky, floor, camera. What counts is what a viewer gets: the headers
 
 from __future__ import annotations
 
-import argparse
 import asyncio
 import contextlib
 import json
@@ -19,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -33,7 +30,6 @@ from culet.study.provenance import commit, processor
 from culet_protocol.engine import CloseSession, Control, Demand, OpenSession
 from culet_protocol.frame import Frame
 from culet_protocol.messages import (
-    BALANCED,
     Balance,
     Dolly,
     ResetCamera,
@@ -135,13 +131,13 @@ class Play:
         await self._link.request(CloseSession(session=self.session))
 
 
-async def measure(seconds: float, size: tuple[int, int], balance: Balance) -> Measured:
-    """Run an engine and play to it; takes the seconds and half a minute more."""
+async def measure(scene: Scene, seconds: float, size: tuple[int, int], exactness: float) -> Measured:
+    """Run an engine and play to it; takes the seconds and three quarters of a minute more."""
     async with running_engine() as (link, process):
         recorder = Recorder()
         link.on_frame = recorder.take
         play = Play(link, recorder)
-        await play.open(Scene(), size, balance)
+        await play.open(scene, size, Balance(exactness=exactness, pinned=False))
         await play.drop()
         await play.fall(WARM_SECONDS)
         recorder.seen.clear()
@@ -158,6 +154,11 @@ async def measure(seconds: float, size: tuple[int, int], balance: Balance) -> Me
             await play.fall(CHANGE_SECONDS)
         await play.close()
         return Measured(steady, tuple(recorder.seen), tuple(changes), spent)
+
+
+def rate_of(exactness: float) -> float:
+    """Frames per second that the governor is to hold."""
+    return asked_rate(Balance(exactness=exactness, pinned=False), VIEWER_RATE)
 
 
 @asynccontextmanager
@@ -238,24 +239,3 @@ def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
             "frames": frames,
         }
     )
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Entry of the command."""
-    parser = argparse.ArgumentParser(prog="python -m culet.study.governor", description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=60, help="of the scene that stays")
-    parser.add_argument("--width", type=int, default=1280)
-    parser.add_argument("--height", type=int, default=720)
-    parser.add_argument("--exactness", type=float, default=BALANCED, help="0 many frames, 1 good ones")
-    parser.add_argument("-o", "--out", type=Path, help="JSON with every frame's header")
-    options = parser.parse_args(arguments)
-    size, balance = (options.width, options.height), Balance(exactness=options.exactness, pinned=False)
-    measured = asyncio.run(measure(options.seconds, size, balance))
-    rate = asked_rate(balance, VIEWER_RATE)
-    print(described(measured, size, rate))
-    if options.out:
-        options.out.write_text(document(measured, size, rate) + "\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()
