@@ -19,9 +19,9 @@ STONES = [brilliant(), step_cut(), skew_block(), prism(40)]
 MODE = pytest.mark.parametrize("optics", [{}, {"polarised": True}, {"bands": 8}], ids=["scalar", "polarised", "bands"])
 
 
-def views(optics: dict[str, object]) -> Iterator[Scene]:
+def views(optics: dict[str, object], random: np.random.Generator | None = None) -> Iterator[Scene]:
     """Three, from random sides, at randomly turned stones."""
-    random = np.random.default_rng(4)
+    random = random or np.random.default_rng(4)
     for _ in range(3):
         side = random.normal(size=3)
         yield Scene.read(
@@ -58,15 +58,17 @@ def test_every_pixel_is_one_to_a_hundred_thousandth(
 
 
 @MODE
-def test_where_light_branches_every_branch_may_be_cut(renderer: Renderer, optics: dict[str, object]) -> None:
+def test_where_light_branches_a_lower_cut_off_does(renderer: Renderer, optics: dict[str, object]) -> None:
     """A ring: light that has left it meets it again, and each of many chains ends on its own."""
-    for scene in views(optics):
-        assert largest_error(renderer, ring(), scene) < 5e-5  # measured 1.5e-5
+    for scene in views({"cutoff": 4e-7, **optics}):
+        assert largest_error(renderer, ring(), scene) < 1e-5  # measured 7.6e-6; at a cut-off of 1e-6 1.8e-5
 
 
-def test_between_parallel_faces_double_precision_finds_the_way_out(renderer: Renderer, exact: Renderer) -> None:
-    """Light that grazes a box's facet keeps its angle for thousands of reflections. In single precision it drifts, and
-    some of it into total reflection for ever: dark by up to 0.004 in 2 pixels of 2304, and counted as cut."""
+def test_between_parallel_facets_light_finds_its_way_out(renderer: Renderer, exact: Renderer) -> None:
+    """Light that grazes a box's facet keeps its angle for thousands of reflections. With normals whose components are
+    rounded one by one it drifts, and some of it stays for ever: 1 pixel of these 27,648 was dark by 0.004."""
+    random = np.random.default_rng(4)
+    for scene in (scene for _ in range(4) for scene in views({}, random)):
+        assert largest_error(renderer, slab(random.uniform(0.05, 0.6)), scene) < 1e-5  # measured 1.2e-6
     for scene in views({}):
         assert largest_error(exact, slab(0.2), scene) < 1e-5  # measured 1.0e-6
-        assert largest_error(renderer, slab(0.2), scene) < 1e-2  # measured 3.9e-3

@@ -18,6 +18,7 @@ from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
 from culet.rendering.tree import tree_of
+from culet.rendering.unit_normals import planes_in
 from culet.scene.model import ImageEnvironment, Scene
 
 
@@ -59,7 +60,7 @@ class Inputs:
             self._struct["panorama_turn"] = scene.environment.turn_degrees / 360
             self._struct["panorama_scale"] = scene.environment.scale
             self._panorama = device.panorama(panorama)
-        self._fixed = [self._upload(facets.astype(real)), self._upload(shadows.astype(real)), *mesh]
+        self._fixed = [self._upload(planes_in(real, facets)), self._upload(shadows.astype(real)), *mesh]
 
     def of_sample(self, sample: int) -> list[Any]:
         """The kernels' arguments for that sample."""
