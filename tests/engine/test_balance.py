@@ -36,7 +36,8 @@ async def test_a_moving_frame_says_what_the_governor_chose_and_whose_error_it_gi
         await peer.demand(**SIZE)
         await peer.control("toggle_fall")
         frame = await watcher.until(moving)
-        assert (frame.bands, frame.samples, frame.max_bounces) == (3, 1, 256)
+        assert (frame.bands, frame.samples) == (3, 1)
+        assert frame.max_bounces in {rung.max_bounces for rung in read_ladder()}
         assert frame.cutoff >= 0.01 - 1e-6
         assert Flags.POLARISED not in frame.flags
         assert Flags.FRONTIER in frame.flags

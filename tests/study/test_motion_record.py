@@ -10,8 +10,8 @@ import pytest
 from culet.study.motion_record import SETTLED_FRAMES, Change, Seen, longest_run, moving_pairs, settle, summarise
 
 FRAME = Seen(
-    arrived=0, moving=True, simulation_time=0, width=1024, height=576, bands=3, cutoff=0.02, simulate_ms=1,
-    render_ms=20, encode_ms=2, error=0.05,
+    arrived=0, moving=True, simulation_time=0, width=1024, height=576, bands=3, max_bounces=48, cutoff=0.02,
+    simulate_ms=1, render_ms=20, encode_ms=2, error=0.05,
 )  # fmt: skip
 RATE = 25.0
 INTERVAL = 1 / RATE
@@ -27,7 +27,8 @@ def test_a_steady_fall_has_the_rate_at_which_its_frames_came() -> None:
     assert summary.frames_per_second == pytest.approx(RATE)
     assert summary.moving_seconds == pytest.approx(50 * INTERVAL)
     assert (summary.late_intervals, summary.setting_changes_per_minute) == (0, 0)
-    assert (summary.lowest_size, summary.largest_cutoff, summary.error_mean) == ((1024, 576), 0.02, 0.05)
+    assert (summary.lowest_size, summary.largest_cutoff, summary.fewest_bounces) == ((1024, 576), 0.02, 48)
+    assert (summary.fewest_bands, summary.error_mean) == (3, 0.05)
 
 
 def test_the_pause_between_two_falls_does_not_count() -> None:

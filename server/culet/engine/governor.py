@@ -19,14 +19,14 @@ SHARE = 0.8
 """Of a frame's time that the render thread may work for it; the rest is for encoding and the rest of the machine."""
 LEAST_SHARE = 0.3
 """Of a frame's time that rendering gets, however long simulation and tone mapping take."""
-SPARE = 0.85
+SPARE = 0.75
 """A better setting must be expected to take less than this part of the time before it is tried."""
 PATIENCE = 12
 """Frames with time to spare before a better setting is tried: 0.4 s at 30 frames/s, or quality would flicker."""
 TRIAL = 60
 """Frames for which a better setting must hold: if it does not, twice as many frames pass before the next try."""
 MOST_PATIENCE = 4 * PATIENCE
-MEMORY = 0.3
+MEMORY = 0.2
 """Weight of the latest frame in the expected cost,"""
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
@@ -42,6 +42,8 @@ class Setting:
     """Of width and height."""
     cutoff: float
     """At least, whatever the scene says."""
+    max_bounces: int
+    """At most, likewise."""
     cost: float
     """Time over that of the first rung, measured."""
     error: float
@@ -103,11 +105,16 @@ class Governor:
         return self._ladder[self._rung]
 
     def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance) -> Plan:
-        """For the next moving frame: three indices, without polarisation, cut-off and size by the setting."""
+        """For the next moving frame: three indices, without polarisation; cut-off, bounces and size by the setting."""
         setting = self._pinned(balance) if balance.pinned else self.setting
         if setting is None:
             return Plan(scene, wanted, wanted, None, self._ladder[0].radiance_error)
-        changes = {"bands": 3, "polarised": False, "cutoff": max(scene.optics.cutoff, setting.cutoff)}
+        changes = {
+            "bands": 3,
+            "polarised": False,
+            "cutoff": max(scene.optics.cutoff, setting.cutoff),
+            "max_bounces": min(scene.optics.max_bounces, setting.max_bounces),
+        }
         simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
         scale = _scale(setting, wanted)
         size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))

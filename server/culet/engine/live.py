@@ -98,9 +98,9 @@ class LivePicture:
         return self.begun_at + 1 / self.frames_per_second
 
     def begin(self, now: float) -> None:
-        """A frame is begun. One that is late by less than half a frame does not make the next one late."""
+        """A frame is begun. One that is late by less than a frame does not make those after it late."""
         due = self.due_at()
-        little = due is not None and 0 <= now - due < 0.5 / self.frames_per_second
+        little = due is not None and 0 <= now - due < 1 / self.frames_per_second
         self.begun_at = due if due is not None and little else now
 
     def wants_refinement(self) -> bool:

@@ -211,6 +211,7 @@ def _rows(summary: Summary) -> list[str]:
         f"frames per second    {summary.frames_per_second:.2f}, {summary.late_intervals:.2%} late by half a frame",
         f"least size           {summary.lowest_size[0]}x{summary.lowest_size[1]}",
         f"largest cut-off      {summary.largest_cutoff:g}, {summary.fewest_bands} indices",
+        f"fewest bounces       {summary.fewest_bounces}",
         "render ms            median {:.1f}, 99 % {:.1f}, longest {:.1f}".format(*render),
         f"in a row over {LATE_MS:g} ms  {summary.longest_late_run}",
         f"simulate, encode ms  median {summary.simulate_ms_median:.2f}, {summary.encode_ms_median:.2f}",

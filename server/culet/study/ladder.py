@@ -1,4 +1,4 @@
-"""Measures the governor's ladder: which scale and cut-off give the least error for each time, moving.
+"""Measures the governor's ladder: which scale, cut-off and bounces give the least error for each time, moving.
 
     python -m culet.study.ladder > server/culet/engine/ladder.json
 
@@ -14,6 +14,7 @@ import statistics
 import sys
 import time
 from dataclasses import asdict, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -30,10 +31,13 @@ from culet.scene.model import Scene
 SIZE = 1280, 720
 SCALES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5
 CUTOFFS = 0.01, 0.02, 0.05
+BOUNCES = 256, 48, 24, 16
 Pixels = NDArray[np.floating[Any]]
 
 REFERENCE_SAMPLES, REFERENCE_CUTOFF = 64, 1e-3
-TURNS = 9
+TURNS = 7
+CLOSEST = 0.95
+"""Cost of a rung over that of the one above it: what is nearer is not worth a change of setting."""
 
 
 def measure_ladder(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> tuple[Setting, ...]:
@@ -43,23 +47,29 @@ def measure_ladder(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZ
     and so has more of the error that more samples would take away.
     """
     stone = stone_of(scene.stones[0], {})
-    reference = renderer.picture(_with_cutoff(scene, REFERENCE_CUTOFF), stone, *size)
+    reference = renderer.picture(_with_optics(scene, REFERENCE_CUTOFF, BOUNCES[0]), stone, *size)
     reference.refine(REFERENCE_SAMPLES)
     best, *others = _measured(renderer, scene, stone, reference)
-    rungs = [best]
-    for setting in sorted(others, key=lambda setting: setting.cost, reverse=True):
-        cheaper = [other for other in others if other.cost <= setting.cost and other is not setting]
-        if setting.cost < best.cost and all(other.error > setting.error for other in cheaper):
-            rungs.append(setting)
     return tuple(
         replace(r, cost=round(r.cost, 3), error=round(r.error, 4), radiance_error=round(r.radiance_error, 4))
-        for r in rungs
+        for r in (best, *_front(others, best.cost))
     )
+
+
+def _front(settings: list[Setting], cost: float) -> list[Setting]:
+    """Those than which none cheaper is better, from below that cost down, none close to the one before it."""
+    rungs: list[Setting] = []
+    for setting in sorted(settings, key=lambda setting: setting.cost, reverse=True):
+        cheaper = [other for other in settings if other.cost <= setting.cost and other is not setting]
+        if setting.cost < CLOSEST * cost and all(other.error > setting.error for other in cheaper):
+            rungs.append(setting)
+            cost = setting.cost
+    return rungs
 
 
 def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture) -> list[Setting]:
     size = reference.width, reference.height
-    settings = [(scale, cutoff) for scale in SCALES for cutoff in CUTOFFS]
+    settings = list(product(SCALES, CUTOFFS, BOUNCES))
     ratios: list[list[float]] = [[] for _ in settings]
     pictures = [_draw(renderer, scene, stone, size, *setting)[1] for setting in settings]  # which pays for the compiler
     for _ in range(TURNS):
@@ -68,18 +78,19 @@ def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture
             of_setting.append(taken / seconds[0])
     truth = reference.linear(), tone_map(reference.linear())
     measured = []
-    for (scale, cutoff), costs, picture in zip(settings, ratios, pictures, strict=True):
+    for setting, costs, picture in zip(settings, ratios, pictures, strict=True):
         radiance, shown = (_rms(_enlarged(p, size) - t) for p, t in zip(picture, truth, strict=True))
-        measured.append(Setting(scale, cutoff, statistics.median(costs), shown, radiance))
+        measured.append(Setting(*setting, statistics.median(costs), shown, radiance))
     return measured
 
 
 def _draw(
-    renderer: Renderer, scene: Scene, stone: Stone, size: tuple[int, int], scale: float, cutoff: float
+    renderer: Renderer, scene: Scene, stone: Stone, size: tuple[int, int], scale: float, cutoff: float, bounces: int
 ) -> tuple[float, tuple[Pixels, Pixels]]:
     """Processor's seconds; radiance and shown."""
+    width, height = round(size[0] * scale), round(size[1] * scale)
     start = time.process_time()
-    picture = renderer.picture(_with_cutoff(scene, cutoff), stone, round(size[0] * scale), round(size[1] * scale))
+    picture = renderer.picture(_with_optics(scene, cutoff, bounces), stone, width, height)
     picture.refine()
     seconds = time.process_time() - start
     linear = picture.linear()
@@ -95,8 +106,9 @@ def _rms(difference: Pixels) -> float:
     return float(np.sqrt(np.mean(difference.astype(float) ** 2)))
 
 
-def _with_cutoff(scene: Scene, cutoff: float) -> Scene:
-    return scene.model_copy(update={"optics": scene.optics.model_copy(update={"cutoff": cutoff})})
+def _with_optics(scene: Scene, cutoff: float, bounces: int) -> Scene:
+    optics = scene.optics.model_copy(update={"cutoff": cutoff, "max_bounces": bounces})
+    return scene.model_copy(update={"optics": optics})
 
 
 def main() -> None:

@@ -30,6 +30,7 @@ class Seen:
     width: int
     height: int
     bands: int
+    max_bounces: int
     cutoff: float
     simulate_ms: float
     render_ms: float
@@ -41,13 +42,13 @@ class Seen:
         """From the frame itself."""
         return cls(
             arrived, Flags.MOVING in frame.flags, frame.simulation_time, frame.width, frame.height, frame.bands,
-            frame.cutoff, frame.simulate_ms, frame.render_ms, frame.encode_ms, frame.error,
+            frame.max_bounces, frame.cutoff, frame.simulate_ms, frame.render_ms, frame.encode_ms, frame.error,
         )  # fmt: skip
 
     @property
-    def setting(self) -> tuple[int, int, float]:
+    def setting(self) -> tuple[int, int, float, int]:
         """What the governor chose."""
-        return self.width, self.height, round(self.cutoff, 6)
+        return self.width, self.height, round(self.cutoff, 6), self.max_bounces
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class Summary:
     """Part of the intervals that took over one and a half times as long as asked for."""
     lowest_size: tuple[int, int]
     largest_cutoff: float
+    fewest_bounces: int
     fewest_bands: int
     render_ms_median: float
     render_ms_99: float
@@ -114,6 +116,7 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary:
         late_intervals=sum(interval > 1.5 / rate for interval in intervals) / len(intervals),
         lowest_size=min((frame.width, frame.height) for frame in moving),
         largest_cutoff=max(frame.cutoff for frame in moving),
+        fewest_bounces=min(frame.max_bounces for frame in moving),
         fewest_bands=min(frame.bands for frame in moving),
         render_ms_median=statistics.median(render),
         render_ms_99=render[int(0.99 * (len(render) - 1))],
