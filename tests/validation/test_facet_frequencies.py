@@ -20,7 +20,7 @@ from culet.simulation.state import Quaternion, Triple
 from simulation.solids import rigid
 
 pytestmark = pytest.mark.validation
-DROPS = 200
+DROPS = 500
 MISSING = "the comparison needs MuJoCo, which is not installed: pip install -e '.[validation]'"
 FRICTION = 0.3
 
@@ -48,7 +48,7 @@ def rest_here(stone: Stone, drop: Drop) -> str:
     height, orientation, spin = drop
     moving = rigid(
         stone, (0.0, height, 0.0), orientation, spin=rotate(orientation, spin), restitution=0, friction=FRICTION,
-        rolling_resistance=0.005, time_step=1 / 60,
+        rolling_resistance=0.02, time_step=1 / 60,
     )  # fmt: skip
     while not moving.state.asleep and moving.state.time < 60:
         moving.step()

@@ -117,8 +117,8 @@ def _next(course: _Course, law: _Law, body: RigidBody) -> _Course:
             return course._replace(motion=after, impacts=course.impacts + 1)
         if fastest <= law.sleep_speed and is_supported(contacts(motion, body, SUPPORT_REACH)):
             return course._replace(motion=stopped(motion), asleep=True)
-        time = min(law.contact_step, MAX_CONTACT_TURN / turning if turning > 0 else math.inf)
-        time = min(max(time, course.shortest), course.left)
+        time = max(min(law.contact_step, MAX_CONTACT_TURN / turning if turning > 0 else math.inf), course.shortest)
+        time = course.left / max(math.ceil(course.left / time), 1)  # in equal parts
         if closing >= -law.gravity * time:
             further = _in_contact(course, law, body, touching, bounce_speed, time)
             if further.left < course.left:
