@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from culet.errors import InputError
-from culet.study.outcome import headline_markdown
+from culet.study.headline import BEGIN, END, headline_markdown, write_into
 from culet.study.page import page
 from culet.study.report import Report, csv_text
 from study.reports import report
@@ -65,3 +65,25 @@ def test_the_headlines_are_a_table_with_their_provenance() -> None:
     text = headline_markdown(report())
     assert "| a frame | 1.23 ms |" in text
     assert "Measured on P, abc, 2026-01-02." in text
+
+
+def test_they_take_the_place_of_what_is_between_the_marks(tmp_path: Path) -> None:
+    readme = tmp_path / "README.md"
+    readme.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
+    for _ in range(2):  # as often as one likes
+        write_into(readme, "| new |\n")
+        assert readme.read_text() == f"before\n{BEGIN}\n\n| new |\n\n{END}\nafter\n"
+
+
+@pytest.mark.parametrize("content", ["nothing", BEGIN, f"{END}\n{BEGIN}", f"{BEGIN}{END}{BEGIN}{END}"])
+def test_a_file_without_one_pair_of_marks_is_left_alone(tmp_path: Path, content: str) -> None:
+    readme = tmp_path / "README.md"
+    readme.write_text(content)
+    with pytest.raises(InputError, match="culet study headline"):
+        write_into(readme, "new")
+    assert readme.read_text() == content
+
+
+def test_the_readme_has_a_place_for_them() -> None:
+    text = (DOCUMENTED.parents[1] / "README.md").read_text(encoding="utf-8")
+    assert text.count(BEGIN) == text.count(END) == 1

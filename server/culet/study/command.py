@@ -143,13 +143,22 @@ def compare_bench(before: BenchFile, after: BenchFile) -> None:
 
 
 @study_app.command()
-def headline(report: ReportFile) -> None:
+def headline(
+    report: ReportFile,
+    into: Annotated[
+        Path | None, typer.Option(metavar="README.md", help="Write it between the marks of this file instead.")
+    ] = None,
+) -> None:
     """Print a report's numbers in short, as a table for a README."""
-    from culet.study.outcome import headline_markdown
+    from culet.study.headline import headline_markdown, write_into
     from culet.study.report import Report
 
     with _errors():
-        typer.echo(headline_markdown(Report.read(report)), nl=False)
+        text = headline_markdown(Report.read(report))
+        if into is None:
+            typer.echo(text, nl=False)
+        else:
+            write_into(into, text)
 
 
 def _with_stone(named: Subject) -> Studied:

@@ -54,14 +54,15 @@ def rendering_report(
         ),
         races=tuple(races),
         limits={f"{name}_per_second" if name == "bandwidth" else name: v for name, v in limits._asdict().items()},
-        headlines=tuple(_rendering_headlines(swept, base, limits, facets, races)),
+        headlines=(
+            *_rendering_headlines(swept, base, limits, facets),
+            *_race_headlines(points, races),
+        ),
         notes=tuple(notes),
     )
 
 
-def _rendering_headlines(
-    points: Sequence[Point], base: Knobs, limits: Limits, facets: int, races: Sequence[Race]
-) -> list[Headline]:
+def _rendering_headlines(points: Sequence[Point], base: Knobs, limits: Limits, facets: int) -> list[Headline]:
     by_key = {point.key: point for point in points}
     own = by_key[base.key]
     kernel, segments = own.figures["kernel_seconds"] or 0.0, own.figures["segments"] or 0.0
@@ -70,7 +71,9 @@ def _rendering_headlines(
         Headline(name="of it in the kernel", value=1e3 * kernel, unit="ms"),
     ]
     if segments and base.geometry == "half-spaces":
-        share = counted_flops(segments, facets) / kernel / limits.single_flops
+        counted = counted_flops(segments, facets)
+        share = counted / kernel / limits.single_flops
+        lines.append(Headline(name="counted work of a frame, facet search alone", value=counted / 1e9, unit="Gflop"))
         lines.append(Headline(name="a segment inside the stone", value=1e9 * kernel / segments, unit="ns"))
         lines.append(Headline(name="share of the multiply-add peak, facet search alone", value=100 * share, unit="%"))
     for figure, words in (
@@ -94,18 +97,25 @@ def _rendering_headlines(
         other = next((point for point in points if point.label == label), None)
         if other is not None and kernel:
             lines.append(Headline(name=words, value=(other.figures["kernel_seconds"] or 0.0) / kernel, unit="x"))
-    ours = next((entry for entry in races if entry.name == "culet"), None)
+    return lines
+
+
+def _race_headlines(points: Sequence[Point], races: Sequence[Race]) -> list[Headline]:
+    """Times to RACE_HEADLINE, and how many times culet's the others' are; also in time of all cores together."""
+    lines = []
     for entry in races:
-        seconds = entry.seconds.get(RACE_HEADLINE)
-        if seconds is None:
-            continue
-        words = f"{entry.name}: to RMSE {RACE_HEADLINE}" + (
-            " (extrapolated)" if RACE_HEADLINE in entry.extrapolated else ""
-        )
-        lines.append(Headline(name=words, value=seconds, unit="s"))
-        fastest = ours.seconds.get(RACE_HEADLINE) if ours else None
-        if fastest and entry.name.startswith("Mitsuba"):
-            lines.append(Headline(name=f"{entry.name}'s time over culet's", value=seconds / fastest, unit="x"))
+        if (seconds := entry.seconds.get(RACE_HEADLINE)) is not None:
+            extrapolated = " (extrapolated)" if RACE_HEADLINE in entry.extrapolated else ""
+            lines.append(Headline(name=f"{entry.name}: to RMSE {RACE_HEADLINE}{extrapolated}", value=seconds, unit="s"))
+    in_processor_time = race.results(points, cost="race_processor_seconds")
+    for words, timed in (("time", races), ("processor time", in_processor_time)):
+        taken = {entry.name: entry.seconds.get(RACE_HEADLINE) for entry in timed}
+        ours = taken.get("culet")
+        lines += [
+            Headline(name=f"{name}: {words} over culet's", value=seconds / ours, unit="x")
+            for name, seconds in taken.items()
+            if ours and seconds and name.startswith("Mitsuba")
+        ]
     return lines
 
 
@@ -169,19 +179,6 @@ def write(report: Report, folder: Path) -> None:
             part.replace(folder / name)
     except OSError as error:
         raise InputError(f"out: cannot write to {folder}: {error.strerror}", "out") from error
-
-
-def headline_markdown(report: Report) -> str:
-    """A table for a README."""
-    facts = report.provenance
-    on = ", ".join(str(facts[name]) for name in ("processor", "driver", "commit") if name in facts)
-    rows = "".join(f"| {line.name} | {f'{line.value:.3g} {line.unit}'.strip()} |\n" for line in report.headlines)
-    return f"| {report.study}, {_size(report)} | |\n|---|---|\n{rows}\nMeasured on {on}, {report.made[:10]}.\n"
-
-
-def _size(report: Report) -> str:
-    width, height = report.settings.get("width"), report.settings.get("height")
-    return f"{width} x {height}" if width else "default stone"
 
 
 def _now() -> str:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from culet.study.document import document, figure, heading, paragraph, picture, table
+from culet.study.document import document, figure, heading, paragraph, picture, table, text
 from culet.study.pictures import LEAST, MOST, inline, picture_paths, scale_bar
 from culet.study.plot import SHAPES, Mark, Series, log_log
 from culet.study.report import Front, Point, Report
@@ -16,6 +16,13 @@ TITLES = {
     "simulation": "Error against run time: the simulation",
     "streaming": "Size, time and likeness: the stream",
 }
+
+LIMITS = {
+    "single_flops": ("multiplications and additions, single precision", "Gflop/s"),
+    "double_flops": ("multiplications and additions, double precision", "Gflop/s"),
+    "bandwidth_per_second": ("copied, read and written", "GB/s"),
+}
+"""Of a report, in words."""
 
 _SIMULATION_PLOTS = (
     ("rotation", "attitude_error"), ("rotation", "energy_error"), ("flight", "attitude_error"),
@@ -31,8 +38,8 @@ def page(report: Report, pictures: Path) -> str:
 
 
 def _opening(report: Report) -> Iterator[str]:
-    settings = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in report.settings.items())
-    yield paragraph(f"Made {report.made}. {settings}.")
+    settings = ", ".join(f"{name.replace('_', ' ')} {text(value)}" for name, value in report.settings.items())
+    yield paragraph(f"Made {report.made[:10]}, {report.made[11:16]} UTC: {settings}.")
     if report.headlines:
         yield heading("In short")
         yield table(["", "value", "unit"], [(line.name, line.value, line.unit) for line in report.headlines])
@@ -46,7 +53,7 @@ def _closing(report: Report) -> Iterator[str]:
     yield heading("Measured on")
     yield table(["", ""], [(name, str(value)) for name, value in report.provenance.items()])
     if report.limits:
-        yield table(["limit", "value"], [(name.replace("_", " "), f"{v:.3g}") for name, v in report.limits.items()])
+        yield table(["the machine's limits", "", ""], [(*LIMITS[name], v / 1e9) for name, v in report.limits.items()])
 
 
 def _rendering(report: Report, pictures: Path) -> Iterator[str]:
@@ -88,14 +95,16 @@ def _rendering(report: Report, pictures: Path) -> Iterator[str]:
     yield figure(
         f'<img class="bar" src="{scale_bar()}" alt="from black to white">',
         f"Error maps: the largest error of a pixel's channels against the model reference, from {LEAST:g} (black) to "
-        f"{MOST:g} (white), logarithmic. The first row is the reference.",
+        f"{MOST:g} (white), logarithmic. The first row are the references.",
     )
     shown = []
-    for key, label in [("reference", "the model reference"), *((point.key, point.label) for point in points)]:
+    references = [("model", "the model reference"), ("physics", "the physics reference")]
+    for key, label in [*references, *((point.key, point.label) for point in points)]:
         image, error = picture_paths(pictures, key)
         if image.exists():
             shown.append(picture(inline(image), label))
-            shown.append(picture(inline(error), f"{label}: error"))
+            if key not in dict(references):
+                shown.append(picture(inline(error), f"{label}: error"))
     yield '<div class="pictures">' + "".join(shown) + "</div>"
 
 
@@ -103,6 +112,7 @@ def _front(report: Report, points: list[Point], front: Front) -> Iterator[str]:
     if front.error == "rmse_paired":
         points = [point for point in points if point.knobs["samples"] == 1]
     drawn = Counter(point.group for point in points if point.figures.get(front.error))
+    drawn.update({report.point(key).group: len(points) for key in front.keys})  # those on the front before all others
     marked = sorted({"base", *(group for group, _ in drawn.most_common(len(SHAPES) - 2))})
     series = [Series(g, _marks([p for p in points if p.group == g], front.cost, front.error)) for g in marked]
     others = [point for point in points if point.group not in marked]
@@ -197,10 +207,10 @@ def _marks(points: list[Point], x: str, y: str) -> list[Mark]:
     for point in points:
         across, up = point.figures.get(x), point.figures.get(y)
         if across and up:
-            marks.append(Mark(across, up, f"{point.label}: {across:.3g}, {up:.3g}"))
+            marks.append(Mark(across, up, f"{point.label}: {across:.3g}, {up:.3g}", point.label))
     return marks
 
 
 def _table(points: list[Point], figures: list[str], first: str) -> str:
-    rows = [[p.group, p.label, *(p.figures.get(name) for name in figures)] for p in points]
-    return table(["sweep", first, *(name.replace("_", " ") for name in figures)], rows)
+    rows = [[p.label, *(p.figures.get(name) for name in figures)] for p in points]
+    return table([first, *(name.replace("_", " ") for name in figures)], rows)

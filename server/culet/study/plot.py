@@ -8,10 +8,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-WIDTH, HEIGHT = 820, 470
-LEFT, RIGHT, TOP, BOTTOM = 74, 200, 14, 52
+WIDTH, HEIGHT = 900, 470
+LEFT, RIGHT, TOP, BOTTOM = 74, 280, 14, 52
+LINE = 16
+"""Of the legend, and of the front's names below it."""
 COLOURS = ("#1b6ca8", "#c0392b", "#2e8540", "#8e44ad", "#b9770e", "#117a8b", "#7b4b2a", "#5d6d7e")
 SHAPES = ("circle", "square", "up", "diamond", "down", "plus", "cross", "bar")
+
+CLOSE = 18
+"""Two numbers nearer than this would cover each other."""
 
 
 class Mark(NamedTuple):
@@ -21,6 +26,8 @@ class Mark(NamedTuple):
     y: float
     title: str = ""
     """Shown by a screen when pointed at."""
+    name: str = ""
+    """Told in the margin, if it is one of the front's."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +40,7 @@ class Series:
 
 
 def log_log(series: Sequence[Series], x_label: str, y_label: str, front: Sequence[Mark] = ()) -> str:
-    """An inline SVG. `front` is drawn as a stair and numbered from 1, from left to right."""
+    """An inline SVG. `front` is drawn as a stair and numbered from 1, left to right; its names are in the margin."""
     shown = [Series(each.name, [m for m in each.marks if m.x > 0 and m.y > 0], each.line) for each in series]
     shown = [each for each in shown if each.marks]
     marks = [mark for each in shown for mark in each.marks] + [m for m in front if m.x > 0 and m.y > 0]
@@ -52,13 +59,11 @@ def log_log(series: Sequence[Series], x_label: str, y_label: str, front: Sequenc
             points = " ".join(f"{frame.x(m.x):.1f},{frame.y(m.y):.1f}" for m in each.marks)
             parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.2"/>')
         parts += [_mark(frame.x(m.x), frame.y(m.y), shape, colour, m.title) for m in each.marks]
-        y = TOP + 10 + 17 * number
+        y = TOP + 10 + LINE * number
         parts.append(_mark(WIDTH - RIGHT + 18, y, shape, colour, ""))
         parts.append(f'<text x="{WIDTH - RIGHT + 28}" y="{y + 4}">{html.escape(each.name)}</text>')
     if front:
-        y = TOP + 10 + 17 * len(shown)
-        parts.append(f'<line x1="{WIDTH - RIGHT + 10}" x2="{WIDTH - RIGHT + 26}" y1="{y}" y2="{y}" class="front"/>')
-        parts.append(f'<text x="{WIDTH - RIGHT + 28}" y="{y + 4}">Pareto front</text>')
+        parts += _front_legend(front, TOP + 10 + LINE * len(shown))
     return "".join([*parts, "</svg>"])
 
 
@@ -124,9 +129,28 @@ def _front(frame: _Frame, front: Sequence[Mark]) -> list[str]:
     path = [f"M{frame.x(front[0].x):.1f} {frame.y(front[0].y):.1f}"]
     path += [f"H{frame.x(m.x):.1f}V{frame.y(m.y):.1f}" for m in front[1:]]
     parts = [f'<path d="{"".join(path)}" class="front"/>']
+    before = (-math.inf, -math.inf)
     for number, mark in enumerate(front, 1):
         x, y = frame.x(mark.x), frame.y(mark.y)
-        parts.append(f'<text x="{x - 6:.1f}" y="{y + 14:.1f}" text-anchor="end" class="number">{number}</text>')
+        if math.hypot(x - before[0], y - before[1]) < CLOSE:  # below it there is another's number
+            parts.append(f'<text x="{x + 5:.1f}" y="{y - 7:.1f}" class="number">{number}</text>')
+        else:
+            parts.append(f'<text x="{x - 6:.1f}" y="{y + 14:.1f}" text-anchor="end" class="number">{number}</text>')
+            before = (x, y)
+    return parts
+
+
+def _front_legend(front: Sequence[Mark], top: float) -> list[str]:
+    left = WIDTH - RIGHT
+    parts = [
+        f'<line x1="{left + 10}" x2="{left + 26}" y1="{top}" y2="{top}" class="front"/>',
+        f'<text x="{left + 28}" y="{top + 4}">Pareto front</text>',
+    ]
+    for number, mark in enumerate(front, 1):
+        if mark.name:
+            y = top + 6 + LINE * number
+            parts.append(f'<text x="{left + 24}" y="{y}" text-anchor="end" class="number">{number}.</text>')
+            parts.append(f'<text x="{left + 28}" y="{y}" class="name">{html.escape(mark.name)}</text>')
     return parts
 
 

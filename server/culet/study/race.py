@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -22,6 +24,7 @@ from culet.study.convergence import resting_error, time_to
 from culet.study.frame import Frame, Studied
 from culet.study.image_error import radiance_error
 from culet.study.knobs import base_knobs
+from culet.study.mitsuba import LEAST_LLVM
 from culet.study.reference import Reference
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point, Race
@@ -30,6 +33,7 @@ TARGETS = (0.02, 0.01, 0.005, 0.002)
 """RMSE in radiance, under a sky from 0 to 1."""
 FIGURES: dict[str, Figure] = {
     "race_seconds": Figure(unit="s", about="Race: time in the renderer until then, compiled beforehand."),
+    "race_processor_seconds": Figure(unit="s", about="Race: the same of all cores together, whatever else they did."),
     "race_rmse": Figure(unit="radiance", about="Race: RMSE against the race's own reference."),
 }
 RACE = CHECKER.model_copy(
@@ -42,9 +46,18 @@ RACE = CHECKER.model_copy(
 """A brilliant of three indices alone under the gradient sky: what every renderer can do."""
 ENTRANTS = {
     "culet": Optics(),
+    "culet, cut-off 0.02": Optics(cutoff=0.02),
     "culet, cut-off 0.05": Optics(cutoff=0.05),
     "classic estimator": Optics(estimator="classic", fresnel="schlick", max_bounces=12),
 }
+
+
+TURNS = 3
+"""Pictures of culet's."""
+NO_LLVM = (
+    f"No libLLVM of version {LEAST_LLVM} or newer was found, so that Mitsuba 3 renders by a scalar variant, which is "
+    "slower: apt-get install libllvm19, or name the library by DRJIT_LIBLLVM_PATH."
+)
 
 
 def race_frame(width: int, height: int) -> Frame:
@@ -53,22 +66,33 @@ def race_frame(width: int, height: int) -> Frame:
 
 
 def run_culet(name: str, renderers: Renderers, frame: Frame, reference: Reference, seconds: float) -> Iterator[Point]:
-    """One sample of each pixel after the other, judged at every power of two, for at most `seconds`."""
+    """One sample of each pixel after the other, judged at every power of two, for at most `seconds`.
+
+    Several pictures take turns, and the median of their times counts: the whole run is so short that anything else on
+    the machine would be seen in it.
+    """
     scene = frame.subject.scene.model_copy(update={"optics": ENTRANTS[name]})
     knobs = base_knobs(scene, frame.subject.stone, renderers.device.lanes)
     renderers.picture(knobs, frame).refine(1)  # compiles
-    picture = renderers.picture(knobs, frame)
-    taken, most = 0.0, max(reference.images) // 4  # the reference holds the same samples: it must have many more
-    while taken < seconds and picture.samples < most:
-        picture.refine(1)
-        taken += picture.seconds
-        if picture.samples.bit_count() == 1:
-            rmse = radiance_error(picture.linear(), reference.image)["rmse"]
-            yield _point(name, picture.samples, taken, rmse)
+    pictures = [renderers.picture(knobs, frame) for _ in range(TURNS)]
+    taken, processor, most = (
+        0.0,
+        0.0,
+        max(reference.images) // 4,
+    )  # it holds the same samples: many more
+    while TURNS * taken < seconds and pictures[0].samples < most:
+        before = time.process_time()
+        for picture in pictures:
+            picture.refine(1)
+        processor += (time.process_time() - before) / TURNS
+        taken += statistics.median(picture.seconds for picture in pictures)
+        if pictures[0].samples.bit_count() == 1:
+            rmse = radiance_error(pictures[0].linear(), reference.image)["rmse"]
+            yield _point(name, pictures[0].samples, taken, processor, rmse)
 
 
-def run_mitsuba(frame: Frame, reference: NDArray[np.float64], spp: int, seconds: float) -> Iterator[Point]:
-    """Passes of `spp` samples for at most `seconds` and a pass; nothing if it fails, see `mitsuba_missing`."""
+def run_mitsuba(frame: Frame, reference: NDArray[np.float64], spp: int, seconds: float) -> tuple[list[Point], str]:
+    """For some `seconds` with each of its samplers, beginning with `spp` samples; and why not, if there is nothing."""
     scene, stone, _ = frame.subject
     camera, material = scene.camera, scene.stones[0].material
     with tempfile.TemporaryDirectory() as folder:
@@ -84,10 +108,23 @@ def run_mitsuba(frame: Frame, reference: NDArray[np.float64], spp: int, seconds:
             [sys.executable, "-m", "culet.study.mitsuba"],
             input=json.dumps(order), capture_output=True, text=True, check=False,
         )  # fmt: skip
-    passes = [json.loads(line) for line in run.stdout.splitlines() if line.startswith("{")]
-    for number, found in enumerate(passes, 1):
-        if number.bit_count() == 1 or number == len(passes):
-            yield _point(f"Mitsuba 3, {found['variant']}", found["samples"], found["seconds"], found["rmse"])
+    answers = [json.loads(line) for line in run.stdout.splitlines() if line.startswith("{")]
+    points = [
+        _point(
+            f"Mitsuba 3, {found['sampler']}",
+            found["samples"],
+            found["seconds"],
+            found["processor_seconds"],
+            found["rmse"],
+            variant=found["variant"],
+        )
+        for found in answers
+        if (found["samples"] // spp).bit_count() == 1
+    ]
+    if not points:
+        last = (run.stderr.strip() or f"exit code {run.returncode}").splitlines()[-1]
+        return [], f"Mitsuba 3 is installed but renders nothing here, and does not take part in the race: {last}"
+    return points, ""
 
 
 def mitsuba_missing() -> bool:
@@ -95,20 +132,20 @@ def mitsuba_missing() -> bool:
     return find_spec("mitsuba") is None
 
 
-def results(points: Sequence[Point], targets: Sequence[float] = TARGETS) -> list[Race]:
+def results(points: Sequence[Point], targets: Sequence[float] = TARGETS, cost: str = "race_seconds") -> list[Race]:
     """Seconds to every target, of each renderer that took part."""
     races = []
     for name in dict.fromkeys(str(point.knobs["renderer"]) for point in points if point.group == "race"):
         own = [point for point in points if point.group == "race" and point.knobs["renderer"] == name]
-        own.sort(key=lambda point: point.figures["race_seconds"] or 0.0)
-        seconds = [point.figures["race_seconds"] or math.nan for point in own]
+        own.sort(key=lambda point: point.figures.get(cost) or 0.0)
+        seconds = [point.figures.get(cost) or math.nan for point in own]
         errors = [point.figures["race_rmse"] or math.nan for point in own]
         floor = resting_error(seconds, errors)
         reached = {f"{target:g}": time_to(seconds, errors, target, floor=floor) for target in targets}
         races.append(
             Race(
                 name=name,
-                note="" if floor is None else f"biased: comes to rest at {floor:.3g}",
+                note=str(own[0].knobs.get("variant", "")) if floor is None else f"biased: comes to rest at {floor:.3g}",
                 seconds={target: reach.seconds for target, reach in reached.items()},
                 extrapolated=tuple(target for target, reach in reached.items() if reach.extrapolated),
             )
@@ -116,11 +153,11 @@ def results(points: Sequence[Point], targets: Sequence[float] = TARGETS) -> list
     return races
 
 
-def _point(name: str, samples: int, seconds: float, rmse: float) -> Point:
+def _point(name: str, samples: int, seconds: float, processor: float, rmse: float, **knobs: str) -> Point:
     return Point(
         key=f"race {name} samples={samples}",
         group="race",
         label=f"{name}, {samples} samples",
-        knobs={"renderer": name, "samples": samples},
-        figures={"race_seconds": seconds, "race_rmse": rmse},
+        knobs={"renderer": name, "samples": samples, **knobs},
+        figures={"race_seconds": seconds, "race_processor_seconds": processor, "race_rmse": rmse},
     )

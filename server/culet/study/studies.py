@@ -16,6 +16,7 @@ from culet.study.frame import Frame, Studied
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.limits import measure_limits
+from culet.study.mitsuba import find_llvm
 from culet.study.outcome import device_facts, rendering_report, simulation_report, streaming_report, write
 from culet.study.pictures import write_pictures
 from culet.study.provenance import IMAGE_PACKAGES, MOTION_PACKAGES, code_digest, processor
@@ -49,8 +50,8 @@ class Effort(NamedTuple):
 
 QUICK = Effort(320, 180, 256, 48, 3, 512, 4.0, 16)
 """Two minutes on two cores."""
-FULL = Effort(640, 360, 2048, 512, 7, 2048, 30.0, 32)
-"""Half an hour, of which the references take the most; they are kept."""
+FULL = Effort(640, 360, 1024, 256, 5, 1024, 15.0, 16)
+"""A quarter of an hour, of which the references take half; they are kept."""
 
 
 def study_rendering(
@@ -93,7 +94,8 @@ def study_rendering(
                 )  # fmt: skip
         judges = rendering.Judges(*references)
         pictures = out / "pictures"
-        write_pictures(pictures, "reference", judges.model.image, judges.model.image, scene.film)
+        for kind, judge in (("model", judges.model), ("physics", judges.physics)):
+            write_pictures(pictures, kind, judge.image, judges.model.image, scene.film)
         with progress("settings", len(settings)) as advance:
             rendering.measure_all(renderers, frame, base, settings, judges, journal, effort.repeats, advance, pictures)
         notes = [
@@ -145,12 +147,12 @@ def _run_race(
             return ["Mitsuba 3 is not installed, and does not take part in the race (pip install mitsuba)."]
         advance("Mitsuba 3", len(race.ENTRANTS))
         if not any(name.startswith("Mitsuba") for name in ran):
-            points = list(race.run_mitsuba(frame, reference.image, effort.race_pass, effort.race_seconds))
+            points, words = race.run_mitsuba(frame, reference.image, effort.race_pass, effort.race_seconds)
             for point in points:
                 journal.add(point)
-            if not points:
-                return ["Mitsuba 3 is installed but renders nothing here, and does not take part in the race."]
-    return []
+            if words:
+                return [words]
+    return [] if find_llvm() else [race.NO_LLVM]
 
 
 def study_simulation(subject: Studied, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
