@@ -123,7 +123,7 @@ class Frame:
         if magic != MAGIC:
             raise FrameError(f"a frame is marked {MAGIC!r}, got {magic!r}")
         if version != HEADER_VERSION:
-            raise FrameError(f"expected header version {HEADER_VERSION}, got {version}")
+            raise FrameError(f"expected header version {HEADER_VERSION}, got {version}: use the client of that server")
         payload = bytes(message[HEADER_SIZE:])
         if len(payload) != length:
             raise FrameError(f"expected {length} bytes of payload, got {len(payload)}")

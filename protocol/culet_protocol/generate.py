@@ -213,7 +213,9 @@ CHECKED_ONLY = frozenset({"magic", "version", "length"})
 
 CHECKS = {
     "magic": "  expect(magic === MAGIC, `the mark ${MAGIC}`, magic);\n",
-    "version": "  expect(version === HEADER_VERSION, `header version ${HEADER_VERSION}`, version);\n",
+    "version": (
+        "  expect(version === HEADER_VERSION, `header version ${HEADER_VERSION}`, `${version}: reload the page`);\n"
+    ),
     "codec": "  if (!isCodec(codec)) throw new FrameError(`expected ${CODECS}, got ${codec}`);\n",
 }
 

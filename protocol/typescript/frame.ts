@@ -87,7 +87,7 @@ export function parseFrame(message: ArrayBuffer): Frame {
   const magic = String.fromCharCode(...new Uint8Array(message, 16, 4));
   expect(magic === MAGIC, `the mark ${MAGIC}`, magic);
   const version = view.getUint8(20);
-  expect(version === HEADER_VERSION, `header version ${HEADER_VERSION}`, version);
+  expect(version === HEADER_VERSION, `header version ${HEADER_VERSION}`, `${version}: reload the page`);
   const codec = view.getUint8(21);
   if (!isCodec(codec)) throw new FrameError(`expected ${CODECS}, got ${codec}`);
   const flags = view.getUint16(22, true);

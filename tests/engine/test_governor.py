@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import pytest
@@ -85,8 +85,7 @@ def test_a_hard_scene_is_at_its_rate_after_one_frame() -> None:
 
 def test_quality_comes_back_within_a_second_when_the_scene_gets_easy() -> None:
     governor = Governor(MEASURED)
-    play(governor, steady(0.3, 10))
-    assert governor.setting == MEASURED[-1]
+    assert play(governor, steady(0.3, 10))[-1].plan.size == (640, 360)
     play(governor, steady(0.01, int(RATE)))
     assert governor.setting == MEASURED[0]
 
@@ -147,18 +146,19 @@ def test_a_minute_of_falls_and_new_scenes_has_never_two_late_frames_in_a_row(see
     late = [frame.seconds > 0.05 for frame in played]
     assert not any(before and after for before, after in pairwise(late))
     in_time = sum(frame.seconds + 0.003 <= 1 / RATE for frame in played) / len(played)
-    assert in_time > 0.95, "measured 0.976 to 0.985"
-    assert all(frame.plan.size >= (640, 360) for frame in played)
-    assert changes(played) <= 60, "measured 17 to 48 a minute, of up to 14 new scenes and 30 falls"
+    assert in_time > 0.95, "measured 0.974 to 0.985"
+    assert all(frame.plan.size[0] >= 640 and frame.plan.size[1] >= 360 for frame in played)
+    assert changes(played) <= 60, "measured 25 to 54 a minute, of up to 14 new scenes and 30 falls"
 
 
 @pytest.mark.parametrize(
-    ("wanted", "least"), [((1280, 720), (640, 360)), ((700, 400), (640, 366)), ((320, 180), (320, 180))]
+    ("wanted", "least"),
+    [((1280, 720), (640, 360)), ((700, 400), (635, 363)), ((320, 180), (320, 180)), ((780, 1688), (326, 706))],
 )
 def test_no_frame_is_smaller_than_the_limit_unless_the_viewer_is(
     wanted: tuple[int, int], least: tuple[int, int]
 ) -> None:
-    governor = Governor(LADDER)
+    governor = Governor((*LADDER, replace(LADDER[-1], scale=0.1, cost=0.01)))
     for _ in range(5):
         governor.rendered(governor.plan(Scene(), wanted, BALANCE), 10.0, 0.0, RATE)
     assert governor.plan(Scene(), wanted, BALANCE).size == least

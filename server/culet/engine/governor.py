@@ -30,8 +30,8 @@ MEMORY = 0.2
 """Weight of the latest frame in the expected cost,"""
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
-LEAST_WIDTH, LEAST_HEIGHT = 640, 360
-"""Pixels below which no frame is scaled, unless the viewer asked for less."""
+LEAST_PIXELS = 640 * 360
+"""Of a frame, below which none is scaled unless the viewer asked for less."""
 
 
 @dataclass(frozen=True)
@@ -157,11 +157,9 @@ class Governor:
         return self._ladder[rung - 1] if rung else None
 
     def _best(self, wanted: tuple[int, int], budget: float) -> int:
-        """The best rung that is expected to take no longer, or the last one."""
-        for rung in range(len(self._ladder)):
-            if self._expected(rung, wanted) <= budget:
-                return rung
-        return len(self._ladder) - 1
+        """The best rung that is expected to take no longer, or the cheapest for that size."""
+        expected = [self._expected(rung, wanted) for rung in range(len(self._ladder))]
+        return next((rung for rung, cost in enumerate(expected) if cost <= budget), expected.index(min(expected)))
 
     def _expected(self, rung: int, wanted: tuple[int, int]) -> float:
         setting = self._ladder[rung]
@@ -170,5 +168,5 @@ class Governor:
 
 def _scale(setting: Setting, wanted: tuple[int, int]) -> float:
     """Of width and height, within the limit."""
-    least = min(1.0, max(LEAST_WIDTH / wanted[0], LEAST_HEIGHT / wanted[1]))
-    return max(setting.scale, least)
+    least: float = (LEAST_PIXELS / (wanted[0] * wanted[1])) ** 0.5
+    return max(setting.scale, min(1.0, least))

@@ -29,13 +29,15 @@ from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
 
 SIZE = 1280, 720
-SCALES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5
+SCALES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3
+LEAST_SCALE = 0.5
+"""Of this size: 640x360, below which the governor does not go. What is smaller follows, for larger pictures."""
 CUTOFFS = 0.01, 0.02, 0.05
 BOUNCES = 256, 48, 24, 16
 Pixels = NDArray[np.floating[Any]]
 
 REFERENCE_SAMPLES, REFERENCE_CUTOFF = 64, 1e-3
-TURNS = 7
+TURNS = 5
 CLOSEST = 0.95
 """Cost of a rung over that of the one above it: what is nearer is not worth a change of setting."""
 
@@ -52,8 +54,13 @@ def measure_ladder(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZ
     best, *others = _measured(renderer, scene, stone, reference)
     return tuple(
         replace(r, cost=round(r.cost, 3), error=round(r.error, 4), radiance_error=round(r.radiance_error, 4))
-        for r in (best, *_front(others, best.cost))
+        for r in _rungs(best, others)
     )
+
+
+def _rungs(best: Setting, others: list[Setting]) -> list[Setting]:
+    rungs = [best, *_front([other for other in others if other.scale >= LEAST_SCALE], best.cost)]
+    return rungs + _front([other for other in others if other.error > rungs[-1].error], rungs[-1].cost)
 
 
 def _front(settings: list[Setting], cost: float) -> list[Setting]:
