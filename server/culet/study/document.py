@@ -36,7 +36,7 @@ figcaption { font-size: 0.85rem; color: #444; }
 .pictures { display: grid; grid-template-columns: repeat(2, 1fr); gap: 0.8rem; }
 .pictures img { width: 100%; image-rendering: auto; }
 .bar { height: 10px; width: 14rem; }
-@media print { body { margin: 0; max-width: none; font-size: 10pt; } h2 { break-after: avoid; }
+@media print { body { margin: 0; padding: 0; max-width: none; font-size: 10pt; } h2 { break-after: avoid; }
   .scroll { overflow: visible; } table { font-size: 8pt; } table.wide { font-size: 5.8pt; } }
 """
 

@@ -149,8 +149,8 @@ def _front_legend(front: Sequence[Mark], top: float) -> list[str]:
     for number, mark in enumerate(front, 1):
         if mark.name:
             y = top + 6 + LINE * number
-            parts.append(f'<text x="{left + 24}" y="{y}" text-anchor="end" class="number">{number}.</text>')
-            parts.append(f'<text x="{left + 28}" y="{y}" class="name">{html.escape(mark.name)}</text>')
+            parts.append(f'<text x="{left + 30}" y="{y}" text-anchor="end" class="number">{number}.</text>')
+            parts.append(f'<text x="{left + 34}" y="{y}" class="name">{html.escape(mark.name)}</text>')
     return parts
 
 

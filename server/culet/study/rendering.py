@@ -42,7 +42,7 @@ FIGURES: dict[str, Figure] = {
 }
 """Of each point. `model`, `physics`: see the module `reference`. Time is of this machine, noise included."""
 
-BUDGET = 2.0
+BUDGET = 1.5
 """s. Repeats of a point end after this, whatever their number: a long one is its own average."""
 
 
