@@ -85,7 +85,11 @@ def test_a_hard_scene_is_at_its_rate_after_one_frame() -> None:
 
 def test_quality_comes_back_within_a_second_when_the_scene_gets_easy() -> None:
     governor = Governor(MEASURED)
-    assert play(governor, steady(0.3, 10))[-1].plan.size == (640, 360)
+    worst = play(governor, steady(0.3, 10))[-1].plan
+    assert (worst.size, worst.setting) == (
+        (640, 360),
+        next(s for s in MEASURED if s.scale == 0.5 and s.max_bounces == 16),
+    )
     play(governor, steady(0.01, int(RATE)))
     assert governor.setting == MEASURED[0]
 

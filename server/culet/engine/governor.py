@@ -30,6 +30,8 @@ MEMORY = 0.2
 """Weight of the latest frame in the expected cost,"""
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
+ALIKE = 1.05
+"""Costs that differ by less are the same: of rungs that LEAST_PIXELS makes alike, the first tells the error best."""
 LEAST_PIXELS = 640 * 360
 """Of a frame, below which none is scaled unless the viewer asked for less."""
 
@@ -157,9 +159,10 @@ class Governor:
         return self._ladder[rung - 1] if rung else None
 
     def _best(self, wanted: tuple[int, int], budget: float) -> int:
-        """The best rung that is expected to take no longer, or the cheapest for that size."""
+        """The best rung that is expected to take no longer, or the best of the cheapest for that size."""
         expected = [self._expected(rung, wanted) for rung in range(len(self._ladder))]
-        return next((rung for rung, cost in enumerate(expected) if cost <= budget), expected.index(min(expected)))
+        limit = max(budget, ALIKE * min(expected))
+        return next(rung for rung, cost in enumerate(expected) if cost <= limit)
 
     def _expected(self, rung: int, wanted: tuple[int, int]) -> float:
         setting = self._ladder[rung]
