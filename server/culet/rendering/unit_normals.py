@@ -27,7 +27,7 @@ within 2e-9 for most normals, and those turned by 1e-7, which is twice what roun
 
 def planes_in(real: Real, planes: Array) -> NDArray[np.floating[Any]]:
     """(F, 4) planes of a convex stone, rounded; with normals of unit length if every facet has a parallel one."""
-    rounded = planes.astype(real)
+    rounded: NDArray[np.floating[Any]] = planes.astype(real)
     normals = planes[:, :3]
     if (normals @ normals.T).min(axis=1).max() < -1 + 1e-12:
         rounded[:, :3] = _of_unit_length(normals, real)
@@ -37,7 +37,7 @@ def planes_in(real: Real, planes: Array) -> NDArray[np.floating[Any]]:
 def _of_unit_length(normals: Array, real: Real) -> NDArray[np.floating[Any]]:
     """Opposite normals stay opposite, and components that are 0 stay so."""
     exact = np.abs(normals)[:, None]
-    tried = exact.astype(real).repeat(3 * len(ABOUT), axis=1)
+    tried: NDArray[np.floating[Any]] = np.repeat(exact.astype(real), 3 * len(ABOUT), axis=1)
     step = np.spacing(tried)
     for solved in range(3):  # two components are about the nearest number, the third is what that leaves
         others, part = [k for k in range(3) if k != solved], slice(solved * len(ABOUT), (solved + 1) * len(ABOUT))
