@@ -17,6 +17,9 @@ TITLES = {
     "streaming": "Size, time and likeness: the stream",
 }
 
+SHORTER = (("integrator ", ""), ("time step", "step"), ("contact step", "contact"), ("polarised yes", "polarised"))
+NAME_LENGTH = 42
+"""Letters that a plot's margin has room for."""
 LIMITS = {
     "single_flops": ("multiplications and additions, single precision", "Gflop/s"),
     "double_flops": ("multiplications and additions, double precision", "Gflop/s"),
@@ -162,8 +165,7 @@ def _simulation(report: Report, pictures: Path) -> Iterator[str]:
             about.about,
         )
         yield _numbered(chosen, "cpu_seconds", error)
-    yield heading("All points")
-    yield _table(list(report.points), list(report.figures), "setting")
+    yield from _groups(report, "setting")
 
 
 def _method(point: Point) -> str:
@@ -190,8 +192,7 @@ def _streaming(report: Report, pictures: Path) -> Iterator[str]:
             "Lossless codecs have no error and are in the tables alone.",
         )
         yield _numbered(chosen, front.cost, front.error)
-    yield heading("All points")
-    yield _table(list(report.points), list(report.figures), "codec")
+    yield from _groups(report, "codec")
 
 
 def _family(point: Point) -> str:
@@ -207,8 +208,27 @@ def _marks(points: list[Point], x: str, y: str) -> list[Mark]:
     for point in points:
         across, up = point.figures.get(x), point.figures.get(y)
         if across and up:
-            marks.append(Mark(across, up, f"{point.label}: {across:.3g}, {up:.3g}", point.label))
+            marks.append(Mark(across, up, f"{point.label}: {across:.3g}, {up:.3g}", _short(point.label)))
     return marks
+
+
+def _short(label: str) -> str:
+    """For the margin of a plot; the table below it has the whole."""
+    for long, short in (
+        ("integrator ", ""),
+        ("time step", "step"),
+        ("contact step", "contact"),
+        ("polarised yes", "polarised"),
+    ):
+        label = label.replace(long, short)
+    return label if len(label) <= NAME_LENGTH else label[: NAME_LENGTH - 3] + "..."
+
+
+def _groups(report: Report, first: str) -> Iterator[str]:
+    yield heading("All points")
+    for group in dict.fromkeys(point.group for point in report.points):
+        yield heading(group.capitalize(), 3)
+        yield _table([point for point in report.points if point.group == group], list(report.figures), first)
 
 
 def _table(points: list[Point], figures: list[str], first: str) -> str:
