@@ -43,8 +43,16 @@ def test_a_path_is_the_simulations(path: Path, box: Stone) -> None:
         assert tuple(path.velocity[index]) == moving.body.velocity(state)
         assert tuple(path.angular_velocity[index]) == moving.body.angular_velocity(state)
         assert path.energy[index] == moving.energy()
-        assert (path.asleep[index], path.impacts[index]) == (state.asleep, state.impacts)
+        assert (path.asleep[index], path.impacts[index], path.coarse[index]) == (state.asleep, state.impacts, 0)
         moving.step()
+
+
+def test_a_path_counts_the_steps_that_were_too_full_to_follow(box: Stone) -> None:
+    spin = {"gravity": 1e6, "spin": (6000, 9000, 4000), "time_step": 0.1}
+    scene = Scene.read({"simulation": spin, "stones": [{"position": [0, 0, 0]}]})
+    coarse = record(scene, box, 0.3).coarse.tolist()
+    assert coarse == sorted(coarse)
+    assert (coarse[0], coarse[1]) == (0, 1)
 
 
 def test_the_sphere_touches_at_rest_and_not_in_the_air(path: Path) -> None:

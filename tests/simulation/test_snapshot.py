@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -30,6 +31,13 @@ def changed(path: str, value: object) -> dict[str, Any]:
 def test_a_snapshot_reads_back_as_the_same_states() -> None:
     text = json.dumps(write_snapshot(AFTER, BEFORE), allow_nan=False)
     assert read_snapshot(json.loads(text)) == (AFTER, BEFORE)
+
+
+def test_a_snapshot_from_before_coarse_steps_were_counted_has_none() -> None:
+    snapshot = write_snapshot(replace(AFTER, coarse=3), BEFORE)
+    assert read_snapshot(snapshot)[0].coarse == 3
+    del snapshot["state"]["coarse"]
+    assert read_snapshot(snapshot)[0] == AFTER
 
 
 def test_whole_numbers_may_stand_for_floats() -> None:

@@ -29,10 +29,12 @@ LAST_PASSES = 200
 """Of the last round: where the contacts' states do not settle, as with friction far above 1. And of a contact alone,
 whose slip only has to find its direction."""
 ROUNDS = 8
-STALLED = 1e-6
+STALLED = 1e-8
 """Of the largest impulse: a smaller change that passes no longer reduce is two vertices that push against each other
-along the edge between them, more and more: it moves nothing. Where one of them still closes a gap, the edge is about to
-tilt, and no impulses can stop both along it to the last digit: that comes to 9e-7."""
+along the edge between them, more and more: it moves nothing."""
+CLOSING = 1e-6
+"""The same where a vertex still closes its gap: the edge is about to tilt, and no impulses can stop both of its ends
+along it to the last digit. That comes to 9e-7."""
 TOLERANCE = 1e-10
 """Of the largest impulse: the change in a pass below which the impulses have converged."""
 
@@ -42,11 +44,12 @@ def solve(
 ) -> Motion:
     """The motion after the impulses, which are left in the contacts. Targets are velocities along the normals, R/s."""
     turning = world_inverse_inertia(motion, body)
+    stalled = CLOSING if min(targets, default=0.0) < 0 else STALLED
     for point in points:
         point.impulse = (0.0, 0.0, 0.0)
     for round_ in range(ROUNDS):
         passes = PASSES if round_ < ROUNDS - 1 and len(points) > 1 else LAST_PASSES
-        if _converged(motion, body, turning, points, targets, friction, passes, STALLED if round_ > 0 else 0.0):
+        if _converged(motion, body, turning, points, targets, friction, passes, stalled if round_ > 0 else 0.0):
             break
         if round_ < ROUNDS - 1:
             refine(motion, body, points, targets, friction)
