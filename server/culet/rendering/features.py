@@ -25,7 +25,7 @@ class Geometry(IntEnum):
 
 MOST_HALF_SPACES = 600
 """Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. With
-the brilliant's 73 the tree takes some 8 times as long."""
+the brilliant's 73 the tree takes some 5 times as long."""
 SURFACE = {"none": 0, "matte": 1, "mirror": 2}
 SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3, "image": 4}
 FRESNEL = {"exact": 0, "schlick": 1}
