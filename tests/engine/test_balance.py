@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import math
 
@@ -14,7 +15,7 @@ from culet.geometry.load import stone_of
 from culet.scene import Scene
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Balance
-from engine.peer import EngineProcess, Watcher, connected
+from engine.peer import PATIENCE, EngineProcess, Watcher, connected
 
 FINE = {"optics": {"bands": 4, "polarised": True, "cutoff": 0.005}, "stones": [{"position": [0, 500, 0]}]}
 """More than any moving frame gets, unless the balance is pinned to that; falling for ten seconds."""
@@ -26,8 +27,9 @@ def moving(frame: Frame) -> bool:
 
 
 async def moving_frame(watcher: Watcher, cutoff: float) -> Frame:
-    """The first moving frame of SIZE's aspect with that cut-off."""
-    return await watcher.until(lambda frame: moving(frame) and math.isclose(frame.cutoff, cutoff, rel_tol=1e-6))
+    """The first moving frame with that cut-off; TimeoutError if none comes among those that do."""
+    async with asyncio.timeout(PATIENCE):
+        return await watcher.until(lambda frame: moving(frame) and math.isclose(frame.cutoff, cutoff, rel_tol=1e-6))
 
 
 async def test_a_moving_frame_says_what_the_governor_chose_and_whose_error_it_gives(engine: EngineProcess) -> None:

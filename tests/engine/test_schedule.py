@@ -1,5 +1,7 @@
 """Pictures of real sessions in given situations; what is to be done next."""
 
+import pytest
+
 from culet.engine import schedule
 from culet.engine.live import REPEAT_SECONDS, LivePicture
 from culet.engine.session import Session
@@ -35,6 +37,15 @@ def test_a_frame_is_due_one_interval_after_the_one_before() -> None:
     assert schedule.next_frame([picture], now=5.09) is None
     assert abs((schedule.idle_seconds([picture], now=5.04) or 0) - 0.06) < 1e-9
     assert schedule.next_frame([picture], now=5.11) is picture
+
+
+def test_a_frame_that_is_a_little_late_does_not_make_the_next_one_late() -> None:
+    picture = live(begun_at=5, rate=10)
+    picture.begin(now=5.17)
+    assert picture.begun_at == pytest.approx(5.1)
+    assert picture.due_at() == pytest.approx(5.2)
+    picture.begin(now=5.31)
+    assert picture.begun_at == 5.31, "more than a frame is not made up for"
 
 
 def test_of_two_frames_due_the_one_begun_longest_ago_goes_first() -> None:
