@@ -14,6 +14,7 @@ from starlette.exceptions import HTTPException
 
 from culet.errors import CuletError, InputError
 from culet.scene.model import field_of
+from culet.scene.wording import expected
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_AFTER_SECONDS = "2"
@@ -103,7 +104,7 @@ async def _of_validation(_request: Request, error: RequestValidationError) -> JS
     came = "" if first["type"] == "missing" else f"; got {_short(first.get('input'))}"
     more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
     where = field or first["loc"][0]
-    return problem(InputError.status, InputError.title, f"{where}: {first['msg']}{came}{more}", field)
+    return problem(InputError.status, InputError.title, f"{where}: {expected(first)}{came}{more}", field)
 
 
 async def _of_http(_request: Request, error: HTTPException) -> JSONResponse:

@@ -21,6 +21,7 @@ from pydantic import (
 )
 
 from culet.errors import SceneError
+from culet.scene.wording import expected, unknown_field
 
 SCHEMA_VERSION = 1
 
@@ -422,10 +423,12 @@ def field_of(location: tuple[int | str, ...]) -> str:
 
 def scene_error(error: ValidationError) -> SceneError:
     """The first finding of pydantic as one line: the field, what was expected, what came."""
-    first = error.errors(include_url=False, include_context=False)[0]
+    first = error.errors(include_url=False)[0]
     field = field_of(first["loc"])
+    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+    if first["type"] == "extra_forbidden":
+        root = Scene if error.title == Scene.__name__ else BaseModel  # a message's fields are not the scene's
+        return SceneError(f"{field}: {unknown_field(first['loc'], root)}{more}", field)
     came = repr(first["input"])
     shown = came if len(came) <= 80 else came[:77] + "..."
-    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
-    expected = first["msg"].removeprefix("Value error, ")
-    return SceneError(f"{field or 'scene'}: {expected}; got {shown}{more}", field or None)
+    return SceneError(f"{field or 'scene'}: {expected(first)}; got {shown}{more}", field or None)

@@ -1,0 +1,83 @@
+"""What pydantic finds, in the words of someone who writes JSON and has never heard of pydantic."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping
+from typing import Any, get_args
+
+from pydantic import BaseModel
+
+_WHOLE = {
+    "extra_forbidden": "unknown field",
+    "missing": "expected a value, found none",
+    "model_type": "expected an object",
+    "model_attributes_type": "expected an object",
+    "dict_type": "expected an object",
+    "tuple_type": "expected a list",
+    "list_type": "expected a list",
+    "too_long": "expected a list of at most {max_length}",
+    "too_short": "expected a list of at least {min_length}",
+    "float_parsing": "expected a number",
+    "int_parsing": "expected a whole number",
+    "int_from_float": "expected a whole number",
+    "string_pattern_mismatch": "expected text that matches {pattern}",
+    "union_tag_invalid": "expected an object with {discriminator} one of {expected_tags}",
+    "union_tag_not_found": "expected an object with {discriminator}",
+}
+"""By pydantic's type of the finding, with its own numbers. Others say it well enough, in the words below."""
+
+_PHRASES = {
+    "Value error, ": "",
+    "Input should be a valid ": "expected a ",
+    "Input should be ": "expected ",
+    "greater than or equal to": "at least",
+    "less than or equal to": "at most",
+}
+
+
+def expected(finding: Mapping[str, Any]) -> str:
+    """What a finding of pydantic's `errors()`, with its context, wanted: `expected at most 1`."""
+    if finding["type"] in _WHOLE:
+        return _WHOLE[finding["type"]].format(**finding.get("ctx", {}))
+    message: str = finding["msg"]
+    for theirs, ours in _PHRASES.items():
+        message = message.replace(theirs, ours)
+    return message
+
+
+def unknown_field(location: tuple[int | str, ...], root: type[BaseModel]) -> str:
+    """That a field does not exist, and which one was probably meant; `location` is pydantic's, `root` what it read."""
+    known = _fields_beside(location, root)
+    if not known:
+        return "unknown field"
+    name = str(location[-1])
+    close = difflib.get_close_matches(name, known, n=1) or [other for other in known if other.startswith(name)]
+    return f"unknown field; did you mean `{close[0]}`?" if close else f"unknown field; there are: {', '.join(known)}"
+
+
+def _fields_beside(location: tuple[int | str, ...], root: type[BaseModel]) -> list[str]:
+    """Names that may stand where the location's last one does: of every form that may stand there."""
+    models = [root]
+    for part in location[:-1]:
+        inner = [
+            model
+            for outer in models
+            if part in outer.model_fields
+            for model in _models_in(outer.model_fields[str(part)].annotation)
+        ]
+        models = inner or [model for model in models if _is_form(model, str(part))] or models
+    return sorted({name for model in models for name in model.model_fields})
+
+
+def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
+
+
+def _is_form(model: type[BaseModel], tag: str) -> bool:
+    """Whether a tag in a location, `light` or `<ior>`, chose that form of a union."""
+    kind = model.model_fields.get("kind")
+    return tag.strip("<>") in model.model_fields or (kind is not None and tag in get_args(kind.annotation))
