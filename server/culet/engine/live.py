@@ -20,8 +20,9 @@ REST_SAMPLES = 16
 """Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
 
 SETTLE_SECONDS = 0.2
-"""A picture whose camera or scene has changed twice within this time is being moved: it is governed as a falling one
-is, and drawn in full once this time has passed without a change."""
+"""A picture whose camera or scene changes again so soon after it was drawn, however long that took, is being moved: it
+is governed as a falling one is, and drawn in full once this time has passed without a change. One that takes longer
+than this in full is governed at its first change too, or nothing would be seen of the change meanwhile."""
 
 REPEAT_SECONDS = 1.0
 """A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
@@ -49,7 +50,9 @@ class LivePicture:
     """s, steady clock: from when on a picture that the governor has reduced is to be drawn in full, if nothing moves.
     None if it is in full."""
     changed_at: float = -1e9
-    """s, steady clock: when something new was last drawn."""
+    """s, steady clock: when something new had last been drawn, or been given up for something newer."""
+    full_seconds: float = 0.0
+    """Of rendering the first sample of the picture that was last drawn in full."""
     refinement: Iterator[Any] | None = None
     """More samples on their way, a band at a time."""
     refused: Shown | None = None
@@ -96,6 +99,27 @@ class LivePicture:
             if self.final or self.picture is not None:
                 return None
         return self.begun_at + 1 / self.frames_per_second
+
+    @property
+    def governed(self) -> bool:
+        """Whether the governor is to choose how the frame just begun is drawn."""
+        shown = self.session.shown
+        if shown.moving or shown is self.painted:  # in the latter case only the size changed, or it is drawn in full
+            return shown.moving
+        again = self.begun_at - self.changed_at < max(SETTLE_SECONDS, 2 / self.frames_per_second)
+        return again or self.full_seconds > SETTLE_SECONDS
+
+    def drew(self, picture: Picture | None, shown: Shown, size: tuple[int, int], now: float, *, reduced: bool) -> None:
+        """The first sample of a picture is there; None if it was given up for something newer."""
+        if picture is None or shown is not self.painted:
+            self.changed_at = now
+        if picture is None:
+            return
+        self.picture, self.painted, self.painted_size, self.final = picture, shown, size, REST_SAMPLES <= 1
+        self.render_seconds = picture.seconds
+        self.reduced_until = now + SETTLE_SECONDS if reduced else None
+        if not reduced:
+            self.full_seconds = picture.seconds
 
     def begin(self, now: float) -> None:
         """A frame is begun. One that is late by less than a frame does not make those after it late."""

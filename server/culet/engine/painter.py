@@ -17,11 +17,12 @@ from typing import TypeVar
 from culet.engine import jpeg, schedule
 from culet.engine.drawing import Picture, Renderer, band_rows
 from culet.engine.governor import Plan
-from culet.engine.live import REST_SAMPLES, SETTLE_SECONDS, LivePicture
+from culet.engine.live import REST_SAMPLES, LivePicture
 from culet.engine.live_frame import LiveFrame
 from culet.engine.session import Shown
 from culet.engine.still import Still, StillQueue
 from culet.errors import CuletError, DeviceError
+from culet.scene import Scene
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -55,8 +56,12 @@ class Painter:
         send: Callable[[bytes], None],
         report: Callable[[str, CuletError], None],
         encode_still: Callable[[Picture, str], bytes],
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`send` puts a frame on the wire, `report` tells of a session that could not be rendered; neither waits."""
+        """`send` puts a frame on the wire, `report` tells of a session that could not be rendered; neither waits.
+
+        `clock` is a steady one, in seconds.
+        """
         self.pictures: dict[str, LivePicture] = {}
         self.counters = Counters()
         self._renderer = renderer
@@ -66,6 +71,7 @@ class Painter:
         self._send = send
         self._report = report
         self._encode_still = encode_still
+        self._now = clock
         self._changed = asyncio.Event()
 
     def wake(self) -> None:
@@ -83,18 +89,18 @@ class Painter:
         try:
             while True:
                 self._changed.clear()
-                if not await self._work():
+                if not await self.work():
                     await self._rest()
         finally:
             self._encode_thread.shutdown(wait=False, cancel_futures=True)
 
-    async def _work(self) -> bool:
+    async def work(self) -> bool:
         """One frame, one band, one repetition; whether there was anything."""
         pictures = list(self.pictures.values())
         for live in pictures:
             if not live.watched:
                 live.abandon()
-        frame = schedule.next_frame(pictures, time.monotonic())
+        frame = schedule.next_frame(pictures, self._now())
         if frame is not None:
             await self._begin(frame)
         background = schedule.next_background(pictures, self._stills.first())
@@ -102,65 +108,76 @@ class Painter:
             await self._advance_still(background)
         elif background is not None:
             await self._refine(background)
-        repeat = schedule.next_repeat(pictures, time.monotonic())
+        repeat = schedule.next_repeat(pictures, self._now())
         if repeat is not None and repeat.message is not None:
             self._send_again(repeat, repeat.message)
         return any(work is not None for work in (frame, background, repeat))
 
     async def _rest(self) -> None:
         try:
-            async with asyncio.timeout(schedule.idle_seconds(self.pictures.values(), time.monotonic())):
+            async with asyncio.timeout(schedule.idle_seconds(self.pictures.values(), self._now())):
                 await self._changed.wait()
         except TimeoutError:
             pass
 
     async def _begin(self, live: LivePicture) -> None:
         """Simulate up to now and draw the first sample."""
-        now = time.monotonic()
+        now = self._now()
         live.begin(now)
         session = live.session
         live.refinement = None
         async with session.lock:
             started = time.perf_counter()
-            await self._in_render_thread(session.advance, time.monotonic())
+            await self._in_render_thread(session.advance, self._now())
             live.simulate_seconds = time.perf_counter() - started
             shown = session.shown
             session.remember(shown)
         settled = live.reduced_until is not None and live.at_rest
         if live.current and live.picture is not None and not settled:  # the simulation has not moved on
             return
-        changed = shown is not live.painted  # if not, only the size did
-        governed = shown.moving or (changed and live.begun_at - live.changed_at < SETTLE_SECONDS)
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
-        plan = live.governor.plan(shown.scene, wanted, session.balance) if governed else None
-        if changed:
-            live.changed_at = live.begun_at
+        plan = live.governor.plan(shown.scene, wanted, session.balance) if live.governed else None
         try:
-            picture = await self._in_render_thread(self._first_sample, plan, shown, wanted)
-            live.reduced_until = live.begun_at + SETTLE_SECONDS if governed else None
-            live.picture, live.painted, live.painted_size, live.final = picture, shown, wanted, REST_SAMPLES <= 1
-            live.render_seconds = picture.seconds
+            picture = await self._first_sample(live, plan, shown, wanted)
+            live.drew(picture, shown, wanted, self._now(), reduced=plan is not None)
+            if picture is None:
+                return
             self.counters.frames_rendered += 1
             frame = await self._develop(live, picture, shown, plan)
             if plan is not None:
-                overhead = time.monotonic() - now - picture.seconds
+                overhead = self._now() - now - picture.seconds
                 live.governor.rendered(plan, picture.seconds, overhead, live.frames_per_second)
             await self._publish(live, frame)
         except Exception as error:  # one session's failure must not end the others'
             self._refuse(live, shown, error)
 
-    def _first_sample(self, plan: Plan | None, shown: Shown, wanted: tuple[int, int]) -> Picture:
-        scene, size = (plan.scene, plan.size) if plan else (shown.scene, wanted)
-        picture = self._renderer.picture(scene, shown.stone, *size, panorama=shown.panorama)
+    async def _first_sample(
+        self, live: LivePicture, plan: Plan | None, shown: Shown, wanted: tuple[int, int]
+    ) -> Picture | None:
+        """None if the picture was to be in full and something newer is to be shown before it is done."""
+        if plan is not None:
+            return await self._in_render_thread(self._reduced, plan, shown)
+        picture = await self._in_render_thread(self._empty, shown.scene, shown, wanted)
+        bands = picture.refine_in_bands(1, band_rows(wanted[0]))
+        while await self._in_render_thread(_proceed, bands):
+            if live.session.shown is not shown:
+                return None
+        return picture
+
+    def _reduced(self, plan: Plan, shown: Shown) -> Picture:
+        picture = self._empty(plan.scene, shown, plan.size)
         picture.refine(1)
         return picture
+
+    def _empty(self, scene: Scene, shown: Shown, size: tuple[int, int]) -> Picture:
+        return self._renderer.picture(scene, shown.stone, *size, panorama=shown.panorama)
 
     async def _refine(self, live: LivePicture) -> None:
         """One band of a refinement that doubles the samples."""
         picture, shown = live.picture, live.painted
         if picture is None or shown is None:
             return
-        live.served_at = time.monotonic()
+        live.served_at = self._now()
         if live.refinement is None:
             samples = min(picture.samples, REST_SAMPLES - picture.samples)
             live.refinement = picture.refine_in_bands(samples, band_rows(live.painted_size[0]))
@@ -179,7 +196,7 @@ class Painter:
 
     async def _advance_still(self, still: Still) -> None:
         """One band of a still, or its end."""
-        still.served_at = time.monotonic()
+        still.served_at = self._now()
         try:
             if still.bands is None:
                 still.bands = still.paint(self._renderer)
@@ -218,12 +235,12 @@ class Painter:
         live.session.sequence += 1
         message = frame.pack(live.session, payload, time.perf_counter() - started)
         live.message = message
-        live.sent_at = time.monotonic()
+        live.sent_at = self._now()
         self.counters.frames_sent += 1
         self._send(message)
 
     def _send_again(self, live: LivePicture, message: bytes) -> None:
-        live.sent_at = time.monotonic()
+        live.sent_at = self._now()
         self.counters.frames_repeated += 1
         self._send(message)
 

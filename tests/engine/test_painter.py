@@ -1,0 +1,212 @@
+"""What is drawn in full and what the governor reduces, however slow the frames: on a simulated clock, no device."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from culet.engine.governor import read_ladder
+from culet.engine.live import SETTLE_SECONDS, LivePicture
+from culet.engine.painter import Painter
+from culet.engine.session import Session
+from culet.engine.still import StillQueue
+from culet.engine.viewpoint import orbit
+from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
+from culet.scene import Scene
+
+WANTED = 1280, 800
+SLOW = 0.9
+"""s of a full frame: the default scene with 16 bands and polarisation takes as long on two cores."""
+LADDER_SHARE = 0.1
+"""Of that, what the first rung of the ladder takes, which follows three indices without polarisation."""
+POINTER_RATE = 60
+"""Events per second of a drag."""
+IDLE = 0.005
+"""s that pass when there is nothing to draw."""
+
+
+@dataclass
+class Drawn:
+    """The first sample of one picture."""
+
+    begun: float
+    size: tuple[int, int]
+    full: bool
+    ended: float = math.nan
+    """NaN if it was given up."""
+
+
+class World:
+    """A clock, what happens when, and a device whose pictures take their time on that clock."""
+
+    def __init__(self, full_seconds: float) -> None:
+        self.now = 100.0
+        self.full_seconds = full_seconds
+        self.drawn: list[Drawn] = []
+        self.session = Session("0" * 32, Scene.read({"stones": [], "optics": {"bands": 16, "polarised": True}}), None)
+        self.events: list[float] = []
+        """When the camera turns a little."""
+
+    def spend(self, seconds: float) -> None:
+        """Let time go by, with what happens in it."""
+        self.now += seconds
+        while self.events and self.events[0] <= self.now:
+            self.events.pop(0)
+            scene = self.session.scene
+            self.session.change(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
+
+    def picture(
+        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+    ) -> TimedPicture:
+        del stone, panorama
+        return TimedPicture(self, scene, (width, height))
+
+    def describe(self) -> dict[str, str]:
+        return {}
+
+    def turn(self, *, since: float, seconds: float) -> None:
+        """Drag, from so long after now on, for so long."""
+        self.events += [self.now + since + number / POINTER_RATE for number in range(int(seconds * POINTER_RATE))]
+
+
+class TimedPicture:
+    """Nothing to see."""
+
+    def __init__(self, world: World, scene: Scene, size: tuple[int, int]) -> None:
+        self.scene, self.samples, self.seconds = scene, 0, 0.0
+        self._world, self._size = world, size
+
+    def refine(self, samples: int = 1) -> None:
+        for _ in self.refine_in_bands(samples, self._size[1]):
+            pass
+
+    def refine_in_bands(self, samples: int, rows: int) -> Iterator[None]:
+        first, full = self.samples == 0, self.scene.optics.polarised
+        bands = math.ceil(self._size[1] / rows)
+        part = self._size[0] * self._size[1] / (WANTED[0] * WANTED[1])
+        seconds = samples * part * self._world.full_seconds * (1 if full else LADDER_SHARE * self._rung_cost())
+        drawn = Drawn(self._world.now, self._size, full)
+        if first:
+            self._world.drawn.append(drawn)
+        for _ in range(bands):
+            self._world.spend(seconds / bands)
+            yield
+        self.samples += samples
+        self.seconds = seconds
+        drawn.ended = self._world.now
+
+    def rgb(self) -> NDArray[np.uint8]:
+        return np.zeros((16, 16, 3), np.uint8)
+
+    def cut(self) -> float:
+        return 0.0
+
+    def error_estimate(self) -> float:
+        return math.nan
+
+    def _rung_cost(self) -> float:
+        optics = self.scene.optics
+        return next(
+            rung.pixel_cost
+            for rung in read_ladder()
+            if rung.cutoff == optics.cutoff and rung.max_bounces == optics.max_bounces
+        )
+
+
+Play = Callable[[World, float], asyncio.Future[None]]
+
+
+@pytest.fixture
+async def play() -> AsyncIterator[Play]:
+    """Paint a world for so long on its clock."""
+    with ThreadPoolExecutor(1) as thread:
+        painters: dict[int, Painter] = {}
+
+        async def paint(world: World, seconds: float) -> None:
+            if id(world) not in painters:
+                painter = Painter(
+                    world, thread, StillQueue(1),
+                    send=lambda _: None, report=_fail, encode_still=lambda _, __: b"", clock=lambda: world.now,
+                )  # fmt: skip
+                painter.pictures["a"] = LivePicture(world.session, watched=True, rate=60, size=WANTED)
+                painters[id(world)] = painter
+            end = world.now + seconds
+            while world.now < end:
+                if not await painters[id(world)].work():
+                    world.spend(IDLE)
+
+        yield lambda world, seconds: asyncio.ensure_future(paint(world, seconds))
+
+
+def _fail(_session: str, error: Exception) -> None:
+    raise error
+
+
+@pytest.mark.parametrize(
+    ("full_seconds", "least_rate"),
+    [(0.1, 29), (0.3, 29), (SLOW, 29), (10 * SLOW, 8)],  # measured 29.9, 30, 29.9 and 8.25 frames/s
+)
+async def test_a_drag_is_governed_however_long_a_frame_takes(
+    play: Play, full_seconds: float, least_rate: float
+) -> None:
+    """In the last case the best governed frame takes 0.9 s, and the quickest 0.11 s."""
+    world = World(full_seconds)
+    await play(world, 30 * full_seconds)
+    world.drawn.clear()
+    world.turn(since=0, seconds=8)
+    await play(world, 8)
+    dragged = [drawn for drawn in world.drawn if not math.isnan(drawn.ended)]
+    assert not any(drawn.full for drawn in dragged[1:])
+    assert len(dragged) / 8 > least_rate
+
+
+async def test_after_a_drag_the_picture_is_drawn_in_full(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.turn(since=0, seconds=1)
+    await play(world, 4)
+    last = world.drawn[-1]
+    assert (last.full, last.size) == (True, WANTED)
+    assert SETTLE_SECONDS <= last.begun - world.drawn[-2].ended < SETTLE_SECONDS + 0.05, "measured 0.205 s"
+
+
+async def test_an_edit_of_a_slow_scene_is_seen_at_once(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    edited = world.now
+    await play(world, 3)
+    assert [drawn.full for drawn in world.drawn] == [False, True]
+    assert world.drawn[0].ended - edited < 0.15, "measured 0.095 s"
+
+
+async def test_an_edit_of_a_quick_scene_is_drawn_in_full_alone(play: Play) -> None:
+    world = World(0.1)
+    await play(world, 3)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    await play(world, 1)
+    assert [drawn.full for drawn in world.drawn] == [True]
+
+
+async def test_a_full_frame_is_given_up_for_what_is_newer(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    world.turn(since=0.5, seconds=1 / POINTER_RATE)  # in the middle of the full frame that follows the reduced one
+    edited = world.now + 0.5
+    await play(world, 4)
+    assert [(drawn.full, math.isnan(drawn.ended)) for drawn in world.drawn] == [
+        (False, False), (True, True), (False, False), (True, False),
+    ]  # fmt: skip
+    assert world.drawn[2].ended - edited < 0.15, "measured 0.050 s: a band, and a reduced frame"
