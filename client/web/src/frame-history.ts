@@ -3,8 +3,8 @@
 import { Flag, type Frame } from "@culet/protocol/frame";
 
 export const SPAN_SECONDS = 20;
-/** Frames farther apart are not joined by a line. */
-const GAP_SECONDS = 1;
+/** ms that a frame covers in a plot at least, some three pixels: so a lone one is seen, and a steady rate has no gaps. */
+const LEAST_MS = 200;
 
 export const STAGES = ["simulate", "render", "encode", "network", "decode"] as const;
 
@@ -19,9 +19,14 @@ export interface Arrival {
 export type Column = (number | null)[];
 
 interface Row {
+  /** ms, when it began to be made; at least when the one before came. */
+  from: number;
+  /** ms, when it was shown. */
   time: number;
-  /** Milliseconds of each of STAGES, for one sample; null in a gap. */
-  stages: readonly number[] | null;
+  /** Milliseconds of each of STAGES, for one sample. */
+  stages: readonly number[];
+  /** Of each stage and all before it. */
+  sums: readonly number[];
   expected: number | null;
   estimated: number | null;
 }
@@ -30,16 +35,17 @@ export class FrameHistory {
   private rows: Row[] = [];
 
   push(frame: Frame, { time, decodeMs, roundTripMs }: Arrival): void {
-    const last = this.rows.at(-1);
-    if (last && time - last.time > GAP_SECONDS * 1000) {
-      this.rows.push({ time: last.time + 1, stages: null, expected: null, estimated: null });
-    }
     const { flags, simulateMs, renderMs, samples, encodeMs } = frame;
     const error = Number.isNaN(frame.error) ? null : frame.error;
     const frontier = (flags & Flag.FRONTIER) !== 0;
+    const stages = [simulateMs, renderMs / samples, encodeMs, (roundTripMs ?? 0) / 2, decodeMs];
+    const sums = runningSums(stages);
+    const took = total(sums) + (renderMs * (samples - 1)) / samples;
     this.rows.push({
+      from: Math.max(this.rows.at(-1)?.time ?? Number.NEGATIVE_INFINITY, time - Math.max(took, LEAST_MS)),
       time,
-      stages: [simulateMs, renderMs / samples, encodeMs, (roundTripMs ?? 0) / 2, decodeMs],
+      stages,
+      sums,
       expected: frontier ? error : null,
       estimated: frontier ? null : error,
     });
@@ -55,27 +61,42 @@ export class FrameHistory {
     return this.rows.at(-1)?.stages ?? [];
   }
 
-  /** Milliseconds that all stages together took, but for the slowest tenth of the frames; 0 without any. */
-  get usual(): number {
-    const totals = this.rows.flatMap(({ stages }) => (stages ? [stages.reduce((sum, part) => sum + part, 0)] : []));
-    return totals.sort((a, b) => a - b)[Math.floor(0.9 * (totals.length - 1))] ?? 0;
+  /** Milliseconds of all stages together of the slowest frame; 0 without any. */
+  get slowest(): number {
+    return Math.max(0, ...this.rows.map(({ sums }) => total(sums)));
   }
 
   /** Seconds before the last frame, then for each stage the milliseconds of it and of all before it. */
   stageColumns(): [number[], ...Column[]] {
-    const sums = this.rows.map(({ stages }) => stages && runningSums(stages));
-    return [this.seconds(), ...STAGES.map((_, stage) => sums.map((sum) => sum?.[stage] ?? null))];
+    return this.steps(...STAGES.map((_, stage) => (row: Row) => row.sums[stage] ?? null));
   }
 
   /** Seconds before the last frame, the frontier's error of moving frames, the estimated one of those at rest. */
   errorColumns(): [number[], ...Column[]] {
-    return [this.seconds(), this.rows.map(({ expected }) => expected), this.rows.map(({ estimated }) => estimated)];
+    return this.steps(
+      ({ expected }) => expected,
+      ({ estimated }) => estimated,
+    );
   }
 
-  private seconds(): number[] {
+  /** Values of each frame, level from when it began to be made to when it was shown; null while none was made. */
+  private steps(...values: ((row: Row) => number | null)[]): [number[], ...Column[]] {
+    const corners = this.rows.flatMap((row, index) => {
+      const idle = row.from > (this.rows[index - 1]?.time ?? row.from);
+      const level = [
+        { time: row.from, row },
+        { time: row.time, row },
+      ];
+      return idle ? [{ time: row.from, row: null }, ...level] : level;
+    });
     const last = this.rows.at(-1)?.time ?? 0;
-    return this.rows.map(({ time }) => (time - last) / 1000);
+    const seconds = corners.map(({ time }) => Math.max((time - last) / 1000, -SPAN_SECONDS));
+    return [seconds, ...values.map((value) => corners.map(({ row }) => row && value(row)))];
   }
+}
+
+function total(sums: readonly number[]): number {
+  return sums.at(-1) ?? 0;
 }
 
 function runningSums(values: readonly number[]): number[] {

@@ -54,7 +54,7 @@ export class Plots {
     }).reverse();
     return {
       ...options(width),
-      scales: { x: span(), y: { range: () => [0, 1.25 * Math.max(this.history.usual, this.budget ?? 0, 1)] } },
+      scales: { x: span(), y: { range: () => [0, 1.1 * Math.max(this.history.slowest, this.budget ?? 0, 1)] } },
       axes: [seconds(), axis((value) => value.toFixed(0))],
       series: [{}, ...series],
       hooks: { draw: [(plot) => this.drawBudget(plot)] },
@@ -90,7 +90,7 @@ function options(width: number): Pick<uPlot.Options, "width" | "height" | "legen
 function errorOptions(width: number): uPlot.Options {
   const series = ERROR_NAMES.map((label, index) => {
     const colour = ERROR_COLOURS[index] ?? QUIET;
-    return { label, stroke: colour, width: 1.5, points: { show: index === 1, size: 5, fill: colour } };
+    return { label, stroke: colour, width: 2, points: { show: false } };
   });
   return {
     ...options(width),
