@@ -8,6 +8,7 @@ import pytest
 from culet.errors import NotFoundError
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene, preset
+from culet.scene.model import BrilliantCut, ConstantEnvironment
 from rendering.views import BARE, radiance, take, without_stone
 
 
@@ -46,6 +47,43 @@ def test_the_default_stone_fills_half_of_the_pictures_height(renderer: Renderer)
     assert 0 < rows[0] < rows[-1] < 359
     assert 0 < columns[0] < columns[-1] < 639
     assert 0.45 < len(rows) / 360 < 0.55  # measured 0.503
+
+
+@pytest.mark.parametrize("name", ["face-up", "aset"])
+def test_face_up_the_eightfold_outline_looks_the_same_turned_by_a_quarter(renderer: Renderer, name: str) -> None:
+    """A brilliant has eight mains, so that its outline is its own after 45 degrees; of a square picture after 90."""
+    scene = preset(name).model_copy(update={"environment": ConstantEnvironment(kind="constant")})
+    tinted = scene.stones[0].model_copy(update={"absorption": (1, 1, 1)})
+    pixels = radiance(take(renderer, scene.model_copy(update={"stones": (tinted,)}), size=(180, 180)))
+    stone = (pixels < 0.999).any(axis=-1)
+    assert 0.4 < stone.mean() < 0.55  # measured 0.484
+    assert (stone != np.rot90(stone)).mean() < 0.001  # measured 0.0
+
+
+def aset_parts(renderer: Renderer, cut: BrilliantCut) -> tuple[float, float, float, float]:
+    """Of the face in the preset `aset`, the parts where red, green or blue is brightest, and those that leak.
+
+    The sky's colours add up to 1 above the horizon and to 0 below: what shows less than 0.4 has leaked the rest.
+    """
+    scene = preset("aset")
+    stone = scene.stones[0].model_copy(update={"cut": cut})
+    pixels = radiance(take(renderer, scene.model_copy(update={"stones": (stone,)}), size=(180, 180)))
+    rows, columns = np.mgrid[0:180, 0:180] - 89.5
+    face = pixels[np.hypot(rows, columns) < 60]  # the outline's radius is 70
+    red, green, blue = (float((face.argmax(axis=-1) == channel).mean()) for channel in range(3))
+    return red, green, blue, float((face.sum(axis=-1) < 0.4).mean())
+
+
+def test_the_aset_preset_shows_a_red_face_with_blue_arrows_that_hardly_leaks(renderer: Renderer) -> None:
+    red, green, blue, leaks = aset_parts(renderer, BrilliantCut())
+    assert red > 0.55  # measured 0.630
+    assert 0.2 < blue < 0.4  # measured 0.301
+    assert green < 0.1  # measured 0.069
+    assert leaks < 0.01  # measured 0.006
+
+
+def test_a_pavilion_too_steep_leaks_in_the_aset_preset(renderer: Renderer) -> None:
+    assert aset_parts(renderer, BrilliantCut(pavilion_degrees=44))[3] > 0.03  # measured 0.054
 
 
 def test_the_classic_scene_has_the_reports_constants() -> None:

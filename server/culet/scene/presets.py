@@ -1,4 +1,4 @@
-"""Named scenes: the default, the report's own, and its figures."""
+"""Named scenes: the default, the stone face up, the report's own, and its figures."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ from culet.errors import NotFoundError
 from culet.scene.model import (
     Camera,
     DarkEnvironment,
+    Environment,
     Film,
+    ImageEnvironment,
     LightEnvironment,
     Optics,
     Plane,
     Scene,
     Simulation,
     StoneSettings,
+    StudioEnvironment,
 )
 
 _CLASSIC_STONE = StoneSettings(
@@ -60,12 +63,32 @@ def _tinted(absorption: tuple[float, float, float]) -> Scene:
     return _classic(floor="mirror", light=True, absorption=absorption, position=(0, 1, 0), camera=_CLOSE)
 
 
+_FROM_ABOVE = Camera(position=(0, 12.5, 0.001), target=(0, 0.5, 0), fov_degrees=12)
+"""Straight down, but for the thousandth of R that tells which way up the picture is; so far away that rays are nearly
+parallel, as in the instruments of the trade."""
+
+
+def _face_up(environment: Environment) -> Scene:
+    """The table level and above, nothing below."""
+    return Scene(
+        stones=(StoneSettings(orientation=(1, 0, 0, 0)),),
+        floor=Plane(kind="none"),
+        environment=environment,
+        camera=_FROM_ABOVE,
+    )
+
+
 PRESETS: dict[str, tuple[str, Scene]] = {
     "default": ("A diamond over a mirror floor.", Scene()),
     "matte": ("The same diamond over a checkered matte floor, lit by both lights.", Scene(floor=Plane(kind="matte"))),
-    "classic": ("The report's own scene, to its constants.", CLASSIC),
+    "face-up": ("The same diamond face up, seen straight down its table.", _face_up(StudioEnvironment())),
+    "aset": (
+        "Face up under the ASET: red from above, green from aside, blue from the head, black leaks.",
+        _face_up(ImageEnvironment(kind="image", image="aset")),
+    ),
+    "classic": ("The report's own scene, to its constants: a small stone in the dark.", CLASSIC),
     "falling": (
-        "The report's Fig. 1: a falling diamond and its reflection.",
+        "The report's Fig. 1: a falling diamond and its reflection, in the dark.",
         _classic(position=(0, 2, 0), camera=Camera(position=(0, 1.6, 8), target=(0, 0.6, 0), fov_degrees=45)),
     ),
     "light-walls": (
