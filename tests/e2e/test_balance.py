@@ -11,6 +11,7 @@ from e2e.view import View
 
 PAGE = {"width": 800, "height": 450}
 """Pixels: enough for the governor to scale."""
+PHONE = {"width": 390, "height": 844}
 FINE = {
     "optics": {"cutoff": 0.005, "bands": 4},
     "floor": {"kind": "matte"},
@@ -115,3 +116,29 @@ def test_a_number_beyond_the_ends_of_the_slider_is_taken_as_its_end(pair: tuple[
     choose(first, 7)
     first.until("() => culet.state.exactness === 1")
     assert first.problems == []
+
+
+def test_the_two_kinds_of_error_are_explained_where_they_are_shown(view_of: ViewOf) -> None:
+    view = view_of(viewport=PAGE).open()
+    open_meter(view)
+    for name, meaning in (("frontier's, moving", "the default scene"), ("estimated, at rest", "two halves")):
+        view.page.locator("#meter li", has_text=name).hover()  # nothing lies over it
+        assert meaning in (view.page.locator("#meter li", has_text=name).get_attribute("title") or "")
+        view.page.locator("#status").hover()
+        assert meaning in (view.page.locator("#status").get_attribute("title") or "")
+
+
+def test_on_a_phone_panel_and_plots_take_turns_and_leave_the_stone_in_sight(view_of: ViewOf) -> None:
+    view = view_of(viewport=PHONE).open()
+    meter, panel = view.page.locator("#meter"), view.page.locator("#panel")
+    open_meter(view)
+    meter.locator("canvas").nth(1).wait_for()
+    unfolded = meter.bounding_box()
+    assert unfolded is not None
+    assert unfolded["y"] > PHONE["height"] / 2
+    title = panel.get_by_role("button").first
+    title.click()
+    meter.wait_for(state="hidden")
+    title.click()
+    meter.wait_for(state="visible")
+    assert meter.locator("canvas").count() == 2  # as it was

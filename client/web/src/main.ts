@@ -15,7 +15,7 @@ import * as rest from "./rest";
 import { imageSky, patchOf, stonePatch } from "./scene-choices";
 import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
-import { statusText } from "./status-text";
+import { ERROR_MEANINGS, statusText } from "./status-text";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
@@ -205,6 +205,7 @@ function startLater(why: string, tries: number): void {
   obstacle.show(`${why}\n${tryingAgainText(delay)}`, "Try now", again);
 }
 
+statusLine.title = `error: ${ERROR_MEANINGS.estimated}\nfrontier's error: ${ERROR_MEANINGS.frontier}`;
 setInterval(() => {
   const now = performance.now();
   statusLine.textContent = statusText({

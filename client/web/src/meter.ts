@@ -3,6 +3,7 @@
 import type { Frame } from "@culet/protocol/frame";
 import type { Balance } from "@culet/protocol/messages";
 import { type Controller, GUI } from "lil-gui";
+import "./meter.css";
 import { askedRate, type BalanceShown, balanceText, settingsText } from "./balance";
 import { type Arrival, FrameHistory } from "./frame-history";
 import type { Plots } from "./plots";

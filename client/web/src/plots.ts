@@ -3,13 +3,23 @@
 import uPlot from "uplot";
 import "../node_modules/uplot/dist/uPlot.min.css"; // a style sheet of our own origin, as lil-gui's
 import { type Column, type FrameHistory, SPAN_SECONDS, STAGES } from "./frame-history";
-import { milliseconds, significant } from "./status-text";
+import { ERROR_MEANINGS, milliseconds, significant } from "./status-text";
 
+interface Curve {
+  name: string;
+  colour: string;
+  /** For a tooltip, where the name does not say enough. */
+  meaning?: string;
+}
+
+const QUIET = "#a4adbd";
 /** Of the stages in turn; apart from each other to colour-blind eyes too. */
 const STAGE_COLOURS = ["#b49cf0", "#6f9bf5", "#4fc3b0", "#e0be62", "#f08c78"];
-const ERROR_COLOURS = ["#e0be62", "#8fb4ff"];
-const ERROR_NAMES = ["frontier's, moving", "estimated, at rest"];
-const QUIET = "#a4adbd";
+const STAGE_CURVES: readonly Curve[] = STAGES.map((name, stage) => ({ name, colour: STAGE_COLOURS[stage] ?? QUIET }));
+const ERRORS: readonly Curve[] = [
+  { name: "frontier's, moving", colour: "#e0be62", meaning: ERROR_MEANINGS.frontier },
+  { name: "estimated, at rest", colour: "#8fb4ff", meaning: ERROR_MEANINGS.estimated },
+];
 const LINE = "rgb(164 173 189 / 14%)";
 const FONT = "11px system-ui, sans-serif";
 const HEIGHT = 108;
@@ -23,9 +33,9 @@ export class Plots {
 
   constructor(container: HTMLElement, history: FrameHistory, width: number) {
     this.history = history;
-    const time = figure(container, "Milliseconds a frame, by stage", STAGES, STAGE_COLOURS);
+    const time = figure(container, "Milliseconds a frame, by stage", STAGE_CURVES);
     this.stages = new uPlot(this.stageOptions(width), stacked(history), time.plot);
-    const error = figure(container, "Error of the radiance, root mean square", ERROR_NAMES, ERROR_COLOURS);
+    const error = figure(container, "Error of the radiance, root mean square", ERRORS);
     this.errors = new uPlot(errorOptions(width), history.errorColumns(), error.plot);
     this.values = [...time.values, ...error.values];
   }
@@ -48,9 +58,8 @@ export class Plots {
   }
 
   private stageOptions(width: number): uPlot.Options {
-    const series = STAGES.map((label, stage) => {
-      const colour = STAGE_COLOURS[stage] ?? QUIET;
-      return { label, stroke: colour, fill: colour, width: 0.5, points: { show: false } };
+    const series = STAGE_CURVES.map(({ name, colour }) => {
+      return { label: name, stroke: colour, fill: colour, width: 0.5, points: { show: false } };
     }).reverse();
     return {
       ...options(width),
@@ -88,9 +97,8 @@ function options(width: number): Pick<uPlot.Options, "width" | "height" | "legen
 }
 
 function errorOptions(width: number): uPlot.Options {
-  const series = ERROR_NAMES.map((label, index) => {
-    const colour = ERROR_COLOURS[index] ?? QUIET;
-    return { label, stroke: colour, width: 2, points: { show: false } };
+  const series = ERRORS.map(({ name, colour }) => {
+    return { label: name, stroke: colour, width: 2, points: { show: false } };
   });
   return {
     ...options(width),
@@ -136,18 +144,18 @@ function latestOf(column: (number | null)[]): string {
 function figure(
   container: HTMLElement,
   title: string,
-  names: readonly string[],
-  colours: readonly string[],
+  curves: readonly Curve[],
 ): { plot: HTMLElement; values: HTMLElement[] } {
   const whole = document.createElement("figure");
   const caption = document.createElement("figcaption");
   caption.textContent = title;
   const plot = document.createElement("div");
   const legend = document.createElement("ul");
-  const values = names.map((name, index) => {
+  const values = curves.map(({ name, colour, meaning }) => {
     const item = document.createElement("li");
     const value = document.createElement("b");
-    item.style.setProperty("--colour", colours[index] ?? QUIET);
+    item.style.setProperty("--colour", colour);
+    if (meaning) item.title = meaning;
     item.append(`${name} `, value);
     legend.append(item);
     return value;

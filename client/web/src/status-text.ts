@@ -20,6 +20,14 @@ export function significant(value: number): string {
   return value === 0 || value >= 1e-4 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
 }
 
+/** What the two kinds of error are of, for tooltips. */
+export const ERROR_MEANINGS = {
+  frontier:
+    "What settings like this moving frame's miss of the default scene at 1280\u00d7720, as measured beforehand: " +
+    "a single sample does not show its own error.",
+  estimated: "What this picture at rest still misses, estimated from the two halves of its samples.",
+} as const;
+
 /** A moving picture's error is not its own: it is what the measured front says of its settings. */
 export function errorName({ flags }: Pick<Frame, "flags">): string {
   return flags & Flag.FRONTIER ? "frontier's error" : "error";
