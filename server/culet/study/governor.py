@@ -20,6 +20,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 from culet.engine.governor import asked_rate
 from culet.gateway.link import EngineLink
@@ -28,7 +29,7 @@ from culet.scene import Scene
 from culet.study.motion_record import LATE_MS, Change, Seen, Settled, Summary, settle, summarise
 from culet.study.provenance import commit, processor
 from culet_protocol.engine import CloseSession, Control, Demand, OpenSession
-from culet_protocol.frame import Frame
+from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import (
     Balance,
     Dolly,
@@ -63,19 +64,31 @@ CHANGES: tuple[tuple[str, SessionEvent], ...] = (
 
 @dataclass
 class Recorder:
-    """Keeps the headers of one session's frames as they come, and says when the stone has come to rest."""
+    """Keeps the headers of one session's frames as they come, and knows whether the stone rests.
+
+    That is a state of the last frame, not an event: whoever asks later is told the same, and `seen` may be emptied.
+    """
 
     seen: list[Seen] = field(default_factory=list)
-    rested: asyncio.Event = field(default_factory=asyncio.Event)
     came: asyncio.Event = field(default_factory=asyncio.Event)
+    """A frame has; cleared by whoever waits for the next one."""
+    _last: Frame | None = None
 
     def take(self, frame: Frame, _message: bytes) -> None:
         """A frame has come."""
-        seen = Seen.of(frame, time.monotonic())
-        if not seen.moving and self.seen and self.seen[-1].moving:
-            self.rested.set()
-        self.seen.append(seen)
+        self.seen.append(Seen.of(frame, time.monotonic()))
+        self._last = frame
         self.came.set()
+
+    def at_rest(self, since: int) -> bool:
+        """Whether the last frame shows a stone at rest, in the session's step `since` or a later one."""
+        return self._last is not None and self._last.step >= since and Flags.MOVING not in self._last.flags
+
+    async def rest(self, since: int) -> None:
+        """Wait until it does."""
+        while not self.at_rest(since):
+            self.came.clear()
+            await self.came.wait()
 
 
 @dataclass(frozen=True)
@@ -96,6 +109,8 @@ class Play:
         self.session = secrets.token_hex(16)
         self._link = link
         self._recorder = recorder
+        self._dropped = 0
+        """The session's step with which the stone last began to fall; frames of earlier ones may still come."""
 
     async def open(self, scene: Scene, size: tuple[int, int], balance: Balance) -> None:
         """With one subscriber; returns when the first frame has come."""
@@ -107,24 +122,26 @@ class Play:
         async with asyncio.timeout(START_SECONDS):
             await self._recorder.came.wait()
 
-    async def control(self, event: SessionEvent) -> None:
-        """Apply an event."""
-        await self._link.request(Control(session=self.session, event=event))
+    async def control(self, event: SessionEvent) -> dict[str, Any]:
+        """Apply an event; returns the session's `step` then, and whether it is `falling`."""
+        answer, _ = await self._link.request(Control(session=self.session, event=event))
+        return answer
 
     async def fall(self, seconds: float) -> None:
         """Let the stone fall, again and again, for so long."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
-            self._recorder.rested.clear()
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(left):
-                    await self._recorder.rested.wait()
-                    await self.drop()
+                    await self._recorder.rest(self._dropped)
+            if self._recorder.at_rest(self._dropped):  # outside the timeout: a drop is whole or not at all
+                await self.drop()
 
     async def drop(self) -> None:
         """Put the stone back and let it fall."""
         await self.control(ResetStone())
-        await self.control(ToggleFall())
+        answer = await self.control(ToggleFall())
+        self._dropped = answer["step"]
 
     async def close(self) -> None:
         """Forget the session."""
@@ -188,12 +205,10 @@ def processor_seconds(process: int) -> float:
 
 def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
     """A page of text."""
-    summary = summarise(measured.steady, rate)
-    milliseconds = 1e3 * measured.processor_seconds / len(measured.steady)
+    milliseconds = 1e3 * measured.processor_seconds / max(1, len(measured.steady))
     rows = [
         f"asked for            {size[0]}x{size[1]}, {rate:g} frames/s",
-        f"of a moving stone    {summary.moving_seconds:.1f} s",
-        *_rows(summary),
+        *_rows(summarise(measured.steady, rate)),
         f"processor            {milliseconds:.1f} ms a frame, on {os.cpu_count()} cores",
         "",
         "after a change       settled after   settings in 4 s",
@@ -205,9 +220,12 @@ def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
     return "\n".join(rows)
 
 
-def _rows(summary: Summary) -> list[str]:
+def _rows(summary: Summary | None) -> list[str]:
+    if summary is None:
+        return ["of a moving stone    no two frames came of the same fall"]
     render = summary.render_ms_median, summary.render_ms_99, summary.render_ms_longest
     return [
+        f"of a moving stone    {summary.moving_seconds:.1f} s",
         f"frames per second    {summary.frames_per_second:.2f}, {summary.late_intervals:.2%} late by half a frame",
         f"least size           {summary.lowest_size[0]}x{summary.lowest_size[1]}",
         f"largest cut-off      {summary.largest_cutoff:g}, {summary.fewest_bands} indices",
@@ -226,7 +244,8 @@ def _change_row(settled: Settled) -> str:
 
 
 def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
-    """JSON: the summary, and every frame's header."""
+    """JSON: the summary (null if nothing moved), and every frame's header."""
+    summary = summarise(measured.steady, rate)
     frames = [asdict(seen) | {"error": None if math.isnan(seen.error) else seen.error} for seen in measured.steady]
     return json.dumps(
         {
@@ -234,7 +253,7 @@ def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
             "processor": processor(),
             "size": size,
             "rate": rate,
-            "steady": summarise(measured.steady, rate).as_json(),
+            "steady": None if summary is None else summary.as_json(),
             "processor_seconds": measured.processor_seconds,
             "changes": [asdict(settled) for settled in settle(measured.changing, measured.changes, rate)],
             "frames": frames,

@@ -100,12 +100,12 @@ class Summary:
         return asdict(self)
 
 
-def summarise(seen: Sequence[Seen], rate: float) -> Summary:
-    """Of frames in order; ValueError if nothing ever moved."""
+def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
+    """Of frames in order; None if no two of them are of the same fall."""
     moving = [frame for frame in seen if frame.moving]
     pairs = moving_pairs(seen)
     if not pairs:
-        raise ValueError("expected frames of a moving stone, got none")
+        return None
     intervals = [after.arrived - before.arrived for before, after in pairs]
     render = sorted(frame.render_ms for frame in moving)
     minutes = sum(intervals) / 60
