@@ -8,12 +8,14 @@ import re
 import signal
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES
 from engine.peer import TETRAHEDRON, connected, running_engine
 
@@ -38,6 +40,17 @@ def test_every_command_explains_itself(command: str) -> None:
     run = culet(command, "--help")
     assert run.returncode == 0
     assert f"culet {command}" in run.stdout.decode()
+
+
+def test_the_version_is_told() -> None:
+    run = culet("--version")
+    assert (run.returncode, run.stdout.decode()) == (0, f"culet {version('culet')}\n")
+
+
+@pytest.mark.parametrize("command", ["render", "simulate"])
+def test_the_help_of_a_command_names_the_presets(command: str) -> None:
+    words = re.findall(r"[\w-]+", culet(command, "--help").stdout.decode())
+    assert [name for name in PRESETS if name not in words] == []
 
 
 def test_without_a_command_all_are_listed() -> None:
@@ -65,7 +78,9 @@ def test_a_linear_picture_holds_radiance_not_pixels(tmp_path: Path) -> None:
 
 def test_more_samples_are_taken_when_asked_for(tmp_path: Path) -> None:
     run = culet("render", "-o", tmp_path / "gem.png", "--samples", "3", "--preset", "matte", *TINY)
-    assert b"3 samples per pixel" in run.stdout
+    assert b"3 samples per pixel, mean radiance too low by at most 0." in run.stdout
+    run = culet("render", "-o", tmp_path / "gem.png", "--samples", "1", *TINY)
+    assert b"1 sample per pixel, " in run.stdout
 
 
 def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
@@ -82,15 +97,19 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
     [
         (["-o", "a.gif"], b"", ".exr"),
         (["-o", "missing/a.png"], b"", "cannot write"),
-        (["nowhere.json"], b"", "cannot read nowhere.json"),
-        (["-"], b"{", "not JSON"),
+        (["-o", "."], b"", "expected a name that ends in"),
+        (["nowhere.json"], b"", "nowhere.json: cannot be read"),
+        (["-"], b"{", "standard input: not JSON"),
         (["-"], b"[" * 100_000, "not JSON"),
         (["-"], b'{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
-        (["-"], b'{"colour": "red"}', "colour"),
+        (["-"], b'{"colour": "red"}', "standard input: colour: unknown field"),
+        (["-"], b'{"stonez": []}', "did you mean `stones`?"),
+        (["-"], b'{"stones": [{"cut": {"star_percent": 1}}]}', "standard input: "),
         (["--preset", "ruby"], b"", "classic"),
-        (["--mesh", "nowhere.obj"], b"", "nowhere.obj"),
-        (["--sky", "nowhere.exr"], b"", "cannot read nowhere.exr"),
-        (["--sky", "/dev/null"], b"", "expected a sky as .exr, .hdr or .png"),
+        (["--mesh", "nowhere.obj"], b"", "nowhere.obj: cannot be read"),
+        (["--mesh", "/dev/null"], b"", "/dev/null: "),
+        (["--sky", "nowhere.exr"], b"", "nowhere.exr: cannot be read"),
+        (["--sky", "/dev/null"], b"", "/dev/null: expected a sky as .exr, .hdr or .png"),
         (["-"], b'{"environment": {"kind": "image", "image": "sunset"}}', "environment.image"),
         (["-", "--preset", "classic"], b"{}", "both"),
     ],
@@ -138,6 +157,14 @@ def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:
     assert np.load(out).mean((0, 1)) == pytest.approx([2, 0, 2], abs=1e-6)  # measured 0; the scale is the scene's
 
 
+def test_a_sky_of_odd_proportions_is_used_and_said_so(tmp_path: Path) -> None:
+    sky = tmp_path / "sky.png"
+    Image.new("RGB", (16, 9), (255, 0, 255)).save(sky)
+    run = culet("render", "-o", tmp_path / "gem.png", *TINY, "--sky", sky)
+    assert run.returncode == 0, run.stderr
+    assert run.stderr.decode().startswith(f"{sky}: 16 x 9 pixels are stretched over all directions")
+
+
 def test_a_benchmark_that_could_not_be_kept_is_not_begun(tmp_path: Path) -> None:
     assert "cannot write" in refused(culet("bench", "-o", tmp_path / "missing" / "bench.jsonl"))
 
@@ -149,6 +176,23 @@ def test_a_path_is_written_step_by_step(tmp_path: Path) -> None:
     header, *rows = out.read_text().splitlines()
     assert header.startswith("step,time,position_x")
     assert len(rows) == 61  # the start, and 60 steps of 1/120 s
+
+
+@pytest.mark.parametrize(
+    ("option", "place", "said"),
+    [
+        ("--plot", "missing/drop.png", "plot: cannot write missing/drop.png: there is no folder missing"),
+        ("--plot", "drop.svg", "plot: expected a name that ends in .png; got 'drop.svg'"),
+        ("-o", "missing/path.csv", "out: cannot write missing/path.csv: there is no folder missing"),
+        ("-o", "path.txt", "out: expected a name that ends in .csv, .json, .npz; got 'path.txt'"),
+    ],
+)
+def test_a_path_that_could_not_be_kept_is_not_simulated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, option: str, place: str, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert refused(culet("simulate", option, place)) == f"culet: {said}"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from culet import __version__
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.places import check_place
 from culet.command.subject import read_subject
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.errors import InputError, SceneError
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
     from culet.rendering.renderer import Picture
 
 app = typer.Typer(
-    help="Dispersive gemstones, traced exactly on the processor and streamed to thin clients.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -52,6 +53,21 @@ Folder = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Fol
 Patience = Annotated[float, typer.Option(min=0.1, help="Seconds to wait for a frame before giving up.")]
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"culet {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def culet(
+    _version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Dispersive gemstones, traced exactly on the processor and streamed to thin clients."""
+
+
 @app.command()
 def render(
     scene: SceneFile = None,
@@ -72,8 +88,7 @@ def render(
     from culet.rendering.renderer import Renderer
 
     with errors_in_one_line():
-        if out.suffix.lower().lstrip(".") not in ENCODERS:  # before the work, not after it
-            raise InputError(f"out: expected a name that ends in .{', .'.join(ENCODERS)}; got {out.name!r}", "out")
+        check_place(out, "out", ENCODERS)
         settings, stone, panorama = read_subject(scene, preset, mesh, sky)
         picture = Renderer().picture(settings, stone, width, height, panorama=panorama)
         with progress_bar(f"rendering {out.name}") as advance:
@@ -83,14 +98,16 @@ def render(
             write(picture, out)
         except OSError as error:
             raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
-        typer.echo(f"{out}: {width} x {height}, {picture.samples} samples per pixel, {_quality(picture)}")
+        typer.echo(f"{out}: {width} x {height}, {_quality(picture)}")
 
 
 def _quality(picture: Picture) -> str:
-    """How right a picture is, in mean radiance."""
+    """How right a picture is."""
+    samples = "1 sample" if picture.samples == 1 else f"{picture.samples} samples"
     error = picture.error_estimate()
     estimated = "" if math.isnan(error) else f", estimated error {error:.2g}"
-    return f"cut off at most {picture.truncation_bound():.2g}{estimated}"
+    missing = f"mean radiance too low by at most {picture.truncation_bound():.2g} (light cut off)"
+    return f"{samples} per pixel, {missing}{estimated}"
 
 
 @app.command()
@@ -107,10 +124,13 @@ def simulate(
     ] = None,
 ) -> None:
     """Let the stone fall and write its path, step by step: position, orientation, velocities, energy, contacts."""
+    from culet.simulation.paths import ENDINGS, write
     from culet.simulation.paths import record as record_path
-    from culet.simulation.paths import write
 
     with errors_in_one_line():
+        check_place(out, "out", ENDINGS)
+        if plot is not None:
+            check_place(plot, "plot", ["png"])
         settings, stone, _ = read_subject(scene, preset, mesh)
         if stone is None:
             raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")

@@ -7,11 +7,13 @@ from typing import Annotated
 
 import typer
 
+from culet.scene import PRESETS
+
 SceneFile = Annotated[
     Path | None,
     typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
 ]
-Preset = Annotated[str | None, typer.Option(help="Start from a named scene instead; a wrong name lists them.")]
+Preset = Annotated[str | None, typer.Option(help=f"Start from a named scene instead: {', '.join(PRESETS)}.")]
 MeshFile = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
 ]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,44 +30,60 @@ class Subject(NamedTuple):
 
 
 def read_subject(file: Path | None, preset: str | None, mesh: Path | None, sky: Path | None = None) -> Subject:
-    """From what the user named; InputError says which of it cannot be used. What was repaired goes to stderr."""
+    """From what the user named; InputError says which of it cannot be used, and why. Findings go to stderr."""
     from culet.geometry.load import stone_of
     from culet.scene import Scene
     from culet.scene import preset as preset_scene
 
     if file is not None and preset is not None:
         raise SceneError("expected a scene file or a preset, got both")
-    scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
     meshes = {}
+    with _naming(file):
+        scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
     if mesh is not None:
-        from culet.geometry.mesh import stone_from_mesh
-
-        try:
-            data = mesh.read_bytes()
-        except OSError as error:
-            raise MeshError(f"cannot read {mesh}: {error.strerror}") from error
-        meshes["file"] = stone_from_mesh(data, mesh.suffix.lower().lstrip("."), name=mesh.stem)
-        for finding in meshes["file"].findings:
-            typer.echo(f"{mesh}: {finding}", err=True)
+        meshes["file"] = _mesh(mesh)
         stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": "file"})
         scene = scene.model_copy(update={"stones": (stone,)})
     scene, panorama = _with_sky(scene, sky)
-    return Subject(scene, stone_of(scene.stones[0], meshes) if scene.stones else None, panorama)
+    with _naming(file):
+        return Subject(scene, stone_of(scene.stones[0], meshes) if scene.stones else None, panorama)
+
+
+def _mesh(file: Path) -> Stone:
+    """The stone in a mesh file; what was found in it, or repaired, goes to stderr."""
+    from culet.geometry.mesh import stone_from_mesh
+
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        raise MeshError(f"{file}: cannot be read: {error.strerror}") from error
+    with _naming(file):
+        stone = stone_from_mesh(data, file.suffix.lower().lstrip("."), name=file.stem)
+    _report(file, stone.findings)
+    return stone
 
 
 def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
-    from culet.rendering.panoramas import read_panorama
+    from culet.rendering.panoramas import findings, read_panorama
     from culet.scene.model import ImageEnvironment
 
     if file is None:
         return scene, None
     try:
-        panorama = read_panorama(file.read_bytes(), file.suffix.lower().lstrip("."))
+        data = file.read_bytes()
     except OSError as error:
-        raise InputError(f"cannot read {file}: {error.strerror}", "sky") from error
+        raise InputError(f"{file}: cannot be read: {error.strerror}", "sky") from error
+    with _naming(file):
+        panorama = read_panorama(data, file.suffix.lower().lstrip("."))
+    _report(file, findings(panorama))
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
     return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), panorama
+
+
+def _report(file: Path, findings: Iterable[str]) -> None:
+    for finding in findings:
+        typer.echo(f"{file}: {finding}", err=True)
 
 
 def _json(file: Path | None) -> object:
@@ -75,6 +93,18 @@ def _json(file: Path | None) -> object:
     try:
         return json.loads(sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes())
     except OSError as error:
-        raise SceneError(f"cannot read {file}: {error.strerror}") from error
+        raise SceneError(f"cannot be read: {error.strerror}") from error
     except (ValueError, RecursionError) as error:  # JSONDecodeError, UnicodeDecodeError; nested beyond all reason
-        raise SceneError(f"{file} is not JSON: {error}") from error
+        raise SceneError(f"not JSON: {error}") from error
+
+
+@contextlib.contextmanager
+def _naming(file: Path | None) -> Iterator[None]:
+    """What cannot be used is told with the name of the file that it was read from."""
+    try:
+        yield
+    except InputError as error:
+        if file is None:
+            raise
+        name = "standard input" if str(file) == "-" else str(file)
+        raise type(error)(f"{name}: {error}", error.field) from error

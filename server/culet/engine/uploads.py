@@ -11,12 +11,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-import numpy as np
-
 from culet.engine.limits import Limits
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.stone import Stone
-from culet.rendering.panoramas import Panorama
+from culet.rendering.panoramas import Panorama, findings
 
 WAITING = 8
 """Uploads of a kind that may wait to be read: each holds its bytes in memory."""
@@ -130,12 +128,12 @@ def described_mesh(stone: Stone) -> dict[str, Any]:
 def described_sky(panorama: Panorama) -> dict[str, Any]:
     """A sky in figures, and what was found in it."""
     height, width, _ = panorama.shape
-    findings = []
-    if width != 2 * height:
-        findings.append(f"{width} x {height} pixels are stretched over all directions, which need twice the width.")
-    if not np.any(panorama):
-        findings.append("All of it is black.")
-    return {"width": width, "height": height, "largest_radiance": float(panorama.max()), "findings": findings}
+    return {
+        "width": width,
+        "height": height,
+        "largest_radiance": float(panorama.max()),
+        "findings": findings(panorama),
+    }
 
 
 MESH = Kind("mesh", MeshError, described_mesh)

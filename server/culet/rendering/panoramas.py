@@ -107,6 +107,17 @@ def read_panorama(data: bytes, file_type: str) -> Panorama:
     return np.ascontiguousarray(pixels, np.float32)
 
 
+def findings(panorama: Panorama) -> list[str]:
+    """What whoever made a panorama may not have meant."""
+    height, width, _ = panorama.shape
+    found = []
+    if width != 2 * height:
+        found.append(f"{width} x {height} pixels are stretched over all directions, which need twice the width.")
+    if not np.any(panorama):
+        found.append("All of it is black.")
+    return found
+
+
 def _check_size(width: int, height: int) -> None:
     if width * height > MOST_PIXELS:
         raise TooLargeError(f"expected a sky of at most {MOST_PIXELS} pixels, got {width} x {height}", "file")

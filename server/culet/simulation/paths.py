@@ -200,3 +200,6 @@ def _npz(path: Path) -> bytes:
 
 
 _ENCODERS: dict[str, Callable[[Path], bytes]] = {".csv": _csv, ".json": _json, ".npz": _npz}
+
+ENDINGS = tuple(ending.lstrip(".") for ending in _ENCODERS)
+"""Of the files that `write` makes, without the dot."""
