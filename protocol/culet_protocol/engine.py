@@ -123,12 +123,14 @@ class Reply(Message):
 
 
 class SessionState(Message):
-    """Told unasked: on every edit, and once a second while the stone moves; what a new engine needs to go on."""
+    """Told unasked: on every edit, once a second while the stone moves, and when it has fallen asleep; what a new
+    engine needs to go on."""
 
     type: Literal["session_state"] = "session_state"
     session: SessionId
     scene: dict[str, Any]
     falling: bool
+    asleep: bool = False
     exactness: Exactness = BALANCED
     pinned: bool = False
     edited: bool

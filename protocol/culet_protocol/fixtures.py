@@ -118,7 +118,9 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
 
 NOTICES: tuple[messages.Message, ...] = (
     messages.Hello(protocol=VERSION, session=bytes(range(16)).hex(), viewer=1),
-    messages.State(scene={"version": 1, "floor": {"kind": "mirror"}}, falling=True, exactness=0.75, pinned=True),
+    messages.State(
+        scene={"version": 1, "floor": {"kind": "mirror"}}, falling=True, asleep=True, exactness=0.75, pinned=True
+    ),
     messages.Viewers(count=2),
     messages.Problem(
         code="unusable_scene", message="camera.fov_degrees: too large; got 300", field="camera.fov_degrees"

@@ -74,6 +74,7 @@ def _union(name: str, members: list[str]) -> str:
 
 
 def _checks(model: Schema) -> str:
+    """A row of NOTICE_FIELDS."""
     checks = []
     for key, schema in model["properties"].items():
         if key == "type":
@@ -83,7 +84,11 @@ def _checks(model: Schema) -> str:
         if key not in model.get("required", ()):
             allowed.append('"absent"')
         checks.append(f"{key}: [{', '.join(allowed)}]")
-    return "{ " + ", ".join(checks) + " }"
+    name = model["properties"]["type"]["const"]
+    row = f"  {name}: {{ {', '.join(checks)} }},\n"
+    if len(row) <= LINE:
+        return row
+    return f"  {name}: {{\n" + "".join(f"    {check},\n" for check in checks) + "  },\n"
 
 
 def messages_typescript() -> str:
@@ -112,7 +117,7 @@ def messages_typescript() -> str:
         parts.extend(f"\n{_interface(name, models[name])}" for name in names)
         parts.append("\n" + _union(union, names))
         if union == "Notice":
-            rows = (f"  {models[name]['properties']['type']['const']}: {_checks(models[name])},\n" for name in names)
+            rows = (_checks(models[name]) for name in names)
             parts.append("\n/** What each field of a notice may be. */\n")
             parts.append('export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {\n')
             parts.extend([*rows, "};\n"])

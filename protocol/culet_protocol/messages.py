@@ -185,12 +185,13 @@ class Hello(Message):
 
 
 class State(Message):
-    """The session's scene as it is now (with the live camera), whether the stone moves, and the session's balance; sent
-    on every edit."""
+    """The session's scene as it is now (with the live camera), whether the stone falls, or sleeps for good, and the
+    session's balance; sent on every edit, and when the stone falls asleep."""
 
     type: Literal["state"] = "state"
     scene: dict[str, Any]
     falling: bool
+    asleep: bool = False
     exactness: Exactness = BALANCED
     pinned: bool = False
 

@@ -187,13 +187,14 @@ export interface Hello {
 }
 
 /**
- * The session's scene as it is now (with the live camera), whether the stone moves, and the session's balance; sent
- * on every edit.
+ * The session's scene as it is now (with the live camera), whether the stone falls, or sleeps for good, and the
+ * session's balance; sent on every edit, and when the stone falls asleep.
  */
 export interface State {
   type: "state";
   scene: JsonObject;
   falling: boolean;
+  asleep?: boolean;
   /** 0 to 1 */
   exactness?: number;
   pinned?: boolean;
@@ -230,7 +231,13 @@ export type Notice = Hello | State | Viewers | Problem | Engine | Pong;
 /** What each field of a notice may be. */
 export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {
   hello: { protocol: ["integer"], session: ["string"], viewer: ["integer"] },
-  state: { scene: ["object"], falling: ["boolean"], exactness: ["number", "absent"], pinned: ["boolean", "absent"] },
+  state: {
+    scene: ["object"],
+    falling: ["boolean"],
+    asleep: ["boolean", "absent"],
+    exactness: ["number", "absent"],
+    pinned: ["boolean", "absent"],
+  },
   viewers: { count: ["integer"] },
   problem: { code: ["string"], message: ["string"], field: ["string", "null", "absent"] },
   engine: { status: ["down", "up"] },

@@ -8,7 +8,7 @@ import math
 
 import pytest
 
-from culet.engine.governor import read_ladder
+from culet.engine.governor import ERRORS, read_ladder
 from culet.engine.session import Session
 from culet.engine.snapshot import Snapshot
 from culet.geometry.load import stone_of
@@ -24,6 +24,11 @@ SIZE = {"width": 800, "height": 450}
 
 def moving(frame: Frame) -> bool:
     return Flags.MOVING in frame.flags
+
+
+def error_of(frame: Frame) -> float:
+    """Measured for how the frame itself was drawn."""
+    return ERRORS.radiance(frame.width / SIZE["width"], round(frame.cutoff, 6), frame.max_bounces)
 
 
 async def moving_frame(watcher: Watcher, cutoff: float) -> Frame:
@@ -43,7 +48,7 @@ async def test_a_moving_frame_says_what_the_governor_chose_and_whose_error_it_gi
         assert frame.cutoff >= 0.01 - 1e-6
         assert Flags.POLARISED not in frame.flags
         assert Flags.FRONTIER in frame.flags
-        assert any(math.isclose(frame.error, rung.radiance_error, rel_tol=1e-6) for rung in read_ladder())
+        assert math.isclose(frame.error, error_of(frame), rel_tol=1e-6)
         await peer.control("toggle_fall")
         still = await watcher.until(lambda frame: Flags.FINAL in frame.flags)
         assert (still.bands, still.width, still.height) == (4, SIZE["width"], SIZE["height"])
@@ -62,10 +67,13 @@ async def test_a_pinned_balance_draws_every_moving_frame_that_well(engine: Engin
         exact = await moving_frame(watcher, 0.005)
         assert (exact.width, exact.height, exact.bands) == (SIZE["width"], SIZE["height"], 4)
         assert Flags.POLARISED in exact.flags
+        assert Flags.FRONTIER not in exact.flags
+        assert math.isnan(exact.error), "never measured, and a single sample"
         await peer.control("balance", exactness=0, pinned=True)
         fast = await moving_frame(watcher, read_ladder()[-1].cutoff)
         assert (fast.width, fast.height, fast.bands) == (640, 360, 3)
-        assert math.isclose(fast.error, read_ladder()[-1].radiance_error, rel_tol=1e-6)
+        assert math.isclose(fast.error, error_of(fast), rel_tol=1e-6)
+        assert math.isclose(fast.error, 0.0518, rel_tol=1e-6), "of 0.8 of the size, 16 reflections"
 
 
 async def test_the_gateway_is_told_of_a_changed_balance(engine: EngineProcess) -> None:

@@ -154,6 +154,20 @@ def test_the_stone_falls_pauses_and_goes_back() -> None:
     assert not subject.falling
 
 
+def test_a_stone_that_sleeps_is_dropped_anew_by_the_same_key() -> None:
+    subject = falling(session(simulation={"restitution": 0, "gravity": 100}))
+    for tenth in range(20):  # it sleeps after 1 s
+        subject.advance(tenth / 10)
+    assert (subject.asleep, subject.falling, subject.moving) == (True, True, False)
+    assert subject.report(edited=False).asleep
+    after(subject, messages.ToggleFall())
+    assert subject.pose() == session().pose(), "its start"
+    assert (subject.asleep, subject.falling, subject.moving) == (False, True, True)
+    subject.advance(100)
+    subject.advance(100.2)
+    assert 0 < subject.shown.simulation_time <= 0.2
+
+
 def test_nothing_falls_in_a_scene_without_a_stone() -> None:
     with pytest.raises(InputError, match="nothing can fall"):
         after(session(stones=[]), messages.ToggleFall())

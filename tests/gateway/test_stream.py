@@ -150,6 +150,15 @@ async def test_falling_frames_are_marked_and_a_reset_ends_them(gateway: Gateway)
         assert (await viewer.final()).simulation_time == 0
 
 
+async def test_viewers_are_told_when_the_stone_has_fallen_asleep(gateway: Gateway) -> None:
+    session = await gateway.session({"simulation": {"restitution": 0, "gravity": 100}})
+    async with gateway.viewer(session) as viewer:
+        await viewer.say(ToggleFall())
+        told = [await viewer.notice("state") for _ in range(3)]
+        assert [(state["falling"], state["asleep"]) for state in told] == [(False, False), (True, False), (True, True)]
+        assert (await gateway.http.get(f"/api/sessions/{session}")).json()["asleep"] is True
+
+
 @pytest.mark.parametrize(
     ("message", "code", "field"),
     [

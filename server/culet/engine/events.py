@@ -26,7 +26,7 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
         case messages.ResetCamera():
             session.change(session.scene.model_copy(update={"camera": session.home}))
         case messages.ToggleFall():
-            session.set_falling(not session.falling)
+            session.toggle_fall()
         case messages.ResetStone():
             session.reset_stone()
         case messages.Push():

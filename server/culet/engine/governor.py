@@ -1,17 +1,20 @@
 """The governor: how good a frame may be while things move, so that the frame rate asked for is held.
 
-It chooses from a ladder of settings, the front of least error for each cost that `python -m culet.study.ladder` has
-measured: down at once when a frame has taken too long, up only after a run of frames that would have had time to spare,
-and then as far as there is time. The session's balance says which frame rate is asked for, or pins a setting. At rest
-nothing is chosen: the picture is refined as the scene has it.
+It chooses from a ladder of settings: the best, and below it the front of least error for each cost, which
+`python -m culet.study.ladder` has measured. Down at once when a frame has taken too long, up only after a run of frames
+that would have had time to spare, and then as far as there is time. The session's balance says which frame rate is
+asked for, or pins a setting. At rest nothing is chosen: the picture is refined as the scene has it.
 """
 
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.resources import files
 
+from culet.engine.setting_error import SettingErrors, read_setting_errors
 from culet.scene import Scene
 from culet_protocol.messages import EXACTEST_RATE, FASTEST_RATE, Balance
 
@@ -26,12 +29,11 @@ PATIENCE = 12
 TRIAL = 60
 """Frames for which a better setting must hold: if it does not, twice as many frames pass before the next try."""
 MOST_PATIENCE = 4 * PATIENCE
+"""Until one has held, and the failures are forgotten."""
 MEMORY = 0.2
 """Weight of the latest frame in the expected cost,"""
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
-ALIKE = 1.05
-"""Costs that differ by less are the same: of rungs that LEAST_PIXELS makes alike, the first tells the error best."""
 LEAST_PIXELS = 640 * 360
 """Of a frame, below which none is scaled unless the viewer asked for less."""
 
@@ -50,8 +52,6 @@ class Setting:
     """Time over that of the first rung, measured."""
     error: float
     """Root mean square error of what is shown, 0 to 1, at one sample a pixel; measured on the default scene."""
-    radiance_error: float
-    """Root mean square error of the linear radiance, likewise."""
 
     @property
     def pixel_cost(self) -> float:
@@ -72,11 +72,16 @@ class Plan:
     setting: Setting | None
     """None if a balance is pinned to all that the scene asks for."""
     error: float
-    """Root mean square error of the radiance that the front says of it."""
+    """Root mean square error of the radiance, as measured for this scale, cut-off and bounces on the default scene; NaN
+    if such ones were not, as those of a whole scene."""
 
 
 def read_ladder() -> tuple[Setting, ...]:
-    """As measured, the best first."""
+    """As measured, the best first, which is the dearest.
+
+    Its errors are not the least: a single sample of every pixel is sharper than a smaller picture, and so has more of
+    the error that more samples would take away. All others have more error the cheaper they are.
+    """
     rungs = json.loads(files(__package__).joinpath("ladder.json").read_text(encoding="utf-8"))["rungs"]
     return tuple(Setting(**rung) for rung in rungs)
 
@@ -87,11 +92,15 @@ def asked_rate(balance: Balance, most: float) -> float:
     return most if balance.pinned else min(most, asked)
 
 
+ERRORS = read_setting_errors()
+
+
 class Governor:
     """Of one session's moving frames. Times are in seconds."""
 
-    def __init__(self, ladder: tuple[Setting, ...]) -> None:
+    def __init__(self, ladder: tuple[Setting, ...], errors: SettingErrors = ERRORS) -> None:
         self._ladder = ladder
+        self._errors = errors
         self._rung = 0
         self._unit: float | None = None
         """Expected time of the first rung for one pixel."""
@@ -99,7 +108,8 @@ class Governor:
         """Expected time of the render thread for a frame besides rendering it."""
         self._spared = 0
         self._patience = PATIENCE
-        self._since_rise = TRIAL
+        self._held: int | None = None
+        """Frames for which a better setting has held that is on trial; None if none is."""
 
     @property
     def setting(self) -> Setting:
@@ -108,9 +118,9 @@ class Governor:
 
     def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance) -> Plan:
         """For the next moving frame: three indices, without polarisation; cut-off, bounces and size by the setting."""
-        setting = self._pinned(balance) if balance.pinned else self.setting
+        setting = self._pinned(wanted, balance) if balance.pinned else self.setting
         if setting is None:
-            return Plan(scene, wanted, wanted, None, self._ladder[0].radiance_error)
+            return Plan(scene, wanted, wanted, None, math.nan)
         changes = {
             "bands": 3,
             "polarised": False,
@@ -120,7 +130,8 @@ class Governor:
         simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
         scale = _scale(setting, wanted)
         size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))
-        return Plan(simplified, size, wanted, setting, setting.radiance_error)
+        error = self._errors.radiance(scale, simplified.optics.cutoff, simplified.optics.max_bounces)
+        return Plan(simplified, size, wanted, setting, error)
 
     def rendered(self, plan: Plan, seconds: float, overhead: float, frames_per_second: float) -> None:
         """A moving frame took that long to render, and that long besides; the next ones are to come at that rate.
@@ -129,6 +140,7 @@ class Governor:
         """
         if plan.setting is None:  # other optics than the ladder's: its time says nothing of theirs
             return
+        overhead = min(overhead, 1 / frames_per_second)  # a longer one was a stall, and says nothing of the next frame
         unit = seconds / (plan.size[0] * plan.size[1] * plan.setting.pixel_cost)
         late = seconds + overhead > LATE / frames_per_second
         if self._unit is None or (late and unit > self._unit):
@@ -139,34 +151,64 @@ class Governor:
         self._choose(plan.wanted, budget)
 
     def _choose(self, wanted: tuple[int, int], budget: float) -> None:
-        self._since_rise += 1
-        if self._since_rise == TRIAL:
-            self._patience = PATIENCE
+        cost = self._expected(self._rung, wanted)
         best = self._best(wanted, budget)
-        if best > self._rung:
-            if self._since_rise < TRIAL:
+        if self._expected(best, wanted) < cost:
+            if self._held is not None:
                 self._patience = min(2 * self._patience, MOST_PATIENCE)
-            self._rung, self._spared = best, 0
+            self._rung, self._spared, self._held = best, 0, None
             return
+        self._hold()
         better = self._best(wanted, SPARE * budget)
-        self._spared = self._spared + 1 if better < self._rung else 0
+        self._spared = self._spared + 1 if self._expected(better, wanted) > cost else 0
         if self._spared >= self._patience:
-            self._rung, self._spared, self._since_rise = better, 0, 0
+            self._rung, self._spared, self._held = better, 0, 0
 
-    def _pinned(self, balance: Balance) -> Setting | None:
+    def _hold(self) -> None:
+        """A better setting that holds for so long makes its failures forgotten."""
+        if self._held is not None:
+            self._held += 1
+            if self._held == TRIAL:
+                self._patience, self._held = PATIENCE, None
+
+    def _pinned(self, wanted: tuple[int, int], balance: Balance) -> Setting | None:
         """The last rung for speed, up to more than the first one for exactness."""
-        rung = round((1 - balance.exactness) * len(self._ladder))
-        return self._ladder[rung - 1] if rung else None
+        worthwhile = worthwhile_rungs(self._ladder, self._errors, wanted)
+        place = round((1 - balance.exactness) * len(worthwhile))
+        return self._ladder[worthwhile[place - 1]] if place else None
 
     def _best(self, wanted: tuple[int, int], budget: float) -> int:
-        """The best rung that is expected to take no longer, or the best of the cheapest for that size."""
-        expected = [self._expected(rung, wanted) for rung in range(len(self._ladder))]
-        limit = max(budget, ALIKE * min(expected))
-        return next(rung for rung, cost in enumerate(expected) if cost <= limit)
+        """The best rung that is expected to take no longer, or the cheapest for that size."""
+        worthwhile = worthwhile_rungs(self._ladder, self._errors, wanted)
+        return next((rung for rung in worthwhile if self._expected(rung, wanted) <= budget), worthwhile[-1])
 
     def _expected(self, rung: int, wanted: tuple[int, int]) -> float:
-        setting = self._ladder[rung]
-        return (self._unit or 0) * wanted[0] * wanted[1] * _scale(setting, wanted) ** 2 * setting.pixel_cost
+        return (self._unit or 0) * wanted[0] * wanted[1] * _cost(self._ladder[rung], wanted)
+
+
+@lru_cache(maxsize=64)
+def worthwhile_rungs(ladder: tuple[Setting, ...], errors: SettingErrors, wanted: tuple[int, int]) -> tuple[int, ...]:
+    """Of the ladder, for a viewer of that size, the dearest first.
+
+    LEAST_PIXELS makes some rungs alike, of which the first was measured at the size nearest to what is drawn, and
+    others no better than cheaper ones. The ladder's first rung is worth its cost though its error is not less.
+    """
+    drawn: dict[tuple[float, float, int], int] = {}
+    for rung, setting in enumerate(ladder):
+        drawn.setdefault((_scale(setting, wanted), setting.cutoff, setting.max_bounces), rung)
+    chosen: list[int] = []
+    least = math.inf
+    for how, rung in sorted(drawn.items(), key=lambda item: _cost(ladder[item[1]], wanted)):
+        error = errors.shown(*how)
+        if error < least or rung == 0:
+            chosen.insert(0, rung)
+            least = min(least, error)
+    return tuple(chosen)
+
+
+def _cost(setting: Setting, wanted: tuple[int, int]) -> float:
+    """Expected time over that of all the pixels that the viewer asked for in the first rung."""
+    return _scale(setting, wanted) ** 2 * setting.pixel_cost
 
 
 def _scale(setting: Setting, wanted: tuple[int, int]) -> float:

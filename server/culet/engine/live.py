@@ -59,6 +59,8 @@ class LivePicture:
     """What could not be rendered; not tried again until something else is to be shown."""
     message: bytes | None = None
     """The frame sent last."""
+    told_asleep: bool = False
+    """The gateway was told unasked that the stone sleeps."""
     final: bool = False
     """The picture has all its samples."""
     sent_at: float = 0.0

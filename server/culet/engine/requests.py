@@ -97,10 +97,14 @@ class Requests:
             self._painter.show_again(live)
 
     def report_motion(self) -> None:
-        """Tell the state of every session whose stone moves for somebody."""
+        """Tell the state of every session whose stone moves for somebody, or has just fallen asleep or woken."""
         for live in self._painter.pictures.values():
-            if live.watched and live.session.moving and not live.session.lock.locked():
-                self._tell(live.session.report(edited=False))
+            session = live.session
+            if session.lock.locked():
+                continue
+            if (live.watched and session.moving) or session.asleep != live.told_asleep:
+                live.told_asleep = session.asleep
+                self._tell(session.report(edited=False))
 
     def status(self) -> dict[str, Any]:
         """Counters and device."""
@@ -232,6 +236,7 @@ def described(live: LivePicture) -> dict[str, Any]:
         "session": session.name,
         "scene": session.scene.model_dump(mode="json"),
         "falling": session.falling,
+        "asleep": session.asleep,
         "exactness": session.balance.exactness,
         "pinned": session.balance.pinned,
         "watched": live.watched,

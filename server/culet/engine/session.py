@@ -115,7 +115,12 @@ class Session:
     @property
     def moving(self) -> bool:
         """Whether time would change what is shown."""
-        return self.falling and self._simulation is not None and not self._simulation.settled
+        return self.falling and self._simulation is not None and not self.asleep
+
+    @property
+    def asleep(self) -> bool:
+        """Whether the stone has come to rest for good, unless somebody changes something."""
+        return self._simulation is not None and self._simulation.settled
 
     def change(self, scene: Scene, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was.
@@ -158,6 +163,12 @@ class Session:
         self.falling = falling
         self._advanced_at = None
         self._show()
+
+    def toggle_fall(self) -> None:
+        """Start or pause free fall; a stone that sleeps is dropped anew. InputError if there is nothing to fall."""
+        if self.asleep:
+            self.reset_stone()
+        self.set_falling(not self.falling)
 
     def push(self, x: float, y: float, right: float, up: float) -> None:
         """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.
@@ -220,6 +231,7 @@ class Session:
             session=self.name,
             scene=self.scene.model_dump(mode="json"),
             falling=self.falling,
+            asleep=self.asleep,
             exactness=self.balance.exactness,
             pinned=self.balance.pinned,
             edited=edited,

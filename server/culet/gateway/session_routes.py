@@ -42,6 +42,7 @@ class SessionAnswer(Model):
     id: Annotated[str, Field(description="Whoever knows it may watch and change the session.")]
     scene: Annotated[dict[str, Any], Field(description="With the camera and lights where they are now.")]
     falling: bool
+    asleep: Annotated[bool, Field(description="Whether the stone has come to rest for good.")]
     exactness: Annotated[float, Field(description="While things move: 0 is many frames, 1 few and good ones.")]
     pinned: Annotated[bool, Field(description="Whether `exactness` fixes the quality of moving frames instead.")]
     viewers: int
@@ -128,6 +129,7 @@ def _answer(session: Session) -> SessionAnswer:
         id=session.id,
         scene=session.scene,
         falling=session.falling,
+        asleep=session.asleep,
         exactness=session.exactness,
         pinned=session.pinned,
         viewers=len(session.viewers),

@@ -35,7 +35,7 @@ class Session:
         self.id = session
         self.topic = bytes.fromhex(session)
         self.scene = scene
-        self.falling = False
+        self.falling = self.asleep = False
         self.exactness, self.pinned = BALANCED, False
         self.snapshot: dict[str, Any] | None = None
         self.viewers: list[Viewer] = []
@@ -46,7 +46,13 @@ class Session:
 
     def state(self) -> State:
         """The notice for viewers."""
-        return State(scene=self.scene, falling=self.falling, exactness=self.exactness, pinned=self.pinned)
+        return State(
+            scene=self.scene,
+            falling=self.falling,
+            asleep=self.asleep,
+            exactness=self.exactness,
+            pinned=self.pinned,
+        )
 
     def tell(self, notice: Message) -> None:
         """Tell every viewer."""
@@ -220,7 +226,8 @@ class Sessions:
             return
         session.scene, session.falling, session.snapshot = state.scene, state.falling, state.snapshot
         session.exactness, session.pinned = state.exactness, state.pinned
-        if state.edited:
+        told_asleep, session.asleep = session.asleep, state.asleep
+        if state.edited or session.asleep != told_asleep:
             session.tell(session.state())
 
     def _on_problem(self, problem: SessionProblem) -> None:
