@@ -29,7 +29,7 @@ export const ERROR_MEANINGS = {
 } as const;
 
 /** A moving picture's error is not its own: it is what the measured front says of its settings. */
-export function errorName({ flags }: Pick<Frame, "flags">): string {
+function errorName({ flags }: Pick<Frame, "flags">): string {
   return flags & Flag.FRONTIER ? "frontier's error" : "error";
 }
 

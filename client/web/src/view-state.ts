@@ -2,6 +2,7 @@
 
 import { BALANCED, type JsonObject, type Notice } from "@culet/protocol/messages";
 import type { Target } from "./events";
+import { part, text } from "./json";
 
 export interface ViewState {
   target: Target;
@@ -31,24 +32,18 @@ export const INITIAL: ViewState = {
   engine: "up",
 };
 
-/** The `kind` of the scene's floor, walls or environment, if it has one. */
-function kind(scene: JsonObject, part: "floor" | "walls" | "environment"): unknown {
-  const value = scene[part];
-  return typeof value === "object" && value !== null ? (value as JsonObject).kind : undefined;
-}
-
 export function withNotice(state: ViewState, notice: Notice): ViewState {
   switch (notice.type) {
     case "state": {
       const { scene, falling } = notice;
-      const walls = kind(scene, "walls") ?? "none";
-      const mirror = kind(scene, "floor") === "mirror" || walls === "mirror";
+      const walls = text(part(scene, "walls").kind, "none");
+      const mirror = part(scene, "floor").kind === "mirror" || walls === "mirror";
       return {
         ...state,
         scene,
         falling,
         mirror,
-        light: kind(scene, "environment") === "light",
+        light: part(scene, "environment").kind === "light",
         walls: walls !== "none",
         exactness: notice.exactness ?? BALANCED,
         pinned: notice.pinned ?? false,
