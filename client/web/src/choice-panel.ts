@@ -1,50 +1,69 @@
 /** The panel's choices about the picture: material, sky and optics. */
 
 import type { Controller, GUI } from "lil-gui";
-import type { Catalogued } from "./rest";
+import type { Catalogued, Material } from "./rest";
 import {
   BANDS,
   type Choices,
   CUTOFFS,
   choicesOf,
   ENDS,
+  ENDS_SAID,
+  hasStone,
   imageSky,
   NOTHING_CHOSEN,
   patchOf,
   SKIES,
   TONE_MAPS,
+  TONE_MAPS_SAID,
 } from "./scene-choices";
+import { SizeControl } from "./size-control";
 import type { ViewState } from "./view-state";
 
 type Values = Record<string, unknown>;
+
+const HINTS: Partial<Record<keyof Choices, string>> = {
+  bands: "Wavelengths that are followed. 3: one each of red, green and blue; more spread the fire into a spectrum",
+  polarised: "Follow how reflections polarise the light; without it, light is averaged at each one",
+  cutoff: "Light that brings less than this part of what it began with is followed no further",
+  end: "What becomes of light below the cut-off",
+  toneMap: "How radiance becomes the colours of the screen",
+};
 
 export class ChoicePanel {
   private readonly shown: Choices = { ...NOTHING_CHOSEN };
   private readonly controllers = new Map<keyof Choices, Controller>();
   private readonly skies: Values = { ...SKIES };
   private readonly send: (patch: Values) => void;
+  private readonly size: SizeControl;
   private scene: ViewState["scene"] = null;
 
   /** Material and sky go into one folder, how light is followed into another. */
   constructor(subject: GUI, optics: GUI, send: (patch: Values) => void) {
     this.send = send;
     this.add(subject, "material", "Material", {});
+    this.size = new SizeControl(subject, send);
     this.add(subject, "sky", "Sky", this.skies);
     this.add(optics, "bands", "Bands", BANDS);
     this.add(optics, "polarised", "Polarised");
     this.add(optics, "cutoff", "Cut-off", CUTOFFS);
     this.add(optics, "end", "Below it", ENDS);
     this.add(optics, "toneMap", "Tone map", TONE_MAPS);
+    this.describe("end", ENDS_SAID);
+    this.describe("toneMap", TONE_MAPS_SAID);
   }
 
   update({ scene }: ViewState): void {
     this.scene = scene;
     Object.assign(this.shown, choicesOf(scene));
     for (const controller of this.controllers.values()) controller.updateDisplay();
+    this.controllers.get("material")?.show(hasStone(scene));
+    this.size.update({ scene });
   }
 
-  addMaterials(materials: Catalogued[]): void {
+  addMaterials(materials: Material[]): void {
     this.offer("material", Object.fromEntries(materials.map(({ name }) => [name, name])), materials);
+    this.size.setColoured(materials.filter(({ coloured }) => coloured).map(({ name }) => name));
   }
 
   /** Skies of the studio, or one that was uploaded under its file's name. */
@@ -56,6 +75,7 @@ export class ChoicePanel {
   private add(folder: GUI, name: keyof Choices, label: string, options?: Values | number[]): void {
     const controller = options ? folder.add(this.shown, name, options) : folder.add(this.shown, name);
     this.listen(name, controller.name(label));
+    controller.domElement.title = HINTS[name] ?? "";
   }
 
   private offer(name: keyof Choices, options: Values, described: Catalogued[]): void {
@@ -63,11 +83,15 @@ export class ChoicePanel {
     if (!controller) return;
     const renewed = controller.options(options);
     this.listen(name, renewed);
-    for (const option of renewed.domElement.querySelectorAll("option")) {
+    this.describe(name, described);
+    renewed.show(name !== "material" || hasStone(this.scene)).updateDisplay();
+  }
+
+  private describe(name: keyof Choices, described: Catalogued[]): void {
+    for (const option of this.controllers.get(name)?.domElement.querySelectorAll("option") ?? []) {
       const found = described.find((one) => one.name === option.textContent);
       if (found) option.title = found.summary;
     }
-    renewed.updateDisplay();
   }
 
   private listen(name: keyof Choices, controller: Controller): void {

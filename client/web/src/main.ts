@@ -246,6 +246,10 @@ expose({
 banner.show("Connecting\u2026");
 attempt(async () => panel.addPresets(await rest.presets()));
 attempt(async () => panel.choices.addMaterials(await rest.materials()));
+attempt(async () => {
+  const [cut] = await rest.cuts(); // there is one so far
+  if (cut) panel.addCut(cut);
+});
 attempt(async () => panel.choices.addSkies(await rest.skies()));
 attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
 attempt(start);

@@ -5,10 +5,12 @@ import { type Controller, GUI } from "lil-gui";
 import "../node_modules/lil-gui/dist/lil-gui.css";
 import { type Action, actionNamed, labelWithKey } from "./actions";
 import { ChoicePanel } from "./choice-panel";
+import type { CutKind } from "./cut";
+import { CutPanel } from "./cut-panel";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
 import type { Preset } from "./rest";
-import { TARGET_NAMES, type ViewState } from "./view-state";
+import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
 
 export interface PanelActions {
   perform: (action: Action) => void;
@@ -29,6 +31,7 @@ const NARROW = 640;
 export class Panel {
   readonly choices: ChoicePanel;
   readonly fall: FallPanel;
+  private readonly cut: CutPanel;
   private readonly gui: GUI;
   private readonly files: GUI;
   private readonly actions: PanelActions;
@@ -41,6 +44,7 @@ export class Panel {
     this.gui = new GUI({ container, title: "culet", injectStyles: false });
     this.addMoves();
     const surroundings = this.addSwitches();
+    this.cut = new CutPanel(this.gui.addFolder("Cut").close(), actions.patch);
     this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);
     this.choices = new ChoicePanel(surroundings, this.gui.addFolder("Optics").close(), actions.patch);
     this.files = this.gui.addFolder("Pictures and scenes");
@@ -59,7 +63,12 @@ export class Panel {
     Object.assign(this.shown, { target, falling, mirror, light, walls });
     for (const display of this.displays) display.updateDisplay();
     this.fall.update(state);
+    this.cut.update(state);
     this.choices.update(state);
+  }
+
+  addCut(cut: CutKind): void {
+    this.cut.addCut(cut, this.state ?? INITIAL);
   }
 
   addPresets(presets: Preset[]): void {

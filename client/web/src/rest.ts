@@ -1,6 +1,7 @@
 /** The gateway's REST interface. Errors are problem documents (RFC 9457). */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import type { CutKind } from "./cut";
 import { object } from "./json";
 
 /** An answer other than 2xx; the message is fit to be shown. */
@@ -29,6 +30,11 @@ export interface Preset {
 export interface Catalogued {
   name: string;
   summary: string;
+}
+
+export interface Material extends Catalogued {
+  /** It absorbs by a spectrum of its own. */
+  coloured: boolean;
 }
 
 /** An uploaded mesh or sky: its id for the scene, and sentences about it for the user. */
@@ -97,8 +103,12 @@ export function presets(): Promise<Preset[]> {
   return catalogue("presets");
 }
 
-export function materials(): Promise<Catalogued[]> {
+export function materials(): Promise<Material[]> {
   return catalogue("materials");
+}
+
+export function cuts(): Promise<CutKind[]> {
+  return catalogue("cuts");
 }
 
 export function skies(): Promise<Catalogued[]> {

@@ -1,5 +1,18 @@
 import { describe, expect, it, test } from "vitest";
-import { type Choices, choicesOf, imageSky, NOTHING_CHOSEN, patchOf, stonePatch } from "./scene-choices";
+import {
+  type Choices,
+  choicesOf,
+  ENDS,
+  ENDS_SAID,
+  imageSky,
+  NOTHING_CHOSEN,
+  patchOf,
+  sizeMatters,
+  sizeOf,
+  stonePatch,
+  TONE_MAPS,
+  TONE_MAPS_SAID,
+} from "./scene-choices";
 
 const STONE = { cut: "brilliant", material: "ruby", position: [0, 4, 0] };
 const SCENE = {
@@ -55,4 +68,30 @@ it("changes the stone, or makes one where there was none", () => {
   expect(stonePatch(SCENE, { mesh: "m1" })).toEqual({ stones: [{ ...STONE, mesh: "m1" }] });
   expect(stonePatch({ stones: [] }, { mesh: "m1" })).toEqual({ stones: [{ mesh: "m1" }] });
   expect(stonePatch(null, { mesh: "m1" })).toEqual({ stones: [{ mesh: "m1" }] });
+});
+
+describe("the size", () => {
+  const coloured = new Set(["ruby"]);
+  const matters = (stone: Record<string, unknown>) => sizeMatters({ stones: [stone] }, coloured);
+
+  it("is that of a carat unless the scene has one", () => {
+    expect(sizeOf({ stones: [{ size_mm: null }] })).toBe(3.25);
+    expect(sizeOf({ stones: [{ size_mm: 5 }] })).toBe(5);
+  });
+
+  it("matters to a coloured material, and to an absorption per millimetre", () => {
+    expect(matters({ material: "ruby", size_mm: null, absorption: [0, 0, 0] })).toBe(true);
+    expect(matters({ material: "diamond", size_mm: 2, absorption: [0, 1, 0] })).toBe(true);
+  });
+
+  it("does not to clear ones, and would change what an absorption per radius means", () => {
+    expect(matters({ material: "diamond", size_mm: 2, absorption: [0, 0, 0] })).toBe(false);
+    expect(matters({ material: "ruby", size_mm: null, absorption: [0, 1, 0] })).toBe(false);
+    expect(sizeMatters({ stones: [] }, coloured)).toBe(false);
+  });
+});
+
+it("explains each end and each tone map by the name that the list has", () => {
+  expect(ENDS_SAID.map(({ name }) => name)).toEqual(Object.keys(ENDS));
+  expect(TONE_MAPS_SAID.map(({ name }) => name)).toEqual(Object.keys(TONE_MAPS));
 });

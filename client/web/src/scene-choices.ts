@@ -1,7 +1,8 @@
 /** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { number, object, part, text } from "./json";
+import { number, object, part, text, triple } from "./json";
+import type { Catalogued } from "./rest";
 
 export interface Choices {
   /** A material's name, or what to call one that the scene describes by its indices. */
@@ -18,8 +19,26 @@ export interface Choices {
 /** Values to choose from; a scene may have others. */
 export const BANDS = [3, 8, 16, 32];
 export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
-export const ENDS = { "cut and counted": "cut", "by chance": "roulette", "in the sky": "sky" };
+export const ENDS = { "cut, counted": "cut", "by chance": "roulette", "in the sky": "sky" };
 export const TONE_MAPS = { sRGB: "srgb", filmic: "filmic", "the report's": "classic", none: "none" };
+/** What they mean, by their names. */
+export const ENDS_SAID: Catalogued[] = [
+  {
+    name: "cut, counted",
+    summary: "What such light would still bring is dropped, and its sum is said: at most so much is missing",
+  },
+  { name: "by chance", summary: "It is ended by lot, and what goes on counts for more: right on average, but noisy" },
+  {
+    name: "in the sky",
+    summary: "It leaves the stone where it is and takes the sky's light from there: no darker, but a guess",
+  },
+];
+export const TONE_MAPS_SAID: Catalogued[] = [
+  { name: "sRGB", summary: "What is brighter than white is white" },
+  { name: "filmic", summary: "Highlights are rolled off, and keep their hues" },
+  { name: "the report's", summary: "As the report draws it" },
+  { name: "none", summary: "The radiance itself, without the screen's curve: too dark on a screen" },
+];
 export const SKIES = { "studio lamps": "studio", dark: "dark", light: "light", "half-lit": "half" };
 
 /** The scene's before there is one. */
@@ -78,6 +97,29 @@ export function stonePatch(scene: JsonObject | null, change: JsonObject): JsonOb
 
 function environmentOf(sky: string): JsonObject {
   return sky.startsWith(IMAGE) ? { kind: "image", image: sky.slice(IMAGE.length) } : { kind: sky };
+}
+
+export function hasStone(scene: JsonObject | null): boolean {
+  return Array.isArray(scene?.stones) && scene.stones.length > 0;
+}
+
+/** mm. That of about a carat, which the server takes for a coloured material in a scene without a size. */
+const CARAT_MM = 3.25;
+
+/** The girdle's radius in millimetres. */
+export function sizeOf(scene: JsonObject | null): number {
+  return number(stoneOf(scene).size_mm, CARAT_MM);
+}
+
+/**
+ * Whether the picture depends on the stone's size: it has a coloured material, or an absorption per millimetre. One
+ * without a size absorbs per radius, and giving it one would change what its numbers mean.
+ */
+export function sizeMatters(scene: JsonObject | null, coloured: ReadonlySet<string>): boolean {
+  const { material, size_mm: size, absorption } = stoneOf(scene);
+  const absorbs = triple(absorption)?.some((coefficient) => coefficient > 0) ?? false;
+  if (absorbs) return typeof size === "number";
+  return typeof material === "string" && coloured.has(material);
 }
 
 export function stoneOf(scene: JsonObject | null): JsonObject {

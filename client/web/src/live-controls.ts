@@ -1,0 +1,63 @@
+/** Sliders and lists that act while a finger is on them, once a picture at most, and otherwise show what is. */
+
+import type { Controller } from "lil-gui";
+
+/** For so long after it was let go, a slider stays where it is: what the server says of it may still be on its way. */
+const ECHO_MS = 500;
+
+export class LiveControls<T extends object> {
+  /** What the controllers show; they are made on it. */
+  readonly shown: T;
+  readonly controllers = new Map<keyof T, Controller>();
+  /** Show where the finger is or was, not what the server last said; with the timer that ends this, if let go. */
+  private readonly held = new Map<keyof T, ReturnType<typeof setTimeout> | undefined>();
+  private readonly waiting = new Map<keyof T, never>();
+  private readonly now: () => T;
+  private readonly send: (name: keyof T, value: never) => void;
+
+  /** `now` says what the server last said, `send` asks it for another value. */
+  constructor(now: () => T, send: (name: keyof T, value: never) => void) {
+    this.now = now;
+    this.send = send;
+    this.shown = { ...now() };
+  }
+
+  listen(name: keyof T, controller: Controller): void {
+    this.controllers.set(name, controller);
+    controller.onChange((value: never) => {
+      const list = controller.domElement.querySelector("select");
+      list?.blur(); // or the next key would choose something else
+      if (!list) this.hold(name);
+      this.display(); // what is not held shows what is, until the server says that it changed
+      if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
+      this.waiting.set(name, value);
+    });
+    controller.onFinishChange(() => this.letGo(name));
+  }
+
+  display(): void {
+    const now = this.now();
+    for (const name of this.held.keys()) now[name] = this.shown[name];
+    Object.assign(this.shown, now);
+    for (const controller of this.controllers.values()) controller.updateDisplay();
+  }
+
+  private hold(name: keyof T, timer?: ReturnType<typeof setTimeout>): void {
+    clearTimeout(this.held.get(name));
+    this.held.set(name, timer);
+  }
+
+  private letGo(name: keyof T): void {
+    if (!this.held.has(name)) return;
+    const end = () => {
+      this.held.delete(name);
+      this.display();
+    };
+    this.hold(name, setTimeout(end, ECHO_MS));
+  }
+
+  private flush(): void {
+    for (const [name, value] of this.waiting) this.send(name, value);
+    this.waiting.clear();
+  }
+}
