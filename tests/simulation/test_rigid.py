@@ -20,10 +20,10 @@ from culet.geometry.stone import MassProperties, Stone
 from culet.scene.model import StoneSettings
 from culet.simulation.clock import FixedStepClock
 from culet.simulation.simulation import Simulation
-from culet.simulation.state import RigidState
+from culet.simulation.state import Quaternion, RigidState, Triple
 from culet.simulation.surfaces import FLOOR, WALLS, Surface
 from simulation.conftest import stone_of as stone_of_mesh
-from simulation.solids import UPRIGHT, about, advance, nearest, rigid
+from simulation.solids import UPRIGHT, G, about, advance, nearest, rigid
 
 ROOM = (FLOOR, *WALLS)
 TILTED = about((0.6, 0.0, 0.8), 0.7)
@@ -209,6 +209,28 @@ def test_a_start_below_the_floor_comes_up_without_speed(brilliant: Stone, depth:
     assert nearest(moving) > -1e-9
     assert moving.state.position[1] <= 0
     assert max(map(abs, moving.body.velocity(moving.state))) < 9.81 / 120 * 1.1
+
+
+@pytest.mark.parametrize("velocity", [(0, 1, 0), (0, 0.01, 0), (1, 1, 0), (1, 0, 0), (0, 0, 0)])
+@pytest.mark.parametrize("height", [-3.0, -1.5, -1.2, -0.9, -0.5])
+@pytest.mark.parametrize("orientation", [UPRIGHT, TILTED, (0.0, 1.0, 0.0, 0.0)])
+def test_a_stone_that_leaves_the_floor_without_turning_flies_straight(
+    brilliant: Stone, orientation: Quaternion, height: float, velocity: Triple
+) -> None:
+    """No time is the first at which it touches: room and speed towards the floor are both 0."""
+    x, y, z = velocity
+    moving = rigid(brilliant, (0.0, height, 0.0), orientation, ROOM, gravity=0, velocity=velocity)
+    lift = max(-nearest(moving), 0.0)
+    t = advance(moving, 0.25)[-1].time
+    assert moving.state.position == pytest.approx((x * t, height + lift + y * t, z * t), abs=1e-12)  # measured 9e-16
+
+
+def test_a_stone_that_leaves_a_wall_without_turning_falls_on_its_parabola(brilliant: Stone) -> None:
+    moving = rigid(brilliant, (0.0, 2.0, -8.5), TILTED, ROOM, velocity=(0, 0, 2))
+    lift = -nearest(moving)
+    assert lift > 0.1
+    t = advance(moving, 0.25)[-1].time
+    assert moving.state.position == pytest.approx((0, 2 - G * t * t / 2, -8.5 + lift + 2 * t), abs=1e-12)
 
 
 def test_a_start_in_a_corner_of_three_planes_comes_out_and_rests(brilliant: Stone) -> None:

@@ -14,7 +14,7 @@ import math
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import TOUCH
 from culet.simulation.free_rotation import Integrator
-from culet.simulation.motion import Motion, flown, gaps, sphere_centre_gap
+from culet.simulation.motion import AT_SURFACE, Motion, flown, gaps, sphere_centre_gap
 from culet.simulation.state import Triple
 
 SAGITTA = 1e-5
@@ -41,15 +41,16 @@ def fly(
             continue  # however it turns
         safe = room / approach if room > 0 else 0.0
         room = max(float(gaps(motion, body, surface).min()), 0.0)
-        if room <= (approach + turning) * part:
-            part = min(part, max(safe, room / (approach + turning)))
+        fastest = approach + turning
+        if fastest > 0 and room <= fastest * part:  # 0: it leaves, or slides along, without turning
+            part = min(part, max(safe, room / fastest))
     if part < time:
         bend = gravity + omega * turning
         straight = math.sqrt(8 * SAGITTA / bend) if bend > 0 else time
         part = min(max(part, straight, shortest), time)
     end = flown(motion, body, gravity, part, integrator)
     inside = _depth(end, body)
-    if inside <= 0:
+    if inside <= AT_SURFACE:
         return end, part
     return _touch(motion, body, gravity, turning, part, inside, integrator)
 
@@ -77,7 +78,7 @@ def _touch(
 
     `turning` bounds the speed of any point about the centre, R/s.
     """
-    outside, early, at_early = -_depth(motion, body), 0.0, motion
+    outside, early, at_early = max(-_depth(motion, body), 0.0), 0.0, motion
     for attempt in range(MAX_REFINEMENTS):
         bound = math.hypot(*at_early.momentum) / body.mass + turning + gravity * (late - early)
         if (early > 0 and outside <= TOUCH / 2) or bound * (late - early) <= TOUCH / 2:

@@ -14,6 +14,9 @@ from culet.simulation.rotation import rotate_back
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import Surface
 
+AT_SURFACE = 1e-12
+"""R. A vertex that is no deeper inside a surface is at it: several surfaces cannot all be left by less."""
+
 
 class Motion(NamedTuple):
     """As in RigidState, without what only whole steps have."""
@@ -86,6 +89,6 @@ def pushed_out(motion: Motion, body: RigidBody) -> Motion:
                 (x, y, z), (a, b, c) = motion.position, surface.normal
                 motion = motion._replace(position=(x + a * depth, y + b * depth, z + c * depth))
                 deepest = max(deepest, depth)
-        if deepest < 1e-12:
+        if deepest < AT_SURFACE:
             break
     return motion

@@ -2,8 +2,8 @@
 
 What must hold of each, after every step: all numbers are finite; the energy is never above what it was before, but for
 rounding; no vertex is inside a surface, at any speed; the centre of mass is no faster than all the energy there is,
-without the potential of lying on the floor, could make it; and a stone that starts at rest inside a surface leaves it
-no faster than one step of gravity makes it.
+without the potential of lying on the floor, could make it; and a stone that starts inside a surface leaves it
+no faster than its throw and one step of gravity make it.
 """
 
 from __future__ import annotations
@@ -128,6 +128,24 @@ EXTREMES = (
         {"spin": (0, 0, 0)},
         position=(-1.5, -1.5, -1.5),
         surfaces=CORNER,
+    ),
+    Extreme(
+        "start 2 R below the floor, thrown out, no spin, gravity 0",
+        {"gravity": 0, "velocity": (0, 1, 0), "spin": (0, 0, 0)},
+        position=(0.0, -3.0, 0.0),
+    ),
+    Extreme(
+        "start 2 R below the floor, thrown along it, no spin, gravity 0",
+        {"gravity": 0, "velocity": (1, 0, 0), "spin": (0, 0, 0)},
+        position=(0.0, -3.0, 0.0),
+    ),
+    Extreme(
+        "start inside a wall, thrown out, no spin",
+        {"velocity": (0, 0, 1), "spin": (0, 0, 0)},
+        position=(0.0, 1.5, -8.5),
+    ),
+    Extreme(
+        "on the floor, thrown up, no spin", {"velocity": (0, 3, 0), "spin": (0, 0, 0)}, surfaces=(FLOOR,), on_floor=True
     ),
     Extreme("dropped into a corner of three planes", {"velocity": (-3, 0, -3)}, surfaces=CORNER),
     *(
