@@ -56,9 +56,7 @@ def rest_here(stone: Stone, drop: Drop) -> str:
 
 
 def rests_in_mujoco(stone: Stone, tried: list[Drop]) -> list[str]:
-    mujoco = pytest.importorskip(
-        "mujoco", reason="the comparison needs MuJoCo, which is not installed: pip install -e '.[validation]'"
-    )
+    mujoco = pytest.importorskip("mujoco", reason=MISSING)
     vertices = " ".join(f"{c:.17g}" for c in stone.vertices.ravel())
     moments = " ".join(f"{2 * moment:.17g}" for moment in np.diag(stone.mass.inertia))
     model = mujoco.MjModel.from_xml_string(f"""
