@@ -7,12 +7,13 @@ import math
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from culet.engine.governor import read_ladder
+from culet.engine.governor import Governor, Plan, read_ladder
 from culet.engine.live import SETTLE_SECONDS, LivePicture
 from culet.engine.painter import Painter
 from culet.engine.session import Session
@@ -210,3 +211,25 @@ async def test_a_full_frame_is_given_up_for_what_is_newer(play: Play) -> None:
         (False, False), (True, True), (False, False), (True, False),
     ]  # fmt: skip
     assert world.drawn[2].ended - edited < 0.15, "measured 0.050 s: a band, and a reduced frame"
+
+
+async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(
+    play: Play, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world, overheads = World(SLOW), []
+
+    class SlowLock(asyncio.Lock):
+        async def acquire(self) -> Literal[True]:
+            world.spend(1.5)
+            return await super().acquire()
+
+    def rendered(_: Governor, _plan: Plan, _seconds: float, overhead: float, _rate: float) -> None:
+        overheads.append(overhead)
+
+    monkeypatch.setattr(Governor, "rendered", rendered)
+    await play(world, 30 * SLOW)
+    world.session.lock = SlowLock()
+    world.turn(since=0, seconds=1)
+    await play(world, 4)
+    assert overheads == pytest.approx([0] * len(overheads), abs=1e-9)
+    assert overheads

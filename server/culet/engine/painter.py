@@ -122,11 +122,11 @@ class Painter:
 
     async def _begin(self, live: LivePicture) -> None:
         """Simulate up to now and draw the first sample."""
-        now = self._now()
-        live.begin(now)
+        live.begin(self._now())
         session = live.session
         live.refinement = None
         async with session.lock:
+            held_at = self._now()  # waiting for the lock is no work that the next frame has to do again
             started = time.perf_counter()
             await self._in_render_thread(session.advance, self._now())
             live.simulate_seconds = time.perf_counter() - started
@@ -145,7 +145,7 @@ class Painter:
             self.counters.frames_rendered += 1
             frame = await self._develop(live, picture, shown, plan)
             if plan is not None:
-                overhead = self._now() - now - picture.seconds
+                overhead = self._now() - held_at - picture.seconds
                 live.governor.rendered(plan, picture.seconds, overhead, live.frames_per_second)
             await self._publish(live, frame)
         except Exception as error:  # one session's failure must not end the others'
