@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from itertools import accumulate, chain, repeat
 
@@ -44,6 +45,12 @@ def test_a_steady_fall_has_the_rate_at_which_its_frames_came() -> None:
     assert (summary.late_intervals, summary.setting_changes_per_minute) == (0, 0)
     assert (summary.lowest_size, summary.largest_cutoff, summary.fewest_bounces) == ((1024, 576), 0.02, 48)
     assert (summary.fewest_bands, summary.error_mean) == (3, 0.05)
+
+
+def test_the_mean_error_is_of_the_frames_whose_error_is_known() -> None:
+    frames = falling([INTERVAL] * 4)
+    assert summary_of([replace(frames[0], error=math.nan), *frames[1:]]).error_mean == pytest.approx(0.05)
+    assert summary_of([replace(frame, error=math.nan) for frame in frames]).error_mean is None
 
 
 def test_the_pause_between_two_falls_does_not_count() -> None:

@@ -234,7 +234,7 @@ def _rows(summary: Summary | None) -> list[str]:
         f"in a row over {LATE_MS:g} ms  {summary.longest_late_run}",
         f"simulate, encode ms  median {summary.simulate_ms_median:.2f}, {summary.encode_ms_median:.2f}",
         f"changes of setting   {summary.setting_changes_per_minute:.1f} a minute",
-        f"frontier's error     mean {summary.error_mean:.4f}",
+        "frontier's error     " + ("unknown" if summary.error_mean is None else f"mean {summary.error_mean:.4f}"),
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -92,8 +93,8 @@ class Summary:
     setting_changes_per_minute: float
     simulate_ms_median: float
     encode_ms_median: float
-    error_mean: float
-    """Mean of the frontier's errors, of radiance."""
+    error_mean: float | None
+    """Mean of the frontier's errors, of radiance; None if none is known."""
 
     def as_json(self) -> dict[str, Any]:
         """For a report."""
@@ -108,6 +109,7 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
         return None
     intervals = [after.arrived - before.arrived for before, after in pairs]
     render = sorted(frame.render_ms for frame in moving)
+    errors = [frame.error for frame in moving if not math.isnan(frame.error)]
     minutes = sum(intervals) / 60
     return Summary(
         frames=len(moving),
@@ -125,7 +127,7 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
         setting_changes_per_minute=setting_changes(seen) / minutes,
         simulate_ms_median=statistics.median(frame.simulate_ms for frame in moving),
         encode_ms_median=statistics.median(frame.encode_ms for frame in moving),
-        error_mean=statistics.fmean(frame.error for frame in moving),
+        error_mean=statistics.fmean(errors) if errors else None,
     )
 
 
