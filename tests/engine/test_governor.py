@@ -249,7 +249,8 @@ def test_a_pinned_balance_keeps_its_rung_whatever_it_costs(exactness: float, run
 @pytest.mark.parametrize("wanted", [WANTED, (640, 360), (800, 450), (1920, 1080), (780, 1688), (320, 180)])
 def test_pinned_to_more_exactness_a_frame_is_dearer_and_shows_less_error(wanted: tuple[int, int]) -> None:
     """But for the first rung's error, which a test below speaks of."""
-    governor, places, frames = Governor(MEASURED), 200, []
+    governor, places = Governor(MEASURED), 200
+    frames: list[Plan] = []
     for place in range(places):
         plan = governor.plan(Scene(), wanted, Balance(exactness=place / places, pinned=True))
         if plan.setting is not None and (not frames or frames[-1].setting != plan.setting):

@@ -5,6 +5,7 @@
 Each setting draws the default scene at one sample a pixel, as a moving frame is. They take turns, and what counts is
 the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them. The
 picture is brought to full size as a browser does, and compared, as it is shown and in radiance, with a converged one.
+Besides the ladder, the errors of all settings are kept: what is drawn may be a rung at another size.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import json
 import statistics
 import sys
 import time
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -42,20 +43,45 @@ CLOSEST = 0.95
 """Cost of a rung over that of the one above it: what is nearer is not worth a change of setting."""
 
 
-def measure_ladder(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> tuple[Setting, ...]:
+@dataclass(frozen=True)
+class Measured:
+    """One setting of the grid."""
+
+    setting: Setting
+    radiance_error: float
+    """Root mean square error of the linear radiance, as `Setting.error` is of what is shown."""
+
+
+def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> list[Measured]:
+    """All settings, by scale, cut-off and bounces."""
+    stone = stone_of(scene.stones[0], {})
+    reference = renderer.picture(_with_optics(scene, REFERENCE_CUTOFF, BOUNCES[0]), stone, *size)
+    reference.refine(REFERENCE_SAMPLES)
+    return _measured(renderer, scene, stone, reference)
+
+
+def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
     """The best setting first, then the front of those that are cheaper: each has the least error for its cost.
 
     The first is the scene's own, whatever its error: a single sample of every pixel is sharper than a smaller picture,
     and so has more of the error that more samples would take away.
     """
-    stone = stone_of(scene.stones[0], {})
-    reference = renderer.picture(_with_optics(scene, REFERENCE_CUTOFF, BOUNCES[0]), stone, *size)
-    reference.refine(REFERENCE_SAMPLES)
-    best, *others = _measured(renderer, scene, stone, reference)
-    return tuple(
-        replace(r, cost=round(r.cost, 3), error=round(r.error, 4), radiance_error=round(r.radiance_error, 4))
-        for r in _rungs(best, others)
-    )
+    best, *others = (each.setting for each in measured)
+    return tuple(replace(r, cost=round(r.cost, 3), error=round(r.error, 4)) for r in _rungs(best, others))
+
+
+def errors_of(measured: list[Measured]) -> dict[str, Any]:
+    """As `culet.engine.setting_error` reads them: axes ascending, errors by scale, then cut-off, then bounces."""
+    shape = len(SCALES), len(CUTOFFS), len(BOUNCES)
+    shown = np.array([each.setting.error for each in measured]).reshape(shape)
+    radiance = np.array([each.radiance_error for each in measured]).reshape(shape)
+    return {
+        "scales": SCALES[::-1],
+        "cutoffs": CUTOFFS,
+        "max_bounces": BOUNCES[::-1],
+        "shown": shown[::-1, :, ::-1].round(4).tolist(),
+        "radiance": radiance[::-1, :, ::-1].round(4).tolist(),
+    }
 
 
 def _rungs(best: Setting, others: list[Setting]) -> list[Setting]:
@@ -74,7 +100,7 @@ def _front(settings: list[Setting], cost: float) -> list[Setting]:
     return rungs
 
 
-def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture) -> list[Setting]:
+def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture) -> list[Measured]:
     size = reference.width, reference.height
     settings = list(product(SCALES, CUTOFFS, BOUNCES))
     ratios: list[list[float]] = [[] for _ in settings]
@@ -87,7 +113,7 @@ def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture
     measured = []
     for setting, costs, picture in zip(settings, ratios, pictures, strict=True):
         radiance, shown = (_rms(_enlarged(p, size) - t) for p, t in zip(picture, truth, strict=True))
-        measured.append(Setting(*setting, statistics.median(costs), shown, radiance))
+        measured.append(Measured(Setting(*setting, statistics.median(costs), shown), radiance))
     return measured
 
 
@@ -119,12 +145,15 @@ def _with_optics(scene: Scene, cutoff: float, bounces: int) -> Scene:
 
 
 def main() -> None:
-    """Print the ladder as JSON, and what it was measured on."""
+    """Print ladder and errors as JSON, and what they were measured on."""
     renderer = Renderer()
-    rungs = [asdict(setting) for setting in measure_ladder(renderer, Scene())]
-    json.dump(
-        {"measured": {**renderer.describe(), "width": SIZE[0], "height": SIZE[1]}, "rungs": rungs}, sys.stdout, indent=2
-    )
+    measured = measure(renderer, Scene())
+    document = {
+        "measured": {**renderer.describe(), "width": SIZE[0], "height": SIZE[1]},
+        "rungs": [asdict(setting) for setting in ladder_of(measured)],
+        "errors": errors_of(measured),
+    }
+    json.dump(document, sys.stdout, indent=2)
     print()
 
 
