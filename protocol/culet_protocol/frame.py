@@ -64,7 +64,7 @@ FIELDS = (
     HeaderField("step", "Q", "number of the state shown; names the frame for frame.tga?step="),
     HeaderField("simulation_time", "d", "s since the stone was put at its start"),
     HeaderField("timestamp", "d", "s since the Unix epoch, engine's clock, when encoded"),
-    HeaderField("simulate_ms", "f", "milliseconds spent on the simulation for this frame"),
+    HeaderField("simulate_ms", "f", "milliseconds spent on the simulation before the picture's first sample"),
     HeaderField("render_ms", "f", "milliseconds spent on rendering, all samples"),
     HeaderField("encode_ms", "f", "milliseconds spent on tone mapping and encoding"),
     HeaderField("cut", "f", "mean weight of what the cut-off dropped, 0 to 1"),

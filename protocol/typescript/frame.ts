@@ -45,7 +45,7 @@ export interface Frame {
   simulationTime: number;
   /** s since the Unix epoch, engine's clock, when encoded */
   timestamp: number;
-  /** milliseconds spent on the simulation for this frame */
+  /** milliseconds spent on the simulation before the picture's first sample */
   simulateMs: number;
   /** milliseconds spent on rendering, all samples */
   renderMs: number;
