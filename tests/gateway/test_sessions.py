@@ -35,17 +35,26 @@ def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_i
     assert notices == [State(scene={"floor": {}}, falling=False), Viewers(count=1), Engine(status="down"), None]
 
 
-def test_the_demand_is_the_fastest_viewers_rate_at_the_size_last_asked_for(sessions: Sessions) -> None:
+def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_watched_longest(
+    sessions: Sessions,
+) -> None:
     session = Session("ab" * 16, {})
     assert session.wanted(0) == (0, *DEFAULT_SIZE)
-    small, large = sessions.join(session), sessions.join(session)
-    large.resize(1280, 720, 1)
-    small.resize(320, 180, 2)
-    assert session.wanted(3) == (60, 320, 180)
-    small.show(False)
-    assert session.wanted(3) == (60, 1280, 720), "a hidden viewer's size does not count"
-    large.show(False)
-    assert session.wanted(3) == (0, *DEFAULT_SIZE)
+    desk, phone = sessions.join(session), sessions.join(session)
+    now = phone.watching_since
+    desk.resize(1280, 720)
+    phone.resize(390, 844)
+    assert session.wanted(now) == (60, 1280, 720), "whoever said it last"
+    desk.resize(1920, 1080)
+    assert session.wanted(now) == (60, 1920, 1080)
+    desk.show(False, now + 1)
+    assert session.wanted(now + 1) == (60, 390, 844), "a hidden viewer's size does not count"
+    desk.show(True, now + 2)
+    assert session.wanted(now + 2) == (60, 390, 844), "who comes back has watched for less long"
+    session.viewers.remove(phone)
+    assert session.wanted(now + 3) == (60, 1920, 1080)
+    desk.show(False, now + 4)
+    assert session.wanted(now + 4) == (0, *DEFAULT_SIZE)
 
 
 def test_the_words_of_a_document_are_all_its_texts() -> None:

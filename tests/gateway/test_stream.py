@@ -17,7 +17,7 @@ from culet.scene import Scene
 from culet_protocol.close import CloseCode
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Balance, Orbit, Ping, ResetStone, Resize, ToggleFall, Visibility
-from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
+from gateway.running import FOREIGN, PATIENCE, SIZE, Endpoints, Gateway, eventually, gateway_before
 
 
 async def test_a_viewer_is_greeted_and_gets_frames_of_its_size_up_to_the_final_one(gateway: Gateway) -> None:
@@ -137,6 +137,14 @@ async def test_the_latest_resize_decides_the_size(gateway: Gateway) -> None:
         await viewer.final()
         await viewer.say(Resize(width=48, height=48))
         await viewer.until(lambda: (viewer.frames[-1].width, viewer.frames[-1].height) == (48, 48))
+
+
+async def test_a_second_viewer_does_not_change_the_size_until_the_first_hides_its_page(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(session) as desk, gateway.viewer(session, size=Resize(width=36, height=64)) as phone:
+        assert ((await phone.final()).width, phone.frames[-1].height) == (SIZE.width, SIZE.height)
+        await desk.say(Visibility(visible=False))
+        await phone.until(lambda: (phone.frames[-1].width, phone.frames[-1].height) == (36, 64))
 
 
 async def test_falling_frames_are_marked_and_a_reset_ends_them(gateway: Gateway) -> None:

@@ -40,11 +40,11 @@ def test_frames_that_come_without_credit_are_skipped_and_the_last_is_never_lost(
 
 def test_a_hidden_viewer_gets_the_latest_when_it_is_shown() -> None:
     viewer = Viewer(1, now=0)
-    viewer.show(False)
+    viewer.show(False, 0)
     message = offer(viewer, 1)
     assert viewer.next_frame(0) is None
     assert viewer.sleep_until() is None
-    viewer.show(True)
+    viewer.show(True, 0)
     assert viewer.next_frame(0) == message
 
 
@@ -53,7 +53,7 @@ def test_frames_are_wanted_once_the_size_is_known_or_the_viewer_had_time_to_say_
     assert viewer.rate(0) == 0
     assert viewer.rate(SETTLING_SECONDS) > 0
     viewer = Viewer(1, now=0)
-    viewer.resize(640, 360, 0.01)
+    viewer.resize(640, 360)
     assert viewer.rate(0.01) > 0
 
 

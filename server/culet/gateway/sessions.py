@@ -60,11 +60,11 @@ class Session:
             viewer.tell(notice)
 
     def wanted(self, now: float) -> tuple[float, int, int]:
-        """Frames per second that some viewer can take, and the size last asked for."""
+        """Frames per second that some viewer can take, and the size that the one who has watched longest asked for."""
         watching = [viewer for viewer in self.viewers if viewer.watches(now)]
         rate = max((viewer.rate(now) for viewer in watching), default=0.0)
         sized = [viewer for viewer in watching if viewer.size]
-        size = max(sized, key=lambda viewer: viewer.resized_at).size if sized else None
+        size = min(sized, key=lambda viewer: viewer.watching_since).size if sized else None
         return (rate, *(size or (self.demand[1:] if watching else DEFAULT_SIZE)))
 
 

@@ -178,10 +178,10 @@ class _Stream:
                 case Ping(time=sent):
                     self._viewer.tell(Pong(time=sent))
                 case Resize(width=width, height=height):
-                    self._viewer.resize(width, height, time.monotonic())
+                    self._viewer.resize(width, height)
                     self._start(self._gateway.sessions.update_demand(self._session))
                 case Visibility(visible=visible):
-                    self._viewer.show(visible)
+                    self._viewer.show(visible, time.monotonic())
                     self._start(self._gateway.sessions.update_demand(self._session))
                 case _:
                     await self._room.acquire()

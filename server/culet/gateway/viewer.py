@@ -24,7 +24,8 @@ class Viewer:
         self.number = number
         self.visible = True
         self.size: tuple[int, int] | None = None
-        self.resized_at = now
+        self.watching_since = now
+        """When it came, or was last seen again after it was hidden."""
         self.credit = Credit()
         self.wake = asyncio.Event()
         """Set when there may be something to send."""
@@ -41,12 +42,14 @@ class Viewer:
         """Whether frames are wanted: it can be seen, and it said its size or had the time to."""
         return self.visible and (self.size is not None or now - self._joined_at >= SETTLING_SECONDS)
 
-    def resize(self, width: int, height: int, now: float) -> None:
+    def resize(self, width: int, height: int) -> None:
         """The size it would like, in pixels."""
-        self.size, self.resized_at = (width, height), now
+        self.size = (width, height)
 
-    def show(self, visible: bool) -> None:
+    def show(self, visible: bool, now: float) -> None:
         """It can, or cannot, be seen."""
+        if visible and not self.visible:
+            self.watching_since = now
         self.visible = visible
         self.wake.set()
 
