@@ -40,6 +40,19 @@ def test_a_line_that_was_cut_off_in_the_middle_is_measured_again(tmp_path: Path)
         assert list(journal.points) == ["a", "b"]
 
 
+def test_points_that_belong_together_are_kept_together_or_not_at_all(tmp_path: Path) -> None:
+    path = tmp_path / "j"
+    with Journal(path, IDENTITY) as journal:
+        journal.add(point("a"))
+        journal.add(point("b"), point("c"))
+    whole = path.read_bytes()
+    with Journal(path, IDENTITY) as journal:
+        assert list(journal.points) == ["a", "b", "c"]
+    path.write_bytes(whole[: whole.index(b'"c"')])
+    with Journal(path, IDENTITY) as journal:
+        assert list(journal.points) == ["a"]
+
+
 def test_points_are_on_the_disk_before_the_journal_is_closed(tmp_path: Path) -> None:
     with Journal(tmp_path / "j", IDENTITY) as journal:
         journal.add(point("a"))

@@ -15,7 +15,9 @@ from culet.geometry.load import stone_of
 from culet.rendering.device import Device
 from culet.rendering.panoramas import Panorama, light_box
 from culet.scene import Scene
+from culet.study import race, studies
 from culet.study.frame import Frame, Studied
+from culet.study.journal import Journal
 from culet.study.knobs import base_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
@@ -150,6 +152,22 @@ def test_a_sky_from_a_file_is_what_is_rendered(device: Device) -> None:
         picture.refine()
         means.append(picture.linear().mean())
     assert means[1] == pytest.approx(2 * means[0], rel=1e-5)
+
+
+def test_a_race_is_run_once_and_tells_its_references_error(
+    device: Device, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(race, "mitsuba_missing", lambda: True)
+    effort = TINY._replace(width=16, height=9, race_samples=16, race_seconds=0.2)
+    with Journal(tmp_path / "j", {"study": "rendering"}) as journal:
+        first, *_ = studies._run_race(Renderers(device), effort, journal, Told(), tmp_path)
+        assert {point.knobs["renderer"] for point in journal.points.values()} == set(race.ENTRANTS)
+        assert {point.knobs["samples"] for point in journal.points.values()} <= {1, 2, 4}
+    assert re.search(r"an RMSE of some 0\.\d+\. It is of 12 samples", first)
+    before = (tmp_path / "j").read_text()
+    with Journal(tmp_path / "j", {"study": "rendering"}) as journal:
+        assert studies._run_race(Renderers(device), effort, journal, Told(), tmp_path)[0] == first
+    assert (tmp_path / "j").read_text() == before
 
 
 def test_a_finished_study_measures_nothing_again(finished: Report, folder: Path) -> None:

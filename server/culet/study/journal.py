@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Self
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from culet.errors import InputError
 from culet.study.report import Point
 
+_POINTS = TypeAdapter(list[Point])
+
 
 class Journal:
-    """The first line says which study it is; each line after it is a point that is safely on the disk."""
+    """The first line says which study it is; each line after it holds points that are safely on the disk."""
 
     def __init__(self, path: Path, identity: dict[str, object], *, fresh: bool = False) -> None:
         """Open or begin it; `fresh` forgets what is there. InputError if it belongs to another study."""
@@ -24,8 +27,7 @@ class Journal:
         if lines:
             self._check(lines[0], identity)
             for line in lines[1:]:
-                point = self._read(line)
-                self.points[point.key] = point
+                self._keep(self._read(line))
             self._file = path.open("a", encoding="utf-8")
         else:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -41,10 +43,13 @@ class Journal:
     def __exit__(self, *_: object) -> None:
         self._file.close()
 
-    def add(self, point: Point) -> None:
-        """Write it down; on return it outlives the process."""
-        self._append(point.model_dump(mode="json"))
-        self.points[point.key] = point
+    def add(self, *points: Point) -> None:
+        """Write them down, all or, if the process ends meanwhile, none; on return they outlive it."""
+        self._append([point.model_dump(mode="json") for point in points])
+        self._keep(points)
+
+    def _keep(self, points: Iterable[Point]) -> None:
+        self.points.update({point.key: point for point in points})
 
     def _append(self, value: object) -> None:
         self._file.write(json.dumps(value, allow_nan=False) + "\n")
@@ -78,11 +83,11 @@ class Journal:
                 f"{self.path} is of another study ({told}); give another folder, or --fresh to measure anew"
             )
 
-    def _read(self, line: str) -> Point:
+    def _read(self, line: str) -> list[Point]:
         try:
-            return Point.model_validate_json(line)
+            return _POINTS.validate_json(line)
         except ValidationError as error:
-            raise InputError(f"{self.path} holds a line that is no point; --fresh measures anew") from error
+            raise InputError(f"{self.path} holds a line without points; --fresh measures anew") from error
 
 
 def _short(value: object) -> str:

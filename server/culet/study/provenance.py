@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import platform
 import subprocess
 from collections.abc import Mapping
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 
 import culet
 import culet_kernels
 
-IMAGE_PACKAGES = ("geometry", "optics", "rendering", "scene")
-"""Whose code decides what a picture looks like, besides the kernels."""
-MOTION_PACKAGES = ("geometry", "scene", "simulation")
-"""And how a stone moves."""
+IMAGE_CODE = ("geometry", "optics", "rendering", "scene")
+"""Packages whose code decides what a picture looks like, besides the kernels."""
+REFERENCE_CODE = (*IMAGE_CODE, "study/frame.py", "study/knobs.py", "study/reference.py", "study/renderers.py")
+"""What a kept reference depends on: not on how others are judged by it."""
+RENDERING_STUDY = (*IMAGE_CODE, "study")
+"""What the points of each study depend on."""
+SIMULATION_STUDY = ("geometry", "scene", "simulation", "study")
+STREAMING_STUDY = (*RENDERING_STUDY, "simulation")
+
+PEERS = ("mitsuba", "numpy", "pillow", "pyopencl", "scikit-image", "scipy", "simplejpeg")
+"""Packages of others that are measured, or measure."""
 
 
 @cache
@@ -41,16 +50,26 @@ def processor() -> str:
 
 
 @cache
-def code_digest(packages: tuple[str, ...]) -> str:
-    """Of the kernels and of these packages as they are on the disk, committed or not."""
+def code_digest(names: tuple[str, ...]) -> str:
+    """Of the kernels and of these packages and modules of culet as they are on the disk, committed or not."""
     digest = hashlib.sha256()
     for name in culet_kernels.NAMES:
         digest.update(culet_kernels.source(name).encode())
     root = Path(culet.__file__).parent
-    for package in packages:
-        for path in sorted((root / package).rglob("*.py")):
+    for name in names:
+        place = root / name
+        for path in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
             digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def peer_versions() -> str:
+    """Of PEERS, those that are installed."""
+    found = []
+    for name in PEERS:
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            found.append(f"{name} {metadata.version(name)}")
+    return ", ".join(found)
 
 
 def provenance(device: Mapping[str, str | int]) -> dict[str, str | int]:

@@ -24,8 +24,7 @@ from culet.study.convergence import resting_error, time_to
 from culet.study.frame import Frame, Studied
 from culet.study.image_error import radiance_error
 from culet.study.knobs import base_knobs
-from culet.study.mitsuba import LEAST_LLVM
-from culet.study.reference import Reference
+from culet.study.mitsuba import LEAST_LLVM, SAMPLERS
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point, Race
 
@@ -50,10 +49,12 @@ ENTRANTS = {
     "culet, cut-off 0.05": Optics(cutoff=0.05),
     "classic estimator": Optics(estimator="classic", fresnel="schlick", max_bounces=12),
 }
-
-
 TURNS = 3
 """Pictures of culet's."""
+PATIENCE = 300.0
+"""s for Mitsuba to compile, besides LENGTHENED times what it is to render."""
+LENGTHENED = 20
+"""The spread sampler renders everything twice, each time twice as long as before; a busy machine does the rest."""
 NO_LLVM = (
     f"No libLLVM of version {LEAST_LLVM} or newer was found, so that Mitsuba 3 renders by a scalar variant, which is "
     "slower: apt-get install libllvm19, or name the library by DRJIT_LIBLLVM_PATH."
@@ -65,8 +66,10 @@ def race_frame(width: int, height: int) -> Frame:
     return Frame(Studied(RACE, stone_of(RACE.stones[0], {})), width, height)
 
 
-def run_culet(name: str, renderers: Renderers, frame: Frame, reference: Reference, seconds: float) -> Iterator[Point]:
-    """One sample of each pixel after the other, judged at every power of two, for at most `seconds`.
+def run_culet(
+    name: str, renderers: Renderers, frame: Frame, reference: NDArray[np.float64], most: int, seconds: float
+) -> Iterator[Point]:
+    """At most `most` samples of each pixel, one after the other, judged at every power of two, for at most `seconds`.
 
     Several pictures take turns, and the median of their times counts: the whole run is so short that anything else on
     the machine would be seen in it.
@@ -75,11 +78,7 @@ def run_culet(name: str, renderers: Renderers, frame: Frame, reference: Referenc
     knobs = base_knobs(scene, frame.subject.stone, renderers.device.lanes)
     renderers.picture(knobs, frame).refine(1)  # compiles
     pictures = [renderers.picture(knobs, frame) for _ in range(TURNS)]
-    taken, processor, most = (
-        0.0,
-        0.0,
-        max(reference.images) // 4,
-    )  # it holds the same samples: many more
+    taken = processor = 0.0
     while TURNS * taken < seconds and pictures[0].samples < most:
         before = time.process_time()
         for picture in pictures:
@@ -87,12 +86,22 @@ def run_culet(name: str, renderers: Renderers, frame: Frame, reference: Referenc
         processor += (time.process_time() - before) / TURNS
         taken += statistics.median(picture.seconds for picture in pictures)
         if pictures[0].samples.bit_count() == 1:
-            rmse = radiance_error(pictures[0].linear(), reference.image)["rmse"]
+            rmse = radiance_error(pictures[0].linear(), reference)["rmse"]
             yield _point(name, pictures[0].samples, taken, processor, rmse)
 
 
-def run_mitsuba(frame: Frame, reference: NDArray[np.float64], spp: int, seconds: float) -> tuple[list[Point], str]:
-    """For some `seconds` with each of its samplers, beginning with `spp` samples; and why not, if there is nothing."""
+def run_mitsuba(
+    frame: Frame,
+    reference: NDArray[np.float64],
+    spp: int,
+    seconds: float,
+    samplers: Sequence[str] = SAMPLERS,
+    command: Sequence[str] = (sys.executable, "-m", "culet.study.mitsuba"),
+) -> tuple[list[list[Point]], str]:
+    """For some `seconds` with each of these samplers, beginning with `spp` samples.
+
+    Returns the points of each sampler that came to its end, and what went wrong with the others.
+    """
     scene, stone, _ = frame.subject
     camera, material = scene.camera, scene.stones[0].material
     with tempfile.TemporaryDirectory() as folder:
@@ -102,29 +111,43 @@ def run_mitsuba(frame: Frame, reference: NDArray[np.float64], spp: int, seconds:
         order = {
             "stone": str(mesh), "reference": str(image), "ior": list(getattr(material, "ior")), "spp": spp,  # noqa: B009
             "size": [frame.width, frame.height], "eye": camera.position, "target": camera.target,
-            "fov": camera.fov_degrees, "seconds": seconds,
+            "fov": camera.fov_degrees, "seconds": seconds, "samplers": list(samplers),
         }  # fmt: skip
-        run = subprocess.run(
-            [sys.executable, "-m", "culet.study.mitsuba"],
-            input=json.dumps(order), capture_output=True, text=True, check=False,
-        )  # fmt: skip
-    answers = [json.loads(line) for line in run.stdout.splitlines() if line.startswith("{")]
-    points = [
-        _point(
-            f"Mitsuba 3, {found['sampler']}",
-            found["samples"],
-            found["seconds"],
-            found["processor_seconds"],
-            found["rmse"],
-            variant=found["variant"],
+        output, problem = _told(command, json.dumps(order), PATIENCE + LENGTHENED * seconds)
+    answers = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
+    ended = [found["ended"] for found in answers if "ended" in found]
+    runs = [
+        [
+            _point(
+                mitsuba_name(sampler), found["samples"], found["seconds"], found["processor_seconds"], found["rmse"],
+                variant=found["variant"],
+            )
+            for found in answers
+            if found.get("sampler") == sampler
+        ]
+        for sampler in ended
+    ]  # fmt: skip
+    missing = [mitsuba_name(sampler) for sampler in samplers if sampler not in ended]
+    if missing:
+        return runs, f"{' and '.join(missing)}: no whole run, and so no part in the race: {problem}"
+    return runs, ""
+
+
+def _told(command: Sequence[str], order: str, seconds: float) -> tuple[str, str]:
+    """What a process prints when it is given that order, and its last words if it fails, or takes longer."""
+    try:
+        run = subprocess.run(  # noqa: S603 - this very interpreter
+            command, input=order.encode(), capture_output=True, check=False, timeout=seconds
         )
-        for found in answers
-        if (found["samples"] // spp).bit_count() == 1
-    ]
-    if not points:
-        last = (run.stderr.strip() or f"exit code {run.returncode}").splitlines()[-1]
-        return [], f"Mitsuba 3 is installed but renders nothing here, and does not take part in the race: {last}"
-    return points, ""
+    except subprocess.TimeoutExpired as error:
+        return (error.stdout or b"").decode(), f"not done after {seconds:g} s"
+    words = run.stderr.decode(errors="replace").strip() or f"exit code {run.returncode}"
+    return run.stdout.decode(), words.splitlines()[-1]
+
+
+def mitsuba_name(sampler: str) -> str:
+    """As an entrant."""
+    return f"Mitsuba 3, {sampler}"
 
 
 def mitsuba_missing() -> bool:

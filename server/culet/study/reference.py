@@ -23,9 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 from platformdirs import user_cache_path
 
+from culet.rendering.device import Device
+from culet.rendering.sums import RATE
 from culet.study.frame import Frame
 from culet.study.knobs import Knobs
-from culet.study.provenance import IMAGE_PACKAGES, code_digest
+from culet.study.provenance import REFERENCE_CODE, code_digest
 from culet.study.renderers import Renderers
 
 CUTOFF = 1e-5
@@ -44,14 +46,28 @@ class Reference:
     images: dict[int, NDArray[np.float64]]
     """(height, width, 3) linear radiance, by samples: 1, 2, 4 ... and the last, which is the reference."""
     error: float
-    """Its own, as its two halves let expect: RMSE in radiance."""
+    """Its own, as the last two doublings of its samples let expect: RMSE in radiance."""
     seconds: float
     """It took; 0 if it was kept from before."""
 
     @property
     def image(self) -> NDArray[np.float64]:
         """The converged one."""
-        return self.images[max(self.images)]
+        return self.images[self.samples]
+
+    @property
+    def samples(self) -> int:
+        """Of each of its pixels."""
+        return max(self.images)
+
+    def after(self, samples: int) -> Reference:
+        """Of all samples but the first ones, whose picture must be among `images`: shares none with a picture of those.
+
+        It has nothing on the way, and the error that fewer samples have.
+        """
+        rest = self.samples - samples
+        image = (self.samples * self.image - samples * self.images[samples]) / rest
+        return Reference({rest: image}, self.error * (self.samples / rest) ** RATE, 0.0)
 
 
 def reference_knobs(base: Knobs, kind: str, lanes: int) -> Knobs:
@@ -76,7 +92,7 @@ def make_reference(
 ) -> Reference:
     """From the cache, or rendered. `steps` keeps the pictures on the way too. `cache`: a folder, the user's if None."""
     folder = cache or user_cache_path("culet") / "study"
-    path = folder / f"{_digest(frame, knobs, samples, steps=steps)}.npz"
+    path = folder / f"{_digest(renderers.device, frame, knobs, samples, steps=steps)}.npz"
     if path.exists():
         with np.load(path) as kept:
             images = {int(name): kept[name] for name in kept.files if name != "error"}
@@ -95,11 +111,14 @@ def make_reference(
     return reference
 
 
-def _digest(frame: Frame, knobs: Knobs, samples: int, *, steps: bool) -> str:
+def _digest(device: Device, frame: Frame, knobs: Knobs, samples: int, *, steps: bool) -> str:
     digest = hashlib.sha256()
     scene, stone, panorama = frame.subject
     optics = knobs.applied_to(scene).model_dump_json(exclude={"film", "simulation"})
-    facts = (optics, knobs.key, frame.width, frame.height, samples, steps, code_digest(IMAGE_PACKAGES))
+    facts = (
+        optics, knobs.key, frame.width, frame.height, samples, steps, device.name, device.driver,
+        code_digest(REFERENCE_CODE),
+    )  # fmt: skip
     digest.update(repr(facts).encode())
     for array in (stone.vertices, stone.triangles, *(() if panorama is None else (panorama,))):
         digest.update(np.ascontiguousarray(array).tobytes())

@@ -9,18 +9,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from culet.rendering.device import open_device
+from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
 from culet.study import race, rendering, simulation, streaming
 from culet.study.frame import Frame, Studied
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.limits import measure_limits
-from culet.study.mitsuba import find_llvm
+from culet.study.mitsuba import SAMPLERS, find_llvm
 from culet.study.outcome import device_facts, rendering_report, simulation_report, streaming_report, write
 from culet.study.pictures import write_pictures
-from culet.study.provenance import IMAGE_PACKAGES, MOTION_PACKAGES, code_digest, processor
-from culet.study.reference import make_reference, reference_knobs
+from culet.study.provenance import (
+    RENDERING_STUDY,
+    SIMULATION_STUDY,
+    STREAMING_STUDY,
+    code_digest,
+    peer_versions,
+    processor,
+)
+from culet.study.reference import Reference, make_reference, reference_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
 
@@ -79,7 +86,7 @@ def study_rendering(
         for setting in settings_of(base, quick=quick)
         if groups is None or setting.group == "base" or setting.group in groups
     ]
-    identity = _identity("rendering", subject, quick, code_digest(IMAGE_PACKAGES)) | effort._asdict()
+    identity = _identity("rendering", subject, quick, code_digest(RENDERING_STUDY), device) | effort._asdict()
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         references = []
         for kind, samples in (("model", effort.model_samples), ("physics", effort.physics_samples)):
@@ -122,6 +129,13 @@ def _references_note(effort: Effort, judges: rendering.Judges) -> str:
     )
 
 
+def _race_note(judge: Reference) -> str:
+    return (
+        f"The race's reference has itself an RMSE of some {judge.error:.2g}. It is of {judge.samples} samples, after "
+        "those of the same sequence that culet may take: it shares none with anybody who takes part."
+    )
+
+
 def _run_race(
     renderers: Renderers, effort: Effort, journal: Journal, progress: Progress, cache: Path | None
 ) -> list[str]:
@@ -134,31 +148,33 @@ def _run_race(
     with progress("reference of the race", effort.race_samples) as advance:
         reference = make_reference(
             renderers, frame, reference_knobs(base, "model", lanes // 2 or 1), effort.race_samples,
-            lambda part: advance("", round(part * effort.race_samples)), steps=False, cache=cache,
+            lambda part: advance("", round(part * effort.race_samples)), steps=True, cache=cache,
         )  # fmt: skip
+    most = effort.race_samples // 4
+    judge = reference.after(most)
+    notes = [_race_note(judge)]
     ran = {str(point.knobs["renderer"]) for point in journal.points.values() if point.group == "race"}
     with progress("race", len(race.ENTRANTS) + 1) as advance:
         for number, name in enumerate(race.ENTRANTS):
             advance(name, number)
             if name not in ran:
-                for point in list(race.run_culet(name, renderers, frame, reference, effort.race_seconds)):
-                    journal.add(point)
+                journal.add(*race.run_culet(name, renderers, frame, judge.image, most, effort.race_seconds))
         if race.mitsuba_missing():
-            return ["Mitsuba 3 is not installed, and does not take part in the race (pip install mitsuba)."]
+            return [*notes, "Mitsuba 3 is not installed, and does not take part in the race (pip install mitsuba)."]
         advance("Mitsuba 3", len(race.ENTRANTS))
-        if not any(name.startswith("Mitsuba") for name in ran):
-            points, words = race.run_mitsuba(frame, reference.image, effort.race_pass, effort.race_seconds)
-            for point in points:
-                journal.add(point)
-            if words:
-                return [words]
-    return [] if find_llvm() else [race.NO_LLVM]
+        samplers = [sampler for sampler in SAMPLERS if race.mitsuba_name(sampler) not in ran]
+        if samplers:
+            runs, words = race.run_mitsuba(frame, judge.image, effort.race_pass, effort.race_seconds, samplers)
+            for points in runs:
+                journal.add(*points)
+            notes += [words] if words else []
+    return notes if find_llvm() else [*notes, race.NO_LLVM]
 
 
 def study_simulation(subject: Studied, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
     """Sweep integrators and step sizes on the scene's stone."""
     scene, stone, _ = subject
-    identity = _identity("simulation", subject, quick, code_digest(MOTION_PACKAGES))
+    identity = _identity("simulation", subject, quick, code_digest(SIMULATION_STUDY))
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("motions", len(simulation.points_of(stone, quick=quick))) as advance:
             simulation.measure_all(stone, journal, quick=quick, progress=advance)
@@ -174,7 +190,7 @@ def study_streaming(
     """Sweep codecs and qualities on the scene's frames, moving and still."""
     device = open_device()
     width, height = size
-    identity = _identity("streaming", subject, quick, code_digest(IMAGE_PACKAGES))
+    identity = _identity("streaming", subject, quick, code_digest(STREAMING_STUDY), device)
     identity |= {"width": width, "height": height}
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("frames", 1):
@@ -188,7 +204,7 @@ def study_streaming(
     return report
 
 
-def _identity(study: str, subject: Studied, quick: bool, code: str) -> dict[str, object]:
+def _identity(study: str, subject: Studied, quick: bool, code: str, device: Device | None = None) -> dict[str, object]:
     """What must be the same for points to belong together."""
     scene, stone, panorama = subject
     shape = hashlib.sha256(stone.vertices.tobytes() + stone.triangles.tobytes())
@@ -196,5 +212,6 @@ def _identity(study: str, subject: Studied, quick: bool, code: str) -> dict[str,
     text = hashlib.sha256(scene.model_dump_json().encode())
     return {
         "study": study, "scene": text.hexdigest()[:16], "stone": shape.hexdigest()[:16], "sky": sky,
-        "quick": quick, "processor": processor(), "code": code,
+        "quick": quick, "processor": processor(), "code": code, "packages": peer_versions(),
+        **({} if device is None else device_facts(device)),
     }  # fmt: skip
