@@ -73,14 +73,14 @@ def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
 def errors_of(measured: list[Measured]) -> dict[str, Any]:
     """As `culet.engine.setting_error` reads them: axes ascending, errors by scale, then cut-off, then bounces."""
     shape = len(SCALES), len(CUTOFFS), len(BOUNCES)
-    shown = np.array([each.setting.error for each in measured]).reshape(shape)
-    radiance = np.array([each.radiance_error for each in measured]).reshape(shape)
+    shown = np.array([round(each.setting.error, 4) for each in measured]).reshape(shape)
+    radiance = np.array([round(each.radiance_error, 4) for each in measured]).reshape(shape)
     return {
         "scales": SCALES[::-1],
         "cutoffs": CUTOFFS,
         "max_bounces": BOUNCES[::-1],
-        "shown": shown[::-1, :, ::-1].round(4).tolist(),
-        "radiance": radiance[::-1, :, ::-1].round(4).tolist(),
+        "shown": shown[::-1, :, ::-1].tolist(),
+        "radiance": radiance[::-1, :, ::-1].tolist(),
     }
 
 
