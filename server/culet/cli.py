@@ -165,7 +165,7 @@ def bench(
     from rich.console import Console
 
     from culet.rendering.renderer import Renderer
-    from culet.study.baseline import last_line
+    from culet.study.baseline import doubts, last_line
     from culet.study.bench import measure_cases, measure_features
     from culet.study.bench import record as record_line
     from culet.study.cases import FEATURE_CASES
@@ -189,6 +189,8 @@ def bench(
         line = record_line(renderer, width, height, timings)
         if baseline is not None:
             print_comparison(console, baseline, json.loads(line))
+        for doubt in doubts(json.loads(line)) if out is not None else ():
+            console.print(f"note: no line to compare others with: {doubt}", soft_wrap=True)
         append(line)
 
 

@@ -11,9 +11,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from culet.errors import InputError
+from culet.study.ratio import ratio, shown
 
 FIGURES = ("seconds", "processor_seconds", "segments", "cut", "rmse")
 """That are compared; all better if less."""
+WORKED = 0.75
+"""Part of a device's units that work at least while a frame is rendered on an idle machine."""
+Cases = dict[str, dict[str, Any]]
+"""By name: a scene's figures."""
 TIMES = frozenset({"seconds", "processor_seconds"})
 CONDITIONS = ("processor", "device", "units", "width", "height")
 """What must be the same for times to be compared as they are."""
@@ -24,7 +29,7 @@ class CaseRatios(NamedTuple):
 
     name: str
     ratios: dict[str, float | None]
-    """After / before by figure; None where one of them lacks it."""
+    """After / before by figure; None where one of them lacks it, infinite where something has come out of nothing."""
 
 
 class Comparison(NamedTuple):
@@ -36,11 +41,11 @@ class Comparison(NamedTuple):
     remarks: list[str]
 
 
-def compare(before: dict[str, Any], after: dict[str, Any]) -> Comparison:
+def compare_benches(before: dict[str, Any], after: dict[str, Any]) -> Comparison:
     """Ratios after / before of the scenes that both have."""
     old_facts, new_facts = _facts(before), _facts(after)
     remarks = [
-        f"{name} differs: {_shown(old_facts.get(name))}, then {_shown(new_facts.get(name))}"
+        f"{name} differs: {shown(old_facts.get(name))}, then {shown(new_facts.get(name))}"
         for name in {**old_facts, **new_facts}
         if old_facts.get(name) != new_facts.get(name)
     ]
@@ -52,10 +57,11 @@ def compare(before: dict[str, Any], after: dict[str, Any]) -> Comparison:
     for words, names in (("before", [n for n in old if n not in new]), ("after", [n for n in new if n not in old])):
         if names:
             remarks.append(f"only {words}: {', '.join(names)}")
-    cases = [
-        CaseRatios(name, {figure: _ratio(old, new, name, shared[0], figure, relative) for figure in FIGURES})
-        for name in shared
+    sides = [
+        (old, _units(before, old, shared, relative=relative)),
+        (new, _units(after, new, shared, relative=relative)),
     ]
+    cases = [CaseRatios(name, {figure: _ratio(sides, name, figure) for figure in FIGURES}) for name in shared]
     return Comparison(cases, relative, remarks)
 
 
@@ -78,18 +84,31 @@ def _facts(record: dict[str, Any]) -> dict[str, object]:
     return {**(record.get("machine") or {}), **{name: record.get(name) for name in ("flags", "width", "height")}}
 
 
-def _ratio(
-    old: dict[str, Any], new: dict[str, Any], name: str, first: str, figure: str, relative: bool
-) -> float | None:
-    sides = []
-    for cases in (old, new):
-        value, unit = cases[name].get(figure), cases[first].get(figure) if relative and figure in TIMES else 1.0
-        if value is None or unit is None:
+def _units(record: dict[str, Any], cases: Cases, shared: list[str], *, relative: bool) -> dict[str, float | None]:
+    """What a figure of one side is a multiple of: segments of the pixels, `relative` times of the first scene's."""
+    units: dict[str, float | None] = {"segments": record.get("width", 0) * record.get("height", 0)}
+    return units | ({figure: cases[shared[0]].get(figure) for figure in TIMES} if relative and shared else {})
+
+
+def _ratio(sides: list[tuple[Cases, dict[str, float | None]]], name: str, figure: str) -> float | None:
+    values = []
+    for cases, units in sides:
+        value, unit = cases[name].get(figure), units.get(figure, 1.0)
+        if value is None or not unit:
             return None
-        sides.append(value / unit if unit else 0.0)
-    return 1.0 if sides[0] == sides[1] else sides[1] / sides[0] if sides[0] else None
+        values.append(value / unit)
+    return ratio(*values)
 
 
-def _shown(value: object) -> str:
-    text = json.dumps(value, default=str)
-    return text if len(text) <= 160 else text[:157] + "..."
+def doubts(record: dict[str, Any]) -> list[str]:
+    """Why a line should not be what others are compared with: of code that nobody else has, or of a busy machine."""
+    found = []
+    commit, units = str(record.get("commit")), record["machine"].get("units") or 1
+    if commit.endswith("-dirty") or commit == "unknown":
+        found.append(f"the code is of no commit ({commit})")
+    wall, spent = (sum(case[figure] for case in record["cases"]) for figure in ("seconds", "processor_seconds"))
+    if spent < WORKED * units * wall:
+        found.append(
+            f"the machine was busy with something else: {spent / wall:.2f} of {units} units worked on the frames"
+        )
+    return found

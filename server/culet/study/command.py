@@ -125,11 +125,11 @@ def governor(
 @study_app.command()
 def diff(before: ReportFile, after: ReportFile) -> None:
     """Compare two reports of the same study, as ratios after / before."""
-    from culet.study.comparison import compare
+    from culet.study.comparison import compare_reports
     from culet.study.report import Report
 
     with _errors():
-        _print_difference(compare(Report.read(before), Report.read(after)))
+        _print_difference(compare_reports(Report.read(before), Report.read(after)))
 
 
 @study_app.command("compare-bench")

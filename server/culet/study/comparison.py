@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 import statistics
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from culet.errors import InputError
+from culet.study.ratio import ratio, shown
 from culet.study.report import Report
 
 
@@ -23,10 +23,8 @@ class Ratio(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """after / before, of magnitudes; infinite if there was nothing before."""
-        if self.before == self.after:
-            return 1.0
-        return abs(self.after / self.before) if self.before else math.inf
+        """after / before."""
+        return ratio(self.before, self.after)
 
 
 class Difference(NamedTuple):
@@ -38,12 +36,12 @@ class Difference(NamedTuple):
     warnings: list[str]
 
 
-def compare(before: Report, after: Report) -> Difference:
+def compare_reports(before: Report, after: Report) -> Difference:
     """Ratios of what is better if less or more, of the points that both have; InputError for different studies."""
     if before.study != after.study:
         raise InputError(f"expected two reports of the same study, got {before.study} and {after.study}")
     warnings = [
-        f"{name} differ: {_shown(old)}, then {_shown(new)}"
+        f"{name} differ: {shown(old)}, then {shown(new)}"
         for name, old, new in (("scenes", before.scene, after.scene), ("settings", before.settings, after.settings))
         if old != new
     ]
@@ -70,12 +68,7 @@ def compare(before: Report, after: Report) -> Difference:
 def medians(ratios: Iterable[Ratio]) -> dict[str, float]:
     """Median ratio of each figure, over the points where it is finite."""
     by_figure: dict[str, list[float]] = {}
-    for ratio in ratios:
-        if math.isfinite(ratio.ratio):
-            by_figure.setdefault(ratio.figure, []).append(ratio.ratio)
+    for each in ratios:
+        if math.isfinite(each.ratio):
+            by_figure.setdefault(each.figure, []).append(each.ratio)
     return {name: statistics.median(values) for name, values in by_figure.items()}
-
-
-def _shown(value: object) -> str:
-    text = json.dumps(value, default=str)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from culet.study.baseline import FIGURES, Comparison, compare
+from culet.study.baseline import FIGURES, Comparison, compare_benches
 from culet.study.bench import FeatureCost, Timing
 
 
@@ -55,7 +55,7 @@ def ratio_table(comparison: Comparison) -> Table:
 
 def print_comparison(console: Console, before: dict[str, Any], after: dict[str, Any]) -> None:
     """Of two lines of `culet bench -o`, with what each was measured on."""
-    compared = compare(before, after)
+    compared = compare_benches(before, after)
     console.print(f"against commit {before.get('commit')} of {str(before.get('made'))[:10]}")
     for remark in compared.remarks:
         console.print(f"note: {remark}", soft_wrap=True)
