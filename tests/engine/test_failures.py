@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 import zmq.asyncio
 
 from culet.engine.drawing import Picture
@@ -18,6 +20,8 @@ from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.simulation.models import MODELS
+from culet.simulation.state import RigidState
 from culet_protocol.frame import Flags
 from engine.peer import Peer, Watcher
 
@@ -42,15 +46,28 @@ class FailingRenderer:
         return self.renderer.describe()
 
 
-async def test_a_scene_that_cannot_be_rendered_is_a_problem_of_its_session_alone(tmp_path: Path) -> None:
-    control, frames = f"ipc://{tmp_path}/control", f"ipc://{tmp_path}/frames"
+@asynccontextmanager
+async def served(folder: Path) -> AsyncIterator[tuple[Peer, Callable[[str], Watcher]]]:
+    """An engine in this process; a peer of it, and what watches a session."""
+    control, frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
     context, stopping, thread = zmq.asyncio.Context(), asyncio.Event(), ThreadPoolExecutor(1)
     engine = Engine(context, control, [frames], Limits(), FailingRenderer(), thread, encode_still)
     running = asyncio.create_task(engine.run_until(stopping))
     peer = Peer(context, control)
     try:
-        good = Watcher(context, frames, await peer.open(GOOD))
-        bad = Watcher(context, frames, await peer.open(REFUSED))
+        yield peer, lambda session: Watcher(context, frames, session)
+    finally:
+        stopping.set()
+        await running
+        peer.reader.cancel()
+        thread.shutdown()
+        context.destroy(linger=0)
+
+
+async def test_a_scene_that_cannot_be_rendered_is_a_problem_of_its_session_alone(tmp_path: Path) -> None:
+    async with served(tmp_path) as (peer, watch):
+        good = watch(await peer.open(GOOD))
+        bad = watch(await peer.open(REFUSED))
         problem = await peer.told(lambda told: told["type"] == "session_problem")
         assert (problem["session"], problem["detail"]) == (peer.session, "the kernel does not build")
 
@@ -63,9 +80,27 @@ async def test_a_scene_that_cannot_be_rendered_is_a_problem_of_its_session_alone
 
         assert (await peer.control("set_scene", scene=GOOD))["status"] == 200
         assert (await bad.next()).session.hex() == peer.session  # an edit that helps
-    finally:
-        stopping.set()
-        await running
-        peer.reader.cancel()
-        thread.shutdown()
-        context.destroy(linger=0)
+
+
+async def test_a_stone_that_cannot_be_simulated_is_a_problem_of_its_session_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> RigidState:
+        raise ZeroDivisionError("0 / 0")
+
+    monkeypatch.setitem(MODELS, "classic", MODELS["classic"]._replace(step=fail))
+    async with served(tmp_path) as (peer, watch):
+        falling = watch(await peer.open({"simulation": {"model": "classic"}} | GOOD))
+        await peer.demand()
+        await falling.next()
+        assert (await peer.control("toggle_fall"))["result"]["falling"]
+        problem = await peer.told(lambda told: told["type"] == "session_problem")
+        assert (problem["session"], problem["detail"]) == (peer.session, "simulating failed: ZeroDivisionError: 0 / 0")
+        state = await peer.told(lambda told: told["type"] == "session_state" and not told["falling"])
+        assert state["session"] == peer.session
+        assert not state["snapshot"]["falling"]  # another engine does not run into it again
+
+        await falling.until(lambda frame: Flags.FINAL in frame.flags)  # it is still shown
+        other = watch(await peer.open(GOOD))
+        await other.until(lambda frame: Flags.FINAL in frame.flags)
+        assert (await peer.status())["problems"] == 1

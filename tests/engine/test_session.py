@@ -7,6 +7,7 @@ from culet.engine.snapshot import Snapshot
 from culet.errors import InputError, NotFoundError
 from culet.geometry.load import stone_of
 from culet.scene import Scene
+from culet.simulation.clock import MOST_WORK, WORK_SHARE
 
 NAME = "0123456789abcdef" * 2
 SCENE = Scene()
@@ -106,3 +107,82 @@ def test_a_scene_without_a_stone_is_a_session_too() -> None:
     assert session.pose() is None
     assert session.shown.scene == empty
     assert Session.restored(NAME, empty, None, session.snapshot()).shown.scene == empty
+
+
+class Processor:
+    """A timer that each step of a session's stone moves on by so much."""
+
+    def __init__(self, session: Session, seconds_a_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now, self.steps = 0.0, 0
+        simulation = session._simulation
+        assert simulation is not None
+        step = simulation.step
+
+        def costly() -> None:
+            self.now += seconds_a_step
+            self.steps += 1
+            step()
+
+        monkeypatch.setattr(simulation, "step", costly)
+        monkeypatch.setattr(session, "_timer", lambda: self.now)
+
+
+def costly_fall(seconds_a_step: float, frame: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, list[float]]:
+    """Frames of 4 s, each begun so long after the last and its steps; the processor time of each."""
+    session = Session(NAME, SCENE, STONE)
+    processor = Processor(session, seconds_a_step, monkeypatch)
+    session.set_falling(True)
+    session.advance(0)
+    spent: list[float] = []
+    now = 0.0
+    while now < 4:
+        before = processor.now
+        now += frame + (spent[-1] if spent else 0.0)
+        session.advance(now)
+        spent.append(processor.now - before)
+    return session, spent
+
+
+@pytest.mark.parametrize("seconds_a_step", [0.004, 0.03, 1.0])
+def test_steps_that_take_too_long_leave_half_of_the_time_to_others(
+    seconds_a_step: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, spent = costly_fall(seconds_a_step, 1 / 30, monkeypatch)
+    assert max(spent) <= MOST_WORK + seconds_a_step  # measured: 0.024, 0.03 and 1
+    assert sum(spent) <= WORK_SHARE * 4 + MOST_WORK + seconds_a_step  # measured: 1.53, 1.92 and 3
+    assert session.shown.simulation_time < 4  # slow motion
+    assert session._clock.dropped > 0
+
+
+def test_steps_that_a_frame_has_time_for_are_all_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    session, _ = costly_fall(0.001, 1 / 30, monkeypatch)
+    assert session._clock.dropped == 0
+
+
+def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    session, _ = costly_fall(0.03, 1 / 30, monkeypatch)
+    alone = Session(NAME, SCENE, STONE)
+    assert session._simulation is not None
+    assert alone._simulation is not None
+    for _ in range(session._simulation.state.step):
+        alone._simulation.step()
+    assert session._simulation.state == alone._simulation.state
+
+
+def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = fallen(0.21)
+    report = json.loads(session.report(edited=True).model_dump_json())
+    restored = Session.restored(NAME, Scene.read(report["scene"]), STONE, Snapshot.read(report["snapshot"]))
+    for one in (session, restored):
+        assert one.falling
+
+        def failing() -> None:
+            raise ZeroDivisionError
+
+        monkeypatch.setattr(one._simulation, "step", failing)
+        if one is restored:  # it begins to count time with its first frame
+            one.advance(200)
+        with pytest.raises(ZeroDivisionError):
+            one.advance(201)
+        assert (one.falling, one.moving, one.shown.moving) == (False, False, False)
+        one.advance(202)  # nothing more is tried

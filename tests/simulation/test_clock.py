@@ -7,7 +7,7 @@ import math
 import pytest
 
 from culet.errors import InputError
-from culet.simulation.clock import MAX_CATCH_UP, FixedStepClock
+from culet.simulation.clock import MAX_CATCH_UP, MOST_WORK, WORK_SHARE, Allowance, FixedStepClock
 
 
 @pytest.mark.parametrize("frames_per_second", [7, 24, 30, 59.94, 144, 1000])
@@ -73,3 +73,24 @@ def test_time_that_does_not_pass_forward_is_refused(elapsed: float) -> None:
 def test_a_step_that_is_no_time_is_refused(time_step: float) -> None:
     with pytest.raises(InputError, match="positive"):
         FixedStepClock(time_step)
+
+
+def test_steps_given_up_are_counted_as_dropped() -> None:
+    clock = FixedStepClock(0.125)
+    clock.advance(0.25)
+    clock.drop(2)
+    assert clock.dropped == 0.25
+
+
+def test_an_allowance_is_overdrawn_by_one_step_at_most_and_paid_back_by_time() -> None:
+    allowance = Allowance()
+    assert not allowance.spent
+    allowance.spend(MOST_WORK + 1.0)
+    assert allowance.spent
+    allowance.grow(0.99 / WORK_SHARE)
+    assert allowance.spent
+    allowance.grow(0.02 / WORK_SHARE)
+    assert not allowance.spent
+    allowance.grow(3600)
+    allowance.spend(MOST_WORK)  # there is never more
+    assert allowance.spent

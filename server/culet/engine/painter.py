@@ -39,7 +39,7 @@ class Counters:
     frames_repeated: int = 0
     stills_rendered: int = 0
     problems: int = 0
-    """Pictures that could not be rendered."""
+    """Pictures that could not be rendered, stones that could not be moved."""
     render_seconds: float = 0.0
     """Of the render thread."""
 
@@ -58,7 +58,7 @@ class Painter:
         encode_still: Callable[[Picture, str], bytes],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`send` puts a frame on the wire, `report` tells of a session that could not be rendered; neither waits.
+        """`send` puts a frame on the wire, `report` tells of a session that could not go on; neither waits.
 
         `clock` is a steady one, in seconds.
         """
@@ -128,7 +128,10 @@ class Painter:
         async with session.lock:
             held_at = self._now()  # waiting for the lock is no work that the next frame has to do again
             started = time.perf_counter()
-            await self._in_render_thread(session.advance, self._now())
+            try:
+                await self._in_render_thread(session.advance, self._now())
+            except Exception as error:  # one session's failure must not end the others'; its stone has stopped
+                self._tell_problem(live, as_culet_error(error, CuletError, "simulating"))
             live.simulate_seconds = time.perf_counter() - started
             shown = session.shown
             session.remember(shown)
@@ -148,7 +151,7 @@ class Painter:
                 overhead = self._now() - held_at - picture.seconds
                 live.governor.rendered(plan, picture.seconds, overhead, live.frames_per_second)
             await self._publish(live, frame)
-        except Exception as error:  # one session's failure must not end the others'
+        except Exception as error:  # as above
             self._refuse(live, shown, error)
 
     async def _first_sample(
@@ -245,10 +248,13 @@ class Painter:
         self._send(message)
 
     def _refuse(self, live: LivePicture, shown: Shown, error: Exception) -> None:
-        self.counters.problems += 1
         live.refused = shown
         live.abandon()
-        self._report(live.session.name, as_culet_error(error))
+        self._tell_problem(live, as_culet_error(error))
+
+    def _tell_problem(self, live: LivePicture, error: CuletError) -> None:
+        self.counters.problems += 1
+        self._report(live.session.name, error)
 
     async def _in_render_thread(self, call: Callable[..., T], *arguments: object) -> T:
         started = time.perf_counter()
@@ -266,9 +272,9 @@ def _proceed(bands: Iterator[object]) -> bool:
 _DONE = object()
 
 
-def as_culet_error(error: Exception) -> CuletError:
-    """The error itself, or, of a kind that nobody foresaw, one that names it; that one goes to the log too."""
+def as_culet_error(error: Exception, kind: type[CuletError] = DeviceError, what: str = "rendering") -> CuletError:
+    """The error itself, or one of that kind for one that nobody foresaw; the latter goes to the log too."""
     if isinstance(error, CuletError):
         return error
-    log.error("rendering failed", exc_info=error)
-    return DeviceError(f"rendering failed: {type(error).__name__}: {error}")
+    log.error("%s failed", what, exc_info=error)
+    return kind(f"{what} failed: {type(error).__name__}: {error}")

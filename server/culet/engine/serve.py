@@ -180,6 +180,9 @@ class Engine:
     def _report_problem(self, session: str, error: CuletError) -> None:
         problem = protocol.SessionProblem(session=session, title=error.title, detail=str(error))
         self._spawn(self._peers.tell(encoded(problem)))
+        live = self._painter.pictures.get(session)
+        if live is not None:  # its stone may have stopped
+            self._tell(live.session.report(edited=True))
 
     def _send_frame(self, message: bytes) -> None:
         self._spawn(self._send(message))

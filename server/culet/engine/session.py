@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import asyncio
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from time import thread_time
 from typing import Any
 
 from culet.engine.picking import struck_point
@@ -18,7 +20,7 @@ from culet.errors import InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Scene
-from culet.simulation import FixedStepClock, Simulation, surfaces_of
+from culet.simulation import Allowance, FixedStepClock, Simulation, surfaces_of
 from culet_protocol.engine import SessionState
 from culet_protocol.messages import BALANCED, Balance
 
@@ -51,8 +53,16 @@ class Session:
     """Mutable; changed under `lock` only, since a change may wait for a thread that makes a stone."""
 
     def __init__(
-        self, name: str, scene: Scene, stone: Stone | None, *, sky: Sky | None = None, history: int = 600
+        self,
+        name: str,
+        scene: Scene,
+        stone: Stone | None,
+        *,
+        sky: Sky | None = None,
+        history: int = 600,
+        timer: Callable[[], float] = thread_time,
     ) -> None:
+        """`timer` says how many seconds of the processor were taken."""
         self.name = name
         """32 hexadecimal digits."""
         self.key = bytes.fromhex(name)
@@ -66,6 +76,8 @@ class Session:
         self._history_length = history
         self._history: OrderedDict[int, Shown] = OrderedDict()
         self._advanced_at: float | None = None
+        self._timer = timer
+        self._allowance = Allowance()
         self._authored = scene
         self._camera = scene.camera
         self.sky = sky or Sky(scene.environment)
@@ -198,14 +210,32 @@ class Session:
         self._show()
 
     def advance(self, now: float) -> None:
-        """Simulate up to `now`, in seconds of a steady clock, in fixed steps; show the pose between the last two."""
+        """Simulate up to `now`, in seconds of a steady clock, in fixed steps; show the pose between the last two.
+
+        Steps that take too long are given up (`Allowance`). If one fails, the stone stops, and the error is raised.
+        """
         if self._simulation is None or not self.falling:
             return
         elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
         self._advanced_at = now
-        for _ in range(self._clock.advance(elapsed)):
-            self._simulation.step()
-        self._show()
+        try:
+            self._step(self._simulation, elapsed)
+            self._show()
+        except Exception:
+            self._stop()
+            self._show()
+            raise
+
+    def _step(self, simulation: Simulation, elapsed: float) -> None:
+        self._allowance.grow(elapsed)
+        due = self._clock.advance(elapsed)
+        for taken in range(due):
+            if self._allowance.spent:
+                self._clock.drop(due - taken)
+                break
+            begun = self._timer()
+            simulation.step()
+            self._allowance.spend(self._timer() - begun)
 
     def remember(self, shown: Shown) -> None:
         """Keep what a frame was made of, so that it can be rendered again."""

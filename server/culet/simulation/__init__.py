@@ -1,9 +1,19 @@
 """Rigid bodies: state, integrators, contact."""
 
-from culet.simulation.clock import FixedStepClock
+from culet.simulation.clock import Allowance, FixedStepClock
 from culet.simulation.paths import Path, record, write
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
 from culet.simulation.surfaces import Surface, surfaces_of
 
-__all__ = ["FixedStepClock", "Path", "RigidState", "Simulation", "Surface", "record", "surfaces_of", "write"]
+__all__ = [
+    "Allowance",
+    "FixedStepClock",
+    "Path",
+    "RigidState",
+    "Simulation",
+    "Surface",
+    "record",
+    "surfaces_of",
+    "write",
+]

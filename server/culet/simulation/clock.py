@@ -15,6 +15,12 @@ MAX_CATCH_UP = 0.25
 steps stalling the next frame as well (the "spiral of death"). Larger: jumps after a stall; smaller than a slow frame:
 slow motion."""
 
+MOST_WORK = 0.02
+"""s of the processor for one call's steps; about what a frame has. The step during which they run out is finished."""
+
+WORK_SHARE = 0.5
+"""Of the time that passes, which steps may take on the average. 1: one session's stone can keep all others waiting."""
+
 
 class FixedStepClock:
     """Counts steps due. `dropped` is the time, in seconds, that was given up so far."""
@@ -46,6 +52,34 @@ class FixedStepClock:
         self._put_by = max(self._put_by - steps * self.time_step, 0.0)
         return steps
 
+    def drop(self, steps: int) -> None:
+        """Give up so many of the steps that were due."""
+        self.dropped += steps * self.time_step
+
     def restart(self) -> None:
         """Forget the time put by, as after a pause."""
         self._put_by = 0.0
+
+
+class Allowance:
+    """Processor time that steps may take: what is too much for it is simulated in slow motion.
+
+    It has no influence on how the stone moves from one step to the next, only on when the steps are taken.
+    """
+
+    def __init__(self) -> None:
+        """Full."""
+        self._left = MOST_WORK
+
+    @property
+    def spent(self) -> bool:
+        """Whether no further step may be begun now."""
+        return self._left <= 0
+
+    def grow(self, elapsed: float) -> None:
+        """Let `elapsed` seconds of real time pass."""
+        self._left = min(self._left + WORK_SHARE * elapsed, MOST_WORK)
+
+    def spend(self, seconds: float) -> None:
+        """A step has taken so many seconds of the processor, maybe more than are left: later steps wait for that."""
+        self._left -= seconds
