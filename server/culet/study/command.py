@@ -25,7 +25,7 @@ study_app = typer.Typer(
 )
 
 Out = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the report; made if missing.")]
-Quick = Annotated[bool, typer.Option("--quick", help="Fewer settings and samples, a smaller picture: 2 minutes.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Fewer settings and samples, a smaller picture.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Measure anew what an earlier run has left in the folder.")]
 Width = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 640, quick 320.")]
 Height = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 360, quick 180.")]

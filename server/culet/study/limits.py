@@ -23,7 +23,7 @@ FACTOR, TERM = 0.5, 1.0
 
 
 class Limits(NamedTuple):
-    """Of one device, both of its cores' sum."""
+    """Of one device, all its units together."""
 
     single_flops: float
     """Additions and multiplications a second in single precision, two for each fused multiply-add."""

@@ -18,6 +18,7 @@ TITLES = {
 }
 
 SHORTER = (("integrator ", ""), ("time step", "step"), ("contact step", "contact"), ("polarised yes", "polarised"))
+"""Words of a label, and what a plot says instead."""
 NAME_LENGTH = 42
 """Letters that a plot's margin has room for."""
 LIMITS = {
@@ -214,12 +215,7 @@ def _marks(points: list[Point], x: str, y: str) -> list[Mark]:
 
 def _short(label: str) -> str:
     """For the margin of a plot; the table below it has the whole."""
-    for long, short in (
-        ("integrator ", ""),
-        ("time step", "step"),
-        ("contact step", "contact"),
-        ("polarised yes", "polarised"),
-    ):
+    for long, short in SHORTER:
         label = label.replace(long, short)
     return label if len(label) <= NAME_LENGTH else label[: NAME_LENGTH - 3] + "..."
 

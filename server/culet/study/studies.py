@@ -56,9 +56,9 @@ class Effort(NamedTuple):
 
 
 QUICK = Effort(320, 180, 256, 48, 3, 512, 4.0, 16)
-"""Two minutes on two cores."""
+"""For a first look."""
 FULL = Effort(640, 360, 1024, 192, 5, 1024, 15.0, 16)
-"""Under a quarter of an hour on two cores; the references take a third of it, and are kept."""
+"""How long each takes, docs/study.md says."""
 
 
 def study_rendering(
