@@ -9,11 +9,9 @@ from culet.scene.model import Film
 from culet.study.image_error import (
     as_shown,
     colour_difference,
-    enlarged,
-    non_finite,
-    radiance_error,
     structural_similarity,
 )
+from culet.study.radiance_error import enlarged, non_finite, radiance_error
 
 GREY = np.full((8, 12, 3), 0.2)
 

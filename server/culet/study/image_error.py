@@ -1,4 +1,4 @@
-"""How far a picture is from its reference: in radiance, and to the eye."""
+"""How far a picture is from its reference to the eye. Needs scikit-image, of `culet[study]`."""
 
 from __future__ import annotations
 
@@ -6,36 +6,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 from skimage import color, metrics
 
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import tone_map
 from culet.scene.model import Film
-
-Image = NDArray[np.floating[Any]]
+from culet.study.radiance_error import Image
 
 _lab: Any = color.rgb2lab  # scikit-image has types for a part of itself only
 _deltae: Any = color.deltaE_ciede2000
 _ssim: Any = metrics.structural_similarity
-
-
-def radiance_error(image: Image, reference: Image) -> dict[str, float]:
-    """`rmse`, `max` and `bias` (the mean of image - reference) in linear radiance, over channels and finite pixels."""
-    difference = image.astype(np.float64) - reference
-    difference = difference[np.isfinite(difference)]
-    if difference.size == 0:
-        difference = np.zeros(1)
-    return {
-        "rmse": float(np.sqrt(np.mean(difference**2))),
-        "max": float(np.abs(difference).max()),
-        "bias": float(difference.mean()),
-    }
-
-
-def non_finite(image: Image) -> int:
-    """Numbers that are NaN or infinite."""
-    return int(np.count_nonzero(~np.isfinite(image)))
 
 
 def as_shown(image: Image, film: Film) -> NDArray[np.float64]:
@@ -58,15 +38,3 @@ def structural_similarity(shown: NDArray[np.uint8], reference: NDArray[np.uint8]
     """Mean SSIM of two 8-bit pictures, 1 for equal ones (Wang et al., 2004: Gaussian weights of 1.5 pixels)."""
     options = {"gaussian_weights": True, "sigma": 1.5, "use_sample_covariance": False, "data_range": 255}
     return float(_ssim(reference, shown, channel_axis=-1, **options))
-
-
-def enlarged(image: Image, height: int, width: int) -> Image:
-    """A smaller picture stretched over a larger one's pixels, linear between centres, as a browser shows it."""
-    if image.shape[:2] == (height, width):
-        return image
-    rows = (np.arange(height) + 0.5) * image.shape[0] / height - 0.5
-    columns = (np.arange(width) + 0.5) * image.shape[1] / width - 0.5
-    places = np.meshgrid(rows, columns, indexing="ij")
-    return np.stack(
-        [map_coordinates(image[..., k].astype(np.float64), places, order=1, mode="nearest") for k in range(3)], axis=-1
-    )

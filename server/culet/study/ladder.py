@@ -10,6 +10,7 @@ Besides the ladder, the errors of all settings are kept: what is drawn may be a 
 
 from __future__ import annotations
 
+import datetime as dt
 import json
 import statistics
 import sys
@@ -19,8 +20,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import PIL.Image
-from numpy.typing import NDArray
 
 from culet.engine.governor import Setting
 from culet.geometry.load import stone_of
@@ -28,6 +27,8 @@ from culet.geometry.stone import Stone
 from culet.optics.tone import tone_map
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
+from culet.study.provenance import provenance
+from culet.study.radiance_error import Image, enlarged, radiance_error
 
 SIZE = 1280, 720
 SCALES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3
@@ -35,8 +36,6 @@ LEAST_SCALE = 0.5
 """Of this size: 640x360, below which the governor does not go. What is smaller follows, for larger pictures."""
 CUTOFFS = 0.01, 0.02, 0.05
 BOUNCES = 256, 48, 24, 16
-Pixels = NDArray[np.floating[Any]]
-
 REFERENCE_SAMPLES, REFERENCE_CUTOFF = 64, 1e-3
 TURNS = 5
 CLOSEST = 0.95
@@ -112,14 +111,14 @@ def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture
     truth = reference.linear(), tone_map(reference.linear())
     measured = []
     for setting, costs, picture in zip(settings, ratios, pictures, strict=True):
-        radiance, shown = (_rms(_enlarged(p, size) - t) for p, t in zip(picture, truth, strict=True))
+        radiance, shown = (_error(p, t) for p, t in zip(picture, truth, strict=True))
         measured.append(Measured(Setting(*setting, statistics.median(costs), shown), radiance))
     return measured
 
 
 def _draw(
     renderer: Renderer, scene: Scene, stone: Stone, size: tuple[int, int], scale: float, cutoff: float, bounces: int
-) -> tuple[float, tuple[Pixels, Pixels]]:
+) -> tuple[float, tuple[Image, Image]]:
     """Processor's seconds; radiance and shown."""
     width, height = round(size[0] * scale), round(size[1] * scale)
     start = time.process_time()
@@ -130,13 +129,8 @@ def _draw(
     return seconds, (linear, tone_map(linear))
 
 
-def _enlarged(pixels: Pixels, size: tuple[int, int]) -> Pixels:
-    images = [PIL.Image.fromarray(pixels[..., channel].astype(np.float32)) for channel in range(3)]
-    return np.stack([np.asarray(image.resize(size, PIL.Image.Resampling.BILINEAR)) for image in images], axis=-1)
-
-
-def _rms(difference: Pixels) -> float:
-    return float(np.sqrt(np.mean(difference.astype(float) ** 2)))
+def _error(image: Image, truth: Image) -> float:
+    return radiance_error(enlarged(image, *truth.shape[:2]), truth)["rmse"]
 
 
 def _with_optics(scene: Scene, cutoff: float, bounces: int) -> Scene:
@@ -149,7 +143,12 @@ def main() -> None:
     renderer = Renderer()
     measured = measure(renderer, Scene())
     document = {
-        "measured": {**renderer.describe(), "width": SIZE[0], "height": SIZE[1]},
+        "measured": {
+            "made": dt.datetime.now(dt.UTC).isoformat(timespec="seconds"),
+            **provenance(renderer.describe()),
+            "width": SIZE[0],
+            "height": SIZE[1],
+        },
         "rungs": [asdict(setting) for setting in ladder_of(measured)],
         "errors": errors_of(measured),
     }

@@ -22,9 +22,9 @@ from culet.scene.model import GradientEnvironment, Optics, Plane
 from culet.study.cases import CHECKER
 from culet.study.convergence import resting_error, time_to
 from culet.study.frame import Frame, Studied
-from culet.study.image_error import radiance_error
 from culet.study.knobs import base_knobs
 from culet.study.mitsuba import LEAST_LLVM, SAMPLERS
+from culet.study.radiance_error import radiance_error
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point, Race
 

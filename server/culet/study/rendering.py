@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from culet.study.frame import Frame
-from culet.study.image_error import colour_difference, enlarged, non_finite, radiance_error
+from culet.study.image_error import colour_difference
 from culet.study.journal import Journal
 from culet.study.knobs import Knobs, Setting
 from culet.study.pictures import write_pictures
+from culet.study.radiance_error import enlarged, non_finite, radiance_error
 from culet.study.reference import Reference
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point
