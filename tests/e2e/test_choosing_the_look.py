@@ -75,3 +75,12 @@ def test_light_is_followed_as_one_chooses(wide_view: View, server: Server) -> No
     assert scene["film"]["tone_map"] == "filmic"
     view.until("() => document.getElementById('status').textContent.includes('error 0.')")
     assert view.problems == []
+
+
+def test_every_choice_is_explained_by_a_tooltip(wide_view: View) -> None:
+    for label in ("Material", "Below it", "Tone map", "Integrator"):
+        options = wide_view.page.locator(".lil-controller", has_text=label).locator("option")
+        options.first.wait_for(state="attached")
+        titles = options.evaluate_all("options => options.map(({title}) => title)")
+        assert titles
+        assert all(titles), label

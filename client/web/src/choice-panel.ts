@@ -1,6 +1,7 @@
 /** The panel's choices about the picture: material, sky and optics. */
 
 import type { Controller, GUI } from "lil-gui";
+import { describeOptions } from "./option-titles";
 import type { Catalogued, Material } from "./rest";
 import {
   BANDS,
@@ -47,10 +48,8 @@ export class ChoicePanel {
     this.add(optics, "bands", "Bands", BANDS);
     this.add(optics, "polarised", "Polarised");
     this.add(optics, "cutoff", "Cut-off", CUTOFFS);
-    this.add(optics, "end", "Below it", ENDS);
-    this.add(optics, "toneMap", "Tone map", TONE_MAPS);
-    this.describe("end", ENDS_SAID);
-    this.describe("toneMap", TONE_MAPS_SAID);
+    describeOptions(this.add(optics, "end", "Below it", ENDS), ENDS_SAID);
+    describeOptions(this.add(optics, "toneMap", "Tone map", TONE_MAPS), TONE_MAPS_SAID);
   }
 
   update({ scene }: ViewState): void {
@@ -72,10 +71,11 @@ export class ChoicePanel {
     this.offer("sky", this.skies, skies);
   }
 
-  private add(folder: GUI, name: keyof Choices, label: string, options?: Values | number[]): void {
+  private add(folder: GUI, name: keyof Choices, label: string, options?: Values | number[]): Controller {
     const controller = options ? folder.add(this.shown, name, options) : folder.add(this.shown, name);
     this.listen(name, controller.name(label));
     controller.domElement.title = HINTS[name] ?? "";
+    return controller;
   }
 
   private offer(name: keyof Choices, options: Values, described: Catalogued[]): void {
@@ -83,15 +83,8 @@ export class ChoicePanel {
     if (!controller) return;
     const renewed = controller.options(options);
     this.listen(name, renewed);
-    this.describe(name, described);
+    describeOptions(renewed, described);
     renewed.show(name !== "material" || hasStone(this.scene)).updateDisplay();
-  }
-
-  private describe(name: keyof Choices, described: Catalogued[]): void {
-    for (const option of this.controllers.get(name)?.domElement.querySelectorAll("option") ?? []) {
-      const found = described.find((one) => one.name === option.textContent);
-      if (found) option.title = found.summary;
-    }
   }
 
   private listen(name: keyof Choices, controller: Controller): void {

@@ -3,6 +3,7 @@
 import type { GUI } from "lil-gui";
 import { type Direction, type Fall, fallOf, fallPatch, MODELS, OF_RIGID, spinAxis } from "./fall";
 import { LiveControls } from "./live-controls";
+import { describeOptions } from "./option-titles";
 import type { Catalogued } from "./rest";
 import { hasStone } from "./scene-choices";
 import type { ViewState } from "./view-state";
@@ -55,9 +56,7 @@ export class FallPanel {
     const controller = this.controls.controllers.get("integrator")?.options(names);
     if (!controller) return;
     this.controls.listen("integrator", controller);
-    for (const option of controller.domElement.querySelectorAll("option")) {
-      option.title = integrators.find(({ name }) => name === option.textContent)?.summary ?? "";
-    }
+    describeOptions(controller, integrators);
     this.display();
   }
 

@@ -2,7 +2,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import type { CutKind } from "./cut";
-import { object } from "./json";
+import { object, part } from "./json";
 
 /** An answer other than 2xx; the message is fit to be shown. */
 export class ProblemError extends Error {
@@ -57,12 +57,9 @@ async function request(path: string, init?: RequestInit): Promise<Response> {
 /** What to tell the user of a refusal: the problem's title and detail, or at least its status. */
 export function problemText(status: number, body: string): string {
   try {
-    const problem: unknown = JSON.parse(body);
-    if (typeof problem === "object" && problem !== null) {
-      const { title, detail } = problem as JsonObject;
-      const parts = [title, detail].filter((part) => typeof part === "string" && part !== "");
-      if (parts.length > 0) return parts.join(": ");
-    }
+    const { title, detail } = object(JSON.parse(body));
+    const parts = [title, detail].filter((said) => typeof said === "string" && said !== "");
+    if (parts.length > 0) return parts.join(": ");
   } catch {
     // a proxy's page, not a problem document
   }
@@ -135,8 +132,8 @@ export async function uploadSky(file: File): Promise<Upload> {
 }
 
 /** The gateway's answer to an upload, and what to say of one in which nothing was found. */
-export function parseUpload(answer: JsonObject, otherwise: (description: JsonObject) => string): Upload {
-  const description = (answer.description ?? {}) as JsonObject;
+function parseUpload(answer: JsonObject, otherwise: (description: JsonObject) => string): Upload {
+  const description = part(answer, "description");
   if (typeof answer.id !== "string") throw new ProblemError(201, "expected the id of an upload, got none");
   const said = Array.isArray(description.findings) ? description.findings.map(String) : [];
   return { id: answer.id, findings: said.length > 0 ? said : [otherwise(description)] };
