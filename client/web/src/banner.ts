@@ -17,6 +17,10 @@ export function bannerText(connection: Connection, engine: "down" | "up"): strin
   }
 }
 
+/** What stands where the picture will be. */
+export const WAITING = "Waiting for the first picture\u2026";
+export const WAITING_LONG = `${WAITING}\nA server that is new to its processor first compiles its kernels for it, once.`;
+
 /** When the next try is, after a pause of so many milliseconds. */
 export function tryingAgainText(delay: number): string {
   return `Trying again in ${Math.max(1, Math.round(delay / 1000))} s\u2026`;

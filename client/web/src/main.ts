@@ -2,7 +2,7 @@
 
 import { CloseCode } from "@culet/protocol/messages";
 import type { Action } from "./actions";
-import { Banner, bannerText, Obstacle, obstacleText, tryingAgainText } from "./banner";
+import { Banner, bannerText, Obstacle, obstacleText, tryingAgainText, WAITING, WAITING_LONG } from "./banner";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { framingPatch } from "./framing";
 import { listenToKeys } from "./keys";
@@ -20,9 +20,12 @@ import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
+import { whereabouts, whereaboutsText } from "./whereabouts";
 
 const canvas = element("picture", HTMLCanvasElement);
 const banner = new Banner(element("banner", HTMLElement));
+const waiting = new Banner(element("waiting", HTMLElement));
+const WAITING_LONG_MS = 1500;
 const obstacle = new Obstacle(
   element("obstacle", HTMLElement),
   element("obstacle-text", HTMLElement),
@@ -67,9 +70,9 @@ function attempt(work: () => Promise<void>): void {
   work().catch((error: unknown) => problem(error instanceof Error ? error.message : String(error)));
 }
 
-function problem(text: string): void {
+function problem(text: string, about?: string): void {
   if (problems.push(text) > PROBLEMS_KEPT) problems.shift();
-  toasts.problem(text);
+  toasts.problem(text, about);
 }
 
 async function savePicture(): Promise<void> {
@@ -124,11 +127,19 @@ function startAnew(): void {
 }
 
 function connectionChanged(connection: Connection): void {
-  banner.show(bannerText(connection, viewer?.state.engine ?? "up"));
+  showBanner(connection);
   if (connection.status === "closed")
     obstacle.show(obstacleText(connection.code, connection.reason), "Start a new session", startAnew);
   // A gateway that was restarted may not know the session any more, and a proxy may hide its close code.
   if (connection.status === "waiting" && session) void leaveIfUnknown(session);
+}
+
+/** What is wrong, or why there is nothing to see. */
+function showBanner(connection: Connection): void {
+  const { state, lastFrame } = viewer ?? { state: INITIAL, lastFrame: null };
+  const atStart = lastFrame !== null && lastFrame.simulationTime === 0 && !state.falling;
+  const where = atStart ? whereabouts(state.scene, lastFrame.width / lastFrame.height) : null;
+  banner.show(bannerText(connection, state.engine) ?? whereaboutsText(where));
 }
 
 async function leaveIfUnknown(id: string): Promise<void> {
@@ -146,15 +157,20 @@ function stateChanged(before: ViewState, after: ViewState): void {
   meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
-  if (viewer) banner.show(bannerText(viewer.stream.connection, after.engine));
+  if (viewer) showBanner(viewer.stream.connection);
 }
 
 function watch(id: string): void {
   session = id;
   history.replaceState(null, "", sessionAddress(id));
+  waiting.show(WAITING);
+  const timer = setTimeout(() => waiting.show(WAITING_LONG), WAITING_LONG_MS);
   viewer = new Viewer(streamUrl(location, id), {
     show: (picture, frame, arrival) => {
       screen.show(picture);
+      clearTimeout(timer);
+      waiting.show(null);
+      if (viewer) showBanner(viewer.stream.connection);
       meter.take(frame, arrival);
     },
     size: () => screen.size,
@@ -243,7 +259,7 @@ expose({
   },
   problems,
 });
-banner.show("Connecting\u2026");
+waiting.show("Connecting\u2026");
 attempt(async () => panel.addPresets(await rest.presets()));
 attempt(async () => panel.choices.addMaterials(await rest.materials()));
 attempt(async () => {

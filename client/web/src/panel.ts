@@ -59,7 +59,8 @@ export class Panel {
 
   update(state: ViewState): void {
     this.state = state;
-    const { target, falling, mirror, light, walls } = state;
+    const { target, mirror, light, walls } = state;
+    const falling = state.falling && !state.asleep;
     Object.assign(this.shown, { target, falling, mirror, light, walls });
     for (const display of this.displays) display.updateDisplay();
     this.fall.update(state);

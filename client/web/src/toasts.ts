@@ -1,6 +1,6 @@
-/** Short messages in the corner. Problems stay until they are dismissed, the rest goes by itself. */
+/** Short messages in the corner. Problems stay until they are dismissed, the rest goes by itself unless it is being read. */
 
-const LIFE_MS = 6000;
+const LIFE_MS = 8000;
 const MOST = 4;
 
 export class Toasts {
@@ -10,32 +10,31 @@ export class Toasts {
     this.region = region;
   }
 
-  problem(text: string): void {
-    this.add(text, "problem");
+  /** Stays. Of several `about` the same, as while a slider is dragged through what is refused, the newest. */
+  problem(text: string, about = text): void {
+    this.add(text, "problem", about);
   }
 
   /** Goes by itself; what is returned takes it away earlier. */
   note(text: string): () => void {
     const toast = this.add(text, "note");
-    const timer = setTimeout(() => toast.remove(), LIFE_MS);
-    return () => {
-      clearTimeout(timer);
-      toast.remove();
-    };
+    fade(toast);
+    return () => toast.remove();
   }
 
-  /** Stays until dismissed, but is no problem. */
+  /** What was found in a file; goes by itself. */
   finding(text: string): void {
-    this.add(text, "finding");
+    fade(this.add(text, "finding"));
   }
 
-  private add(text: string, kind: "problem" | "note" | "finding"): HTMLElement {
+  private add(text: string, kind: "problem" | "note" | "finding", about = text): HTMLElement {
     for (const old of [...this.region.children]) {
-      if (old.firstChild?.textContent === text) old.remove(); // the same again: shown once, as the newest
+      if (old instanceof HTMLElement && old.dataset.about === about) old.remove();
     }
     while (this.region.children.length >= MOST) this.region.firstElementChild?.remove();
     const toast = document.createElement("div");
     toast.className = `toast ${kind}`;
+    toast.dataset.about = about;
     if (kind === "problem") toast.setAttribute("role", "alert");
     const words = document.createElement("p");
     words.className = "toast-words";
@@ -50,4 +49,16 @@ export class Toasts {
     this.region.append(toast);
     return toast;
   }
+}
+
+/** Take it away in a while; while the pointer rests on it, or a key is in it, time does not count. */
+function fade(toast: HTMLElement): void {
+  let timer: ReturnType<typeof setTimeout>;
+  const start = () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => toast.remove(), LIFE_MS);
+  };
+  for (const name of ["pointerenter", "focusin"]) toast.addEventListener(name, () => clearTimeout(timer));
+  for (const name of ["pointerleave", "focusout"]) toast.addEventListener(name, start);
+  start();
 }

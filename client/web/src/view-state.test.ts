@@ -21,6 +21,12 @@ describe("the state after a notice", () => {
     expect(withNotice(INITIAL, shown(other))).toMatchObject({ mirror: false, light: true, walls: true });
   });
 
+  it("knows that the stone sleeps, which older servers do not say", () => {
+    const asleep = { type: "state", scene: DEFAULT, falling: true, asleep: true } as const;
+    expect(withNotice(INITIAL, asleep).asleep).toBe(true);
+    expect(withNotice(INITIAL, shown(DEFAULT, true)).asleep).toBe(false);
+  });
+
   it("has the session's balance, half way if none is said", () => {
     const balance = { exactness: 0.75, pinned: true };
     expect(withNotice(INITIAL, { type: "state", scene: DEFAULT, falling: false, ...balance })).toMatchObject(balance);
@@ -55,6 +61,13 @@ describe("a change in words", () => {
     expect(describeChange(before, after)).toBe(
       "moving the red light, the stone falls, checker, light sky, walls shown",
     );
+  });
+
+  it("tells a stone at rest from one that is paused", () => {
+    const asleep = { ...before, falling: true, asleep: true };
+    expect(describeChange({ ...asleep, asleep: false }, asleep)).toBe("the stone is at rest");
+    expect(describeChange(asleep, { ...asleep, falling: false, asleep: false })).toBe("the stone is paused");
+    expect(describeChange(asleep, { ...asleep, asleep: false })).toBe("the stone falls");
   });
 
   it("says nothing of the first scene, or of a camera that moved", () => {

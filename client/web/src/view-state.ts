@@ -8,6 +8,8 @@ export interface ViewState {
   target: Target;
   scene: JsonObject | null;
   falling: boolean;
+  /** It came to rest and sleeps: nothing moves, though it was told to fall. */
+  asleep: boolean;
   mirror: boolean;
   light: boolean;
   walls: boolean;
@@ -23,6 +25,7 @@ export const INITIAL: ViewState = {
   target: "camera",
   scene: null,
   falling: false,
+  asleep: false,
   mirror: false,
   light: false,
   walls: false,
@@ -42,6 +45,7 @@ export function withNotice(state: ViewState, notice: Notice): ViewState {
         ...state,
         scene,
         falling,
+        asleep: notice.asleep ?? false,
         mirror,
         light: part(scene, "environment").kind === "light",
         walls: walls !== "none",
@@ -67,7 +71,7 @@ export function describeChange(before: ViewState, after: ViewState): string {
   const said: string[] = [];
   if (before.target !== after.target) said.push(`moving the ${TARGET_NAMES[after.target]}`);
   if (before.scene && after.scene) {
-    if (before.falling !== after.falling) said.push(after.falling ? "the stone falls" : "the stone is paused");
+    if (motion(before) !== motion(after)) said.push(motion(after));
     if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");
     if (before.light !== after.light) said.push(after.light ? "light sky" : "the scene's own sky");
     if (before.walls !== after.walls) said.push(after.walls ? "walls shown" : "walls hidden");
@@ -75,6 +79,11 @@ export function describeChange(before: ViewState, after: ViewState): string {
   }
   if (before.viewers !== after.viewers) said.push(viewersText(after.viewers));
   return said.join(", ");
+}
+
+function motion({ falling, asleep }: ViewState): string {
+  if (!falling) return "the stone is paused";
+  return asleep ? "the stone is at rest" : "the stone falls";
 }
 
 export function viewersText(count: number): string {

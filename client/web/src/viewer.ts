@@ -15,7 +15,8 @@ export interface ViewerListener {
   size: () => Size;
   connection: (connection: Connection) => void;
   state: (before: ViewState, after: ViewState) => void;
-  problem: (text: string) => void;
+  /** `about`: the field of the scene that was refused, if it was that. */
+  problem: (text: string, about?: string) => void;
 }
 
 export class Viewer {
@@ -73,7 +74,7 @@ export class Viewer {
   }
 
   private heard(notice: Notice): void {
-    if (notice.type === "problem") this.listener.problem(notice.message);
+    if (notice.type === "problem") this.listener.problem(notice.message, notice.field ?? undefined);
     else this.become(withNotice(this.state, notice));
   }
 

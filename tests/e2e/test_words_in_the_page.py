@@ -1,0 +1,99 @@
+"""What the page says by itself: that a picture is coming, where the stone is, that it is at rest, what was found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.server import Server
+from e2e.view import View
+
+NO_PICTURE = "window.createImageBitmap = () => new Promise(() => {})"
+"""Then none is ever decoded."""
+
+
+@pytest.fixture
+def wide_view(view_of: ViewOf) -> View:
+    """With the panel."""
+    return view_of(viewport=WITH_PANEL).open()
+
+
+def test_a_page_without_a_picture_says_that_and_why_in_its_middle(view_of: ViewOf, server: Server) -> None:
+    view = view_of()
+    view.page.add_init_script(NO_PICTURE)
+    view.page.goto(server.url)
+    waiting = view.page.locator("#waiting")
+    waiting.get_by_text("compiles its kernels").wait_for()
+    assert waiting.inner_text().startswith("Waiting for the first picture")
+    box = waiting.bounding_box()
+    assert box is not None
+    width, height = view.page.evaluate("() => [innerWidth, innerHeight]")
+    assert (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2) == pytest.approx((width / 2, height / 2), abs=1)
+
+
+def test_the_words_go_with_the_first_picture(view: View) -> None:
+    assert not view.page.locator("#waiting").is_visible()
+    assert not view.page.locator("#banner").is_visible()
+
+
+def test_a_stone_above_the_picture_is_said_to_be_there_until_it_falls(view: View, server: Server) -> None:
+    banner = view.page.locator("#banner")
+    view.at_rest()
+    (stone,) = view.scene["stones"]
+    patch = {"stones": [stone | {"position": [0, 8, 0]}]}
+    assert server.http.patch(f"/api/sessions/{view.session}", json=patch).status_code == 200
+    banner.get_by_text("The stone is above the picture. P lets it fall").wait_for()
+    view.page.keyboard.press("p")
+    banner.wait_for(state="hidden")
+
+
+def test_a_stone_that_sleeps_is_not_shown_as_falling_and_falls_anew(wide_view: View) -> None:
+    view = wide_view
+    falling = view.page.get_by_label("Falling")
+    view.page.keyboard.press("p")
+    view.until("() => culet.state.falling && !culet.state.asleep")
+    assert falling.is_checked()
+    view.until("() => culet.state.asleep")
+    assert not falling.is_checked()
+    assert view.page.locator("#announcement").inner_text() == "the stone is at rest"
+    slept_at = view.at_rest().frame["simulationTime"]
+    falling.click()
+    view.until("time => culet.lastFrame.simulationTime < time", slept_at)
+    assert falling.is_checked()
+    assert view.problems == []
+
+
+def test_without_a_stone_nothing_about_one_is_offered(wide_view: View, server: Server) -> None:
+    view = wide_view
+    material, fall, cut = (
+        view.page.get_by_label("Material", exact=True),
+        view.page.get_by_role("button", name="Fall"),
+        view.page.get_by_role("button", name="Cut"),
+    )
+    for offered in (material, fall, cut):
+        offered.wait_for()
+    assert server.http.patch(f"/api/sessions/{view.session}", json={"stones": []}).status_code == 200
+    for offered in (material, fall, cut):
+        offered.wait_for(state="hidden")
+
+
+def test_findings_go_by_themselves_and_problems_stay(wide_view: View, tmp_path: Path) -> None:
+    view = wide_view
+    sky, mesh = tmp_path / "sky.png", tmp_path / "empty.obj"
+    Image.new("RGB", (64, 32)).save(sky)
+    mesh.write_text("")
+    view.refusals.add(422)
+    view.open_file("Open a mesh", mesh)
+    problem, finding = (view.page.locator(f".toast.{kind}") for kind in ("problem", "finding"))
+    problem.wait_for()
+    view.open_file("Open a sky", sky)
+    finding.wait_for()
+    finding.hover()
+    view.page.evaluate("() => new Promise(done => setTimeout(done, 9000))")  # longer than it lives unless it is read
+    assert finding.is_visible()
+    view.page.mouse.move(0, 0)
+    finding.wait_for(state="detached")
+    assert problem.is_visible()
