@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import AsyncIterator, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -12,9 +13,12 @@ from typing import Any
 import pytest
 import zmq.asyncio
 
+from culet.engine import events
+from culet.engine.assets import Assets
 from culet.engine.drawing import Picture
 from culet.engine.limits import Limits
 from culet.engine.serve import Engine, encode_still
+from culet.engine.session import Session
 from culet.errors import DeviceError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
@@ -23,6 +27,7 @@ from culet.scene import Scene
 from culet.simulation.models import MODELS
 from culet.simulation.state import RigidState
 from culet_protocol.frame import Flags
+from culet_protocol.messages import SessionEvent
 from engine.peer import Peer, Watcher
 
 REFUSED: dict[str, Any] = {"environment": {"kind": "half"}}
@@ -104,3 +109,27 @@ async def test_a_stone_that_cannot_be_simulated_is_a_problem_of_its_session_alon
         other = watch(await peer.open(GOOD))
         await other.until(lambda frame: Flags.FINAL in frame.flags)
         assert (await peer.status())["problems"] == 1
+
+
+@pytest.mark.parametrize("event", ["toggle_fall", "toggle_walls", "push", "patch_scene", "set_scene"])
+async def test_what_may_take_long_does_not_run_where_all_sessions_are_served(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str
+) -> None:
+    values: dict[str, dict[str, Any]] = {
+        "push": {"x": 0, "y": 0, "right": 0, "up": 0.1},
+        "patch_scene": {"patch": {}},
+        "set_scene": {"scene": GOOD},
+    }
+    threads = []
+    apply = events.apply
+
+    def noted(session: Session, event: SessionEvent, assets: Assets) -> None:
+        threads.append(threading.current_thread())
+        apply(session, event, assets)
+
+    monkeypatch.setattr(events, "apply", noted)
+    async with served(tmp_path) as (peer, _):
+        await peer.open(GOOD)
+        assert (await peer.control(event, **values.get(event, {})))["status"] == 200
+    assert len(threads) == 1
+    assert threads[0] is not threading.main_thread()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from culet.geometry.stone import Stone
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
+from culet.simulation.surfaces import FLOOR, WALLS
 from simulation.solids import about, advance, lowest, nearest, rigid
 
 TILTED = about((0.6, 0.0, 0.8), 0.7)
@@ -114,3 +116,13 @@ def test_a_stone_that_the_classic_model_balanced_falls_over(box: Stone) -> None:
     assert not woken[0].asleep
     assert woken[-1].asleep
     assert -1e-5 < nearest(moving) < 1e-5
+
+
+def test_the_hull_is_computed_once_for_a_stone(box: Stone) -> None:
+    moving = falling(box)
+    hull = moving.body.hull
+    moving.surround((FLOOR, *WALLS))
+    assert moving.body.hull is hull
+    assert adjusted(moving, mass=7).body.hull is hull
+    assert falling(box).body.hull is hull
+    assert falling(replace(box)).body.hull is not hull

@@ -84,13 +84,14 @@ def test_steps_given_up_are_counted_as_dropped() -> None:
 
 def test_an_allowance_is_overdrawn_by_one_step_at_most_and_paid_back_by_time() -> None:
     allowance = Allowance()
-    assert not allowance.spent
-    allowance.spend(MOST_WORK + 1.0)
-    assert allowance.spent
-    allowance.grow(0.99 / WORK_SHARE)
-    assert allowance.spent
-    allowance.grow(0.02 / WORK_SHARE)
-    assert not allowance.spent
-    allowance.grow(3600)
-    allowance.spend(MOST_WORK)  # there is never more
-    assert allowance.spent
+    spent = [allowance.spent]
+    for change, seconds in (
+        (allowance.spend, MOST_WORK + 1.0),
+        (allowance.grow, 0.99 / WORK_SHARE),
+        (allowance.grow, 0.02 / WORK_SHARE),
+        (allowance.grow, 3600.0),
+        (allowance.spend, MOST_WORK),  # there is never more
+    ):
+        change(seconds)
+        spent.append(allowance.spent)
+    assert spent == [False, True, True, False, False, True]

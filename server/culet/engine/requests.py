@@ -30,6 +30,9 @@ STILL_SIZE = (640, 360)
 SUBSCRIPTIONS = 4096
 """Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
 
+LONG_EVENTS = frozenset({"patch_scene", "set_scene", "toggle_fall", "toggle_walls", "push"})
+"""They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
+
 Answer = tuple[dict[str, Any], bytes | None]
 
 
@@ -166,7 +169,7 @@ class Requests:
         apply = partial(events.apply, session, request.event, self._assets)
         try:
             async with session.lock:
-                if request.event.type in ("patch_scene", "set_scene"):  # may make a stone: other sessions go on
+                if request.event.type in LONG_EVENTS:
                     await asyncio.to_thread(apply)
                 else:
                     apply()

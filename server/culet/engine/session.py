@@ -172,6 +172,8 @@ class Session:
         """Start or pause free fall; InputError if there is nothing to fall."""
         if self._simulation is None:
             raise InputError("expected a scene with a stone, got none: nothing can fall")
+        if falling:
+            self._simulation.prepare()
         self.falling = falling
         self._advanced_at = None
         self._show()

@@ -14,7 +14,7 @@ from culet.errors import InputError
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.floor import sphere_gap
-from culet.simulation.hull import Hull
+from culet.simulation.hull import Hull, hull_of
 from culet.simulation.inertia import inertia_tensor
 from culet.simulation.principal_axes import PrincipalAxis, principal_axes
 from culet.simulation.rotation import rotate, rotate_back
@@ -48,7 +48,7 @@ class RigidBody:
     @cached_property
     def hull(self) -> Hull:
         """The vertices that can touch a plane."""
-        return Hull.of(self.stone.vertices)
+        return hull_of(self.stone)
 
     @cached_property
     def principal_axes(self) -> tuple[PrincipalAxis, PrincipalAxis, PrincipalAxis]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Self
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from culet.geometry.stone import Stone
 from culet.simulation.state import Triple
 
 
@@ -36,3 +38,15 @@ class Hull:
         """(V,) of the vertices along a direction in the stone's axes; sums in one order, without BLAS."""
         x, y, z = self.coordinates
         return x * direction[0] + y * direction[1] + z * direction[2]
+
+
+_HULLS: WeakKeyDictionary[Stone, Hull] = WeakKeyDictionary()
+"""Of 41 000 vertices one takes half a second, and every change of mass, walls or height would need it again."""
+
+
+def hull_of(stone: Stone) -> Hull:
+    """The stone's hull, computed once."""
+    hull = _HULLS.get(stone)
+    if hull is None:
+        hull = _HULLS[stone] = Hull.of(stone.vertices)
+    return hull

@@ -58,6 +58,10 @@ class Simulation:
         """Whether nothing that `interpolated` gives will change any more."""
         return self.state.asleep and self.previous.asleep
 
+    def prepare(self) -> None:
+        """Compute what all steps need, so that the first takes no longer than the next."""
+        _ = self.body.hull
+
     def step(self) -> None:
         """Advance by one fixed step; asleep, only time passes."""
         state = self.state
