@@ -138,7 +138,8 @@ class SessionState(Message):
 
 
 class SessionProblem(Message):
-    """Told unasked: what this session shows could not be rendered; it is tried again after the next edit."""
+    """Told unasked: what this session shows could not be rendered, which is tried again after the next edit; or its
+    stone could not be moved, and has stopped."""
 
     type: Literal["session_problem"] = "session_problem"
     session: SessionId
