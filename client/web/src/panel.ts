@@ -9,6 +9,7 @@ import type { CutKind } from "./cut";
 import { CutPanel } from "./cut-panel";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
+import { describeOptions } from "./option-titles";
 import type { Preset } from "./rest";
 import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
 
@@ -77,7 +78,7 @@ export class Panel {
     const options = Object.fromEntries([["choose\u2026", ""], ...presets.map(({ name }) => [name, name])]);
     const controller = this.files.add(choice, "preset", options).name("Preset");
     const list = controller.domElement.querySelector("select");
-    for (const [index, { summary }] of presets.entries()) list?.options[index + 1]?.setAttribute("title", summary);
+    describeOptions(controller, presets);
     controller.onChange((name: string) => {
       const preset = presets.find((candidate) => candidate.name === name);
       list?.blur(); // or the next key would choose another preset

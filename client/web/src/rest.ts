@@ -20,16 +20,14 @@ export function isPassing({ status }: ProblemError): boolean {
   return [0, 429, 502, 503, 504].includes(status);
 }
 
-export interface Preset {
-  name: string;
-  summary: string;
-  scene: JsonObject;
-}
-
 /** Something that a scene can name. */
 export interface Catalogued {
   name: string;
   summary: string;
+}
+
+export interface Preset extends Catalogued {
+  scene: JsonObject;
 }
 
 export interface Material extends Catalogued {
