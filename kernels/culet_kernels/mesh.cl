@@ -43,7 +43,9 @@ static inline int lowest_bit(uint bits) { return popcount((bits & -bits) - 1); }
 // R at first and WIDER times as much each time, until it finds one. It does: some facet is turned away from any ray, and no
 // triangle is LAST_WIDENING away. 6e-6 was enough for most stones that were tried, 5e-5 for a needle of 1000 : 1.
 #define FIRST_WIDENING SMALLEST_GAP
+#ifndef LAST_WIDENING // 0: never
 #define LAST_WIDENING ((real)16)
+#endif
 #define WIDER ((real)8)
 
 typedef struct {
