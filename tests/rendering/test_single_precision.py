@@ -12,25 +12,25 @@ from culet.scene import Scene
 from culet.study.precision import FARTHER, PERTURBATION, SCENES, SIZE, is_step, judge
 
 MOST = {
-    "default": 0.002,  # measured 0.00132
-    "matte floor, lights": 0.002,  # 0.00132
-    "matte floor, no lights": 0.002,  # 0.00131
-    "stone alone, gradient": 0.0003,  # 0.00012
-    "stone alone, half": 0.0003,  # 0.00010
-    "mirrors all around, absorption": 0.005,  # 0.0034
-    "from inside": 0.005,  # 0.0031
+    "default": (0.002, 0.02),  # measured 0.00132, 0.014
+    "matte floor, lights": (0.002, 0.02),  # 0.00132, 0.012
+    "matte floor, no lights": (0.002, 0.02),  # 0.00131, 0.012
+    "stone alone, gradient": (0.0003, 0.006),  # 0.00012, 0.004
+    "stone alone, half": (0.0003, 0.006),  # 0.00010, 0.004
+    "mirrors all around, absorption": (0.005, 0.11),  # 0.0034, 0.091
+    "from inside": (0.005, 0.09),  # 0.0031, 0.074
 }
-"""Part of the pixels that may differ by more than 1e-4."""
+"""Parts of the pixels that may differ by more than 1e-4, and that shaking everything may move by as much. What explains
+the former would explain few others: pixels that differ are not found by shaking everything."""
 
 
 def assert_explained(renderer: Renderer, exact: Renderer, name: str, size: tuple[int, int]) -> None:
     found = judge(renderer, exact, Scene.read(SCENES[name]), size, FARTHER.get(name, PERTURBATION))
-    assert 0 < found.decided < MOST[name] * found.pixels
+    most_decided, most_moved = MOST[name]
+    assert 0 < found.decided < most_decided * found.pixels
     assert found.unexplained == 0, found
-    assert found.facet + found.room + found.rim + found.critical == found.decided
     assert abs(found.mean) < 3 * found.sigma  # measured 1.7 at most
-    # What explains them would explain few others: pixels that differ are not found by shaking everything.
-    assert found.moved < 0.1  # measured 0.091 in the room of mirrors, 0.014 in the default scene
+    assert found.moved < most_moved
 
 
 def test_every_pixel_that_differs_is_where_the_picture_is_steep(renderer: Renderer, exact: Renderer) -> None:
