@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -95,15 +96,18 @@ def open_device() -> Device:
         )  # fmt: skip
     if not tried:
         tried = [f"none matches CULET_DEVICE={wanted!r}" if wanted and candidates else "the drivers offer none"]
-    raise DeviceError(f"no OpenCL device works ({'; '.join(tried)}); {_remedy()}")
+    raise DeviceError(f"no OpenCL device works ({'; '.join(tried)}); {remedy(candidates)}")
 
 
-def _remedy() -> str:
-    """What to do about it. Without a folder for its machine code PoCL offers no device, and does not say why."""
+def remedy(found: Sequence[Any]) -> str:
+    """What to do if none of the devices found works. Without a folder for its machine code PoCL 3.1 offers none, and
+    does not say why."""
     folder = _pocl_cache()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
+            if found:
+                return "clinfo shows what there is; CULET_DEVICE chooses among it by name"
             return "on Debian: apt-get install pocl-opencl-icd"
     except OSError as error:
         return f"PoCL cannot write to its cache {folder} ({error.strerror}); name another folder by POCL_CACHE_DIR"
