@@ -106,3 +106,7 @@ def test_the_committed_baseline_has_every_scene_and_figure() -> None:
     assert all(case.keys() >= set(FIGURES) for case in line["cases"])
     assert line.keys() >= {"made", "commit", "machine", "flags", "width", "height"}
     assert line["machine"].keys() >= {"processor", "device", "driver", "units"}
+
+
+def test_the_committed_baseline_is_of_a_commit() -> None:
+    assert not last_line(COMMITTED)["commit"].endswith("-dirty")
