@@ -58,7 +58,7 @@ async def test_an_uploaded_sky_is_described_and_seen_in_stills_and_sessions(gate
 @pytest.mark.parametrize(
     ("name", "data", "defect"),
     [
-        ("empty.png", b"", "not a readable .png picture"),
+        ("empty.png", b"", "expected a readable .png picture"),
         ("text.hdr", b"sunny", "Radiance header"),
         ("stone.obj", TETRAHEDRON, ".exr, .hdr, .png"),
     ],

@@ -35,7 +35,9 @@ class Listener:
             self._socket.bind((host, port))
         except (OSError, OverflowError) as error:
             self._socket.close()
-            raise InputError(f"cannot listen on {host} port {port}: {error}", "port") from error
+            raise InputError(
+                f"cannot listen on {host} port {port}: {error}; choose another with --port", "port"
+            ) from error
         shown = f"[{host}]" if family == socket.AF_INET6 else host
         self.url = f"http://{shown}:{self._socket.getsockname()[1]}/"
         app = create_app(settings)

@@ -101,7 +101,7 @@ def read_panorama(data: bytes, file_type: str) -> Panorama:
     except InputError:
         raise
     except Exception as error:  # three libraries, as many ways to fail
-        raise InputError(f"not a readable .{file_type} picture: {error}", "file") from error
+        raise InputError(f"expected a readable .{file_type} picture, got a damaged or another file", "file") from error
     if not np.isfinite(pixels).all() or (pixels < 0).any():
         raise InputError("expected a sky of finite radiance, not negative; got NaN, infinity or less than 0", "file")
     return np.ascontiguousarray(pixels, np.float32)
