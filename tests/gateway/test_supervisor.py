@@ -20,6 +20,7 @@ from websockets.asyncio.client import connect
 
 from culet.errors import EngineUnavailableError, InputError
 from culet.gateway.listener import Listener
+from culet.gateway.serve import serve
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.supervisor import STARTS_BEFORE_GIVING_UP, Supervisor
 from culet_client import FrameSubscription
@@ -230,3 +231,10 @@ def test_a_taken_port_is_refused_before_anything_starts() -> None:
         port = taken.getsockname()[1]
         with pytest.raises(InputError, match=rf"cannot listen on 127.0.0.1 port {port}: .*in use"):
             Listener(GatewaySettings("ipc://unused", "ipc://unused"), "127.0.0.1", port)
+
+
+def test_frames_that_cannot_be_published_are_refused_before_anything_starts() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        for endpoint in ("foo", f"tcp://127.0.0.1:{taken.getsockname()[1]}"):
+            with pytest.raises(InputError, match=f"cannot publish at {endpoint}: .*expected a free one"):
+                serve(port=0, frames=endpoint)

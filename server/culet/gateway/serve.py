@@ -6,6 +6,9 @@ import asyncio
 from collections.abc import Sequence
 from pathlib import Path
 
+import zmq
+
+from culet.errors import InputError
 from culet.gateway.listener import Listener
 from culet.gateway.settings import BUILT_CLIENT, GatewaySettings
 from culet.gateway.socket_folder import socket_folder
@@ -23,9 +26,11 @@ def serve(
     """Run engine and gateway until SIGINT or SIGTERM; print the URL once both are ready.
 
     `port` 0 takes a free one. `frames`, such as `tcp://127.0.0.1:5556`, is where the engine publishes frames for
-    native viewers too; without it they stay on this machine. Raises InputError if the address cannot be listened on,
+    native viewers too; without it they stay on this machine. Raises InputError if an address cannot be listened on,
     and EngineUnavailableError if the engine dies again and again before it was ever ready.
     """
+    if frames:
+        check_free(frames)
     with socket_folder() as folder:
         control, own_frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
         settings = GatewaySettings(control=control, frames=own_frames, web=web, allowed_origins=tuple(allowed_origins))
@@ -69,6 +74,18 @@ async def _serve(listener: Listener, supervisor: Supervisor | None) -> None:
                 await supervisor.stop()
         for task in done:
             task.result()
+
+
+def check_free(endpoint: str) -> None:
+    """InputError if frames cannot be published there."""
+    with zmq.Context() as context, context.socket(zmq.XPUB) as socket:
+        try:
+            socket.bind(endpoint)
+        except zmq.ZMQError as error:
+            raise InputError(
+                f"--frames: cannot publish at {endpoint}: {error}; expected a free one such as tcp://127.0.0.1:5556",
+                "frames",
+            ) from error
 
 
 def reachable(endpoint: str) -> str:
