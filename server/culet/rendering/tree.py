@@ -22,8 +22,8 @@ WIDTH = 16
 """Children of a node, and triangles of a leaf: TREE_WIDTH of mesh.cl."""
 STACK = 128
 """Nodes that a ray may have waiting: TREE_STACK of mesh.cl."""
-BINS = 16
-"""Places at which a split is tried, along the longest side."""
+BINS = 32
+"""Places at which a split is tried, along each axis."""
 
 MARGIN = 4e-6
 """R by which boxes are larger than what they hold: single precision rounds coordinates of up to 1, and the products of
@@ -103,25 +103,36 @@ def _split(centres: Array, lower: Array, upper: Array, *, by_median: bool) -> ND
     """Which triangles go to the left: never none, never all."""
     extent = centres.max(axis=0) - centres.min(axis=0)
     axis = int(extent.argmax())
-    count = len(centres)
     if extent[axis] > 0 and not by_median:
-        place = (centres[:, axis] - centres[:, axis].min()) / extent[axis]
-        number = np.minimum((place * BINS).astype(int), BINS - 1)
-        low, high = np.full((BINS, 3), np.inf), np.full((BINS, 3), -np.inf)
-        np.minimum.at(low, number, lower)
-        np.maximum.at(high, number, upper)
-        counts = np.bincount(number, minlength=BINS)
-        from_left = counts.cumsum()[:-1], _areas(np.minimum.accumulate(low), np.maximum.accumulate(high))[:-1]
-        from_right = (
-            counts[::-1].cumsum()[::-1][1:],
-            _areas(np.minimum.accumulate(low[::-1]), np.maximum.accumulate(high[::-1]))[::-1][1:],
-        )
-        cost = from_left[0] * from_left[1] + from_right[0] * from_right[1]
-        left: NDArray[np.bool_] = number <= int(cost.argmin())
-        return left  # the outermost bins are never empty
+        splits = [_best_split(centres[:, k], lower, upper) for k in range(3) if extent[k] > 0]
+        return min(splits, key=lambda split: split[0])[1]
+    count = len(centres)
     left = np.zeros(count, np.bool_)
     left[np.argpartition(centres[:, axis], count // 2)[: count // 2]] = True
     return left
+
+
+def _best_split(centres: Array, lower: Array, upper: Array) -> tuple[float, NDArray[np.bool_]]:
+    """The cheapest split along one axis: its cost, and which triangles go to the left.
+
+    A leaf costs the same however full it is, so what counts is how many leaves the triangles of a side fill.
+    """
+    place = (centres - centres.min()) / (centres.max() - centres.min())
+    number = np.minimum((place * BINS).astype(int), BINS - 1)
+    low, high = np.full((BINS, 3), np.inf), np.full((BINS, 3), -np.inf)
+    np.minimum.at(low, number, lower)
+    np.maximum.at(high, number, upper)
+    counts = np.bincount(number, minlength=BINS)
+    cost = _costs(low, high, counts)[:-1] + _costs(low[::-1], high[::-1], counts[::-1])[-2::-1]
+    best = int(cost.argmin())
+    return float(cost[best]), number <= best  # the outermost bins are never empty
+
+
+def _costs(low: Array, high: Array, counts: NDArray[np.int64]) -> Array:
+    """Of the first bin, the first two, and so on: area times leaves."""
+    areas = _areas(np.minimum.accumulate(low), np.maximum.accumulate(high))
+    costs: Array = np.ceil(counts.cumsum() / WIDTH) * areas
+    return costs
 
 
 def _areas(lower: Array, upper: Array) -> Array:
