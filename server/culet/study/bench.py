@@ -16,12 +16,11 @@ import numpy as np
 import pyopencl as cl
 
 from culet import __version__
-from culet.geometry.load import stone_of
 from culet.rendering.features import features_of
 from culet.rendering.program import FLAGS
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
-from culet.study.cases import CASES, FEATURE_CASES
+from culet.study.cases import CASES, FEATURE_CASES, stone_of_case
 from culet.study.provenance import commit, processor
 
 EXACT_CUTOFF, EXACT_BOUNCES = 1e-5, 65536
@@ -100,7 +99,7 @@ def first_sample(renderer: Renderer, scene: Scene, width: int, height: int) -> F
 def measure_features(renderer: Renderer, width: int, height: int, repeats: int) -> Iterator[FeatureCost]:
     """Every feature of FEATURE_CASES, one after the other."""
     for name, (off, on) in FEATURE_CASES.items():
-        without = features_of(off, stone_of(off.stones[0], {}))
+        without = features_of(off, stone_of_case(off))
         idle = without.without(name)
         pictures = [
             _picture(renderer, off, width, height),
@@ -137,7 +136,7 @@ def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -
 
 
 def _picture(renderer: Renderer, scene: Scene, width: int, height: int, features: Any = None) -> Picture:  # noqa: ANN401
-    picture = renderer.picture(scene, stone_of(scene.stones[0], {}), width, height, features=features)
+    picture = renderer.picture(scene, stone_of_case(scene), width, height, features=features)
     picture.refine()  # the first launch pays for pages and caches
     return picture
 

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
+
+import trimesh
+
+from culet.geometry.load import stone_of
+from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.stone import Stone
 from culet.scene.model import (
     Camera,
     GradientEnvironment,
@@ -26,14 +33,34 @@ CHECKER = Scene(
 
 _LIGHTS = Scene().lights
 
+RING = "ring"
+"""In place of the id of an upload."""
+
 CASES: dict[str, Scene] = {
     "checker": CHECKER,
     "checker, 256 bounces": CHECKER.model_copy(update={"optics": Optics()}),
     "checker, both lights": CHECKER.model_copy(update={"lights": _LIGHTS}),
     "mirror, both lights": CHECKER.model_copy(update={"lights": _LIGHTS, "floor": Plane(kind="mirror")}),
     "default": Scene(),
+    "default, 8 bands": Scene(optics=Optics(bands=8)),
+    "default, polarised": Scene(optics=Optics(polarised=True)),
+    "default, mesh of 5 000 triangles": Scene(stones=(Scene().stones[0].model_copy(update={"mesh": RING}),)),
 }
 """Name -> scene; the first is what the others are compared with."""
+
+
+@cache
+def ring() -> Stone:
+    """A ring of 5 000 triangles, which is not convex."""
+    torus = trimesh.creation.torus(major_radius=0.66, minor_radius=0.34, major_sections=50, minor_sections=50)
+    return stone_from_mesh(torus.export(file_type="obj").encode(), "obj", name="ring.obj")
+
+
+def stone_of_case(scene: Scene) -> Stone:
+    """The stone of one of these scenes."""
+    settings = scene.stones[0]
+    return stone_of(settings, {RING: ring()} if settings.mesh == RING else {})
+
 
 BARE = CHECKER.model_copy(
     update={
