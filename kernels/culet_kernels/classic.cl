@@ -89,8 +89,7 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
                      __global const real *corners, __global const chain_t *chains, __global const float *panorama,
                      double jitter_x, double jitter_y, int first_tile_row, int accumulate, __global float *tallies) {
   const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
-  const int tile_column = get_global_id(0);
-  const int tile_row = dealt_row(get_global_id(1), get_global_size(1)) + first_tile_row;
+  const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
   tile_t tile;
   tile.segments = (intL)(0);
   for (int y = 0; y < TILE; y += PACKET_HEIGHT)

@@ -14,10 +14,6 @@ typedef struct {
   intL segments;                 // inside the stone
 } tile_t;
 
-// The row of tiles that is the `number`th to be taken. A driver deals out long runs of tiles, PoCL first a core's whole share:
-// the rows of both halves take turns, so that no run holds all of the stone.
-static inline int dealt_row(int number, int rows) { return number % 2 * ((rows + 1) / 2) + number / 2; }
-
 // Pixels lie packet by packet in a tile, so that a packet is stored as it is.
 static inline int first_pixel(int x, int y) {
   return (y / PACKET_HEIGHT * (TILE / PACKET_WIDTH) + x / PACKET_WIDTH) * LANES;
