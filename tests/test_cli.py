@@ -223,6 +223,10 @@ def test_an_endpoint_that_cannot_be_bound_is_said_so(tmp_path: Path) -> None:
     assert "cannot bind" in refused(run)
 
 
+def test_a_folder_without_a_page_is_refused_at_once(tmp_path: Path) -> None:
+    assert f"there is no {tmp_path / 'index.html'}" in refused(culet("serve", "--port", "0", "--web", tmp_path))
+
+
 def test_serve_runs_and_ends_with_its_engine(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "culet", "serve", "--port", "0"]
     with (

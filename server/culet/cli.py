@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import logging
 import math
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +12,7 @@ import typer
 
 from culet import __version__
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
-from culet.command.places import check_place
+from culet.command.places import check_place, check_web, opened
 from culet.command.subject import read_subject
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.errors import InputError, SceneError
@@ -172,7 +170,7 @@ def bench(
     from culet.study.tables import case_table, feature_table, print_comparison
 
     console = report_console()
-    with errors_in_one_line(), _appending(out) as append:
+    with errors_in_one_line(), opened(out) as file:
         baseline = last_line(against) if against is not None else None
         renderer = Renderer()
         with Console(stderr=True).status("measuring"):
@@ -189,23 +187,10 @@ def bench(
         line = record_line(renderer, width, height, timings)
         if baseline is not None:
             print_comparison(console, baseline, json.loads(line))
-        for doubt in doubts(json.loads(line)) if out is not None else ():
-            console.print(f"note: no line to compare others with: {doubt}", soft_wrap=True)
-        append(line)
-
-
-@contextlib.contextmanager
-def _appending(out: Path | None) -> Iterator[Callable[[str], None]]:
-    """Call it with a line for the file, or for nowhere; InputError before the work if the file cannot be written."""
-    if out is None:
-        yield lambda _line: None
-        return
-    try:
-        file = out.open("a", encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
-    with file:
-        yield lambda line: print(line, file=file)
+        if file is not None:
+            for doubt in doubts(json.loads(line)):
+                console.print(f"note: no line to compare others with: {doubt}", soft_wrap=True)
+            print(line, file=file)
 
 
 @app.command()
@@ -227,6 +212,7 @@ def serve(
 
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
+        check_web(web)
         run(host, port, frames=frames, web=web or BUILT_CLIENT, allowed_origins=allow_origin or ())
 
 
@@ -245,6 +231,7 @@ def gateway(
 
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
+        check_web(web)
         run_gateway(control, frames, host, port, web=web or BUILT_CLIENT, allowed_origins=allow_origin or ())
 
 

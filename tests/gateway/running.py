@@ -6,7 +6,9 @@ import asyncio
 import contextlib
 import io
 import json
-from collections.abc import AsyncIterator, Callable
+import subprocess
+import tempfile
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import httpx
@@ -121,6 +123,19 @@ class Viewer:
         """The last frame of a picture at rest."""
         await self.until(lambda: bool(self.frames and Flags.FINAL in self.frames[-1].flags))
         return self.frames[-1]
+
+
+@contextlib.contextmanager
+def engine_process(command: Callable[[str, str], Sequence[str]]) -> Iterator[Endpoints]:
+    """The endpoints of an engine that the command for these two starts."""
+    with tempfile.TemporaryDirectory(prefix="culet-test-") as folder:  # pytest's own folders can be too long for ipc
+        endpoints = Endpoints(f"ipc://{folder}/control", f"ipc://{folder}/frames")
+        process = subprocess.Popen(command(*endpoints))
+        try:
+            yield endpoints
+        finally:
+            process.terminate()
+            assert process.wait(10) == 0
 
 
 @contextlib.asynccontextmanager

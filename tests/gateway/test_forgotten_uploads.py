@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
-import tempfile
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from gateway.running import TETRAHEDRON, Endpoints, Gateway, gateway_before, png
+from gateway.running import TETRAHEDRON, Endpoints, Gateway, engine_process, gateway_before, png
 
 FORGETFUL = """
 import sys
@@ -29,14 +27,8 @@ ROOM = 2 * (len(TETRAHEDRON) + COMMENT)
 @pytest.fixture(scope="module")
 def forgetful() -> Iterator[Endpoints]:
     """An engine that keeps one mesh and one sky."""
-    with tempfile.TemporaryDirectory(prefix="culet-test-") as folder:
-        endpoints = Endpoints(f"ipc://{folder}/control", f"ipc://{folder}/frames")
-        process = subprocess.Popen([sys.executable, "-c", FORGETFUL, *endpoints])
-        try:
-            yield endpoints
-        finally:
-            process.terminate()
-            assert process.wait(10) == 0
+    with engine_process(lambda control, frames: [sys.executable, "-c", FORGETFUL, control, frames]) as endpoints:
+        yield endpoints
 
 
 @pytest.fixture

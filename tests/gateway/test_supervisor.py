@@ -59,6 +59,7 @@ async def served(tmp_path: Path) -> AsyncIterator[Served]:
 
 @contextlib.contextmanager
 def _serve(web: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    (web / "index.html").write_text("<h1>the page</h1>")
     command = [sys.executable, "-m", "culet", "serve", "--port", "0", "--web", str(web), *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:

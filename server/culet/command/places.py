@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
+from typing import TextIO
 
 from culet.errors import InputError
 
@@ -19,3 +21,23 @@ def check_place(file: Path, option: str, endings: Collection[str]) -> None:
         raise InputError(f"{option}: cannot write {file}: there is no folder {file.parent}", option)
     if not os.access(file.parent, os.W_OK):
         raise InputError(f"{option}: cannot write {file}: permission denied", option)
+
+
+@contextlib.contextmanager
+def opened(out: Path | None) -> Iterator[TextIO | None]:
+    """The file that `--out` names, if any, to add to; what it holds stays. InputError if it cannot be written."""
+    if out is None:
+        yield None
+        return
+    try:
+        file = out.open("a", encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
+    with file:
+        yield file
+
+
+def check_web(folder: Path | None) -> None:
+    """InputError unless it is none, or a folder that holds a built page."""
+    if folder is not None and not (folder / "index.html").is_file():
+        raise InputError(f"web: expected the folder of a built web client; there is no {folder / 'index.html'}", "web")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.places import opened
 from culet.command.subject import Subject, read_subject
 from culet.command.terminal import errors_in_one_line, report_console
 from culet.errors import InputError, SceneError
@@ -116,9 +117,11 @@ def governor(
         subject, size = read_subject(scene, preset, None, None), (width, height)
         if subject.stone is None:
             raise SceneError("stones: expected a scene with a stone, got none: nothing can fall", "stones")
-        with _writing(out) as write:
+        with opened(out) as file:
             measured = asyncio.run(measure(subject.scene, seconds, size, exactness))
-            write(document(measured, size, rate_of(exactness)) + "\n")
+            if file is not None:
+                file.truncate(0)
+                file.write(document(measured, size, rate_of(exactness)) + "\n")
         typer.echo(described(measured, size, rate_of(exactness)))
 
 
@@ -167,28 +170,6 @@ def _with_stone(named: Subject) -> Studied:
     if named.stone is None:
         raise SceneError("stones: a study needs a stone; the scene has none", "stones")
     return Studied(named.scene, named.stone, named.panorama)
-
-
-@contextlib.contextmanager
-def _writing(out: Path | None) -> Iterator[Callable[[str], None]]:
-    """Call it with what the file, or nothing, is to hold; InputError before the work if it cannot be written.
-
-    What the file held until then stays, if the work fails.
-    """
-    if out is None:
-        yield lambda _text: None
-        return
-    try:
-        file = out.open("a", encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
-
-    def write(text: str) -> None:
-        file.truncate(0)
-        file.write(text)
-
-    with file:
-        yield write
 
 
 @contextlib.contextmanager
