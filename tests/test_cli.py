@@ -24,7 +24,9 @@ TINY = ("--width", "48", "--height", "27")
 
 
 def culet(*arguments: str | Path, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:
-    return subprocess.run([sys.executable, "-m", "culet", *arguments], input=stdin, capture_output=True, check=False)
+    return subprocess.run(
+        [sys.executable, "-m", "culet", *arguments], input=stdin, capture_output=True, check=False, timeout=300
+    )
 
 
 def refused(run: subprocess.CompletedProcess[bytes]) -> str:
