@@ -29,8 +29,9 @@ from __future__ import annotations
 import numpy as np
 
 from culet.scene.model import Simulation as SimulationSettings
+from culet.scene.room import FLOOR_Y
 from culet.simulation.body import RigidBody
-from culet.simulation.floor import BOUNDING_RADIUS, FLOOR, sphere_gap
+from culet.simulation.floor import BOUNDING_RADIUS, sphere_gap
 from culet.simulation.rotation import euler_step, rotate_back
 from culet.simulation.state import RigidState, Touch, Triple
 
@@ -50,8 +51,8 @@ def step(state: RigidState, settings: SimulationSettings, body: RigidBody) -> Ri
     angular, impacts, asleep = state.angular_momentum, state.impacts, False
     orientation = euler_step(state.orientation, body.angular_velocity(state), h)
 
-    if y - BOUNDING_RADIUS < FLOOR:
-        y = FLOOR + BOUNDING_RADIUS
+    if y - BOUNDING_RADIUS < FLOOR_Y:
+        y = FLOOR_Y + BOUNDING_RADIUS
         if py < 0:
             py = 0.0 if py / mass > -settings.velocity_threshold else -settings.restitution * py
         px *= settings.tangential_damping
@@ -78,7 +79,7 @@ def touch(state: RigidState, body: RigidBody) -> Touch:
     # the world's y of a vertex v is (R v).y = v.(R^T e_y): one turned axis instead of all vertices turned
     up = rotate_back(state.orientation, (0.0, 1.0, 0.0))
     lowest = state.position[1] + float((body.stone.vertices @ np.array(up)).min())
-    return Touch(int(gap <= 0), max(-gap, 0.0), lowest - FLOOR)
+    return Touch(int(gap <= 0), max(-gap, 0.0), lowest - FLOOR_Y)
 
 
 def random_torque(seed: int, impacts: int, largest: float) -> tuple[float, float]:

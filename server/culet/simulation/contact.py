@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from culet.simulation.body import RigidBody, Rows
-from culet.simulation.motion import Motion, gaps, sphere_centre_gap
+from culet.simulation.motion import Motion, centre_gap, gaps
 from culet.simulation.rotation import rotate
 from culet.simulation.state import Triple
 
@@ -46,7 +46,7 @@ def contacts(motion: Motion, body: RigidBody, reach: float = TOUCH) -> list[Cont
     near = [
         (number, vertex, float(distances[vertex]))
         for number, surface in enumerate(body.surfaces)
-        if sphere_centre_gap(motion, surface) <= body.hull.radius + reach
+        if centre_gap(motion, surface) <= body.hull.radius + reach
         for distances in (gaps(motion, body, surface),)
         for vertex in (distances <= reach).nonzero()[0].tolist()
     ]

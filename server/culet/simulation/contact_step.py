@@ -30,11 +30,11 @@ from culet.simulation.impact import limited
 from culet.simulation.impulses import solve
 from culet.simulation.motion import (
     Motion,
+    centre_gap,
     gaps,
     kinetic_energy,
     pushed_out,
     speed,
-    sphere_centre_gap,
     stopped,
     velocities,
 )
@@ -161,7 +161,7 @@ def _inside(motion: Motion, body: RigidBody) -> dict[Vertex, float]:
     """Vertices deeper than TOUCH inside a surface, with their gaps."""
     found: dict[Vertex, float] = {}
     for number, surface in enumerate(body.surfaces):
-        if sphere_centre_gap(motion, surface) <= body.hull.radius:
+        if centre_gap(motion, surface) <= body.hull.radius:
             distances = gaps(motion, body, surface)
             for vertex in (distances < -TOUCH).nonzero()[0].tolist():
                 found[number, vertex] = float(distances[vertex])

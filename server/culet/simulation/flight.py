@@ -14,7 +14,7 @@ import math
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import TOUCH
 from culet.simulation.free_rotation import Integrator
-from culet.simulation.motion import AT_SURFACE, Motion, flown, gaps, sphere_centre_gap
+from culet.simulation.motion import AT_SURFACE, Motion, centre_gap, flown, gaps
 from culet.simulation.state import Triple
 
 SAGITTA = 1e-5
@@ -36,7 +36,7 @@ def fly(
     part = time
     for surface in body.surfaces:
         approach = _approach(motion, body, surface.normal, gravity, time)
-        room = sphere_centre_gap(motion, surface) - body.hull.radius
+        room = centre_gap(motion, surface) - body.hull.radius
         if room > approach * time:
             continue  # however it turns
         safe = room / approach if room > 0 else 0.0
@@ -66,7 +66,7 @@ def _depth(motion: Motion, body: RigidBody) -> float:
     """How far the deepest vertex is inside a surface, R; negative: how far the nearest is outside, if near at all."""
     deepest = -math.inf
     for surface in body.surfaces:
-        if sphere_centre_gap(motion, surface) <= body.hull.radius + TOUCH:
+        if centre_gap(motion, surface) <= body.hull.radius + TOUCH:
             deepest = max(deepest, -float(gaps(motion, body, surface).min()))
     return deepest
 

@@ -37,10 +37,10 @@ def flown(motion: Motion, body: RigidBody, gravity: float, time: float, integrat
 
 def gaps(motion: Motion, body: RigidBody, surface: Surface) -> NDArray[np.float64]:
     """(V,) distances of the hull's vertices from a surface, R; negative behind it."""
-    return body.hull.heights(rotate_back(motion.orientation, surface.normal)) + sphere_centre_gap(motion, surface)
+    return body.hull.heights(rotate_back(motion.orientation, surface.normal)) + centre_gap(motion, surface)
 
 
-def sphere_centre_gap(motion: Motion, surface: Surface) -> float:
+def centre_gap(motion: Motion, surface: Surface) -> float:
     """Distance of the centre of mass from a surface, R."""
     (a, b, c), (x, y, z) = surface.normal, motion.position
     return a * x + b * y + c * z - surface.offset
@@ -82,7 +82,7 @@ def pushed_out(motion: Motion, body: RigidBody) -> Motion:
     for _ in range(100):
         deepest = 0.0
         for surface in body.surfaces:
-            if sphere_centre_gap(motion, surface) > body.hull.radius:
+            if centre_gap(motion, surface) > body.hull.radius:
                 continue
             depth = -float(gaps(motion, body, surface).min())
             if depth > 0:

@@ -22,7 +22,7 @@ from culet.simulation.simulation import Simulation
 from culet.simulation.surfaces import surfaces_of
 
 MAX_STEPS = 500_000
-"""Four hours at 30 steps a second. Each recorded step takes about 1 kB while it is turned into text."""
+"""Over an hour at the default 120 steps a second. Each recorded step takes about 1 kB while it is turned into text."""
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -156,11 +156,11 @@ def write(path: Path, file: pathlib.Path) -> None:
     """
     encode = _ENCODERS.get(file.suffix.lower())
     if encode is None:
-        raise InputError(f"output: a path is written as {', '.join(_ENCODERS)}; got {file.name!r}", "output")
+        raise InputError(f"out: a path is written as {', '.join(_ENCODERS)}; got {file.name!r}", "out")
     try:
         _replace(file, encode(path))
     except OSError as error:
-        raise InputError(f"output: {file} cannot be written: {error.strerror}", "output") from error
+        raise InputError(f"out: {file} cannot be written: {error.strerror}", "out") from error
 
 
 def _replace(file: pathlib.Path, content: bytes) -> None:

@@ -22,7 +22,7 @@ from culet.simulation.contact_step import contact_step, slid
 from culet.simulation.flight import fly
 from culet.simulation.free_rotation import INTEGRATORS, Integrator
 from culet.simulation.impact import impact
-from culet.simulation.motion import Motion, gaps, kinetic_energy, pushed_out, sphere_centre_gap, stopped, velocities
+from culet.simulation.motion import Motion, centre_gap, gaps, kinetic_energy, pushed_out, stopped, velocities
 from culet.simulation.state import RigidState, Touch
 from culet.simulation.support import is_supported
 
@@ -180,6 +180,6 @@ def touch(state: RigidState, body: RigidBody) -> Touch:
 
 def _is_inside(motion: Motion, body: RigidBody) -> bool:
     return any(
-        sphere_centre_gap(motion, surface) < body.hull.radius and float(gaps(motion, body, surface).min()) < 0
+        centre_gap(motion, surface) < body.hull.radius and float(gaps(motion, body, surface).min()) < 0
         for surface in body.surfaces
     )

@@ -10,13 +10,13 @@ import statistics
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyopencl as cl
 
 from culet import __version__
-from culet.rendering.features import features_of
+from culet.rendering.features import Features, features_of
 from culet.rendering.program import FLAGS
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
@@ -135,7 +135,7 @@ def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -
     )
 
 
-def _picture(renderer: Renderer, scene: Scene, width: int, height: int, features: Any = None) -> Picture:  # noqa: ANN401
+def _picture(renderer: Renderer, scene: Scene, width: int, height: int, features: Features | None = None) -> Picture:
     picture = renderer.picture(scene, stone_of_case(scene), width, height, features=features)
     picture.refine()  # the first launch pays for pages and caches
     return picture

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -108,7 +109,9 @@ def governor(
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 1280,
     height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels, likewise.")] = 720,
     exactness: Annotated[float, typer.Option(min=0, max=1, help="Of the balance: 0 many frames, 1 good ones.")] = 0.5,
-    out: Annotated[Path | None, typer.Option("-o", metavar="FILE", help="JSON with every frame's header.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every frame's header.")
+    ] = None,
 ) -> None:
     """Let a stone fall again and again, then change things around it: what does a viewer get, and how soon."""
     from culet.study.governor import described, document, measure, rate_of
@@ -220,8 +223,6 @@ def _tell(report: Report, out: Path) -> None:
 
 
 def _print_difference(difference: Difference) -> None:
-    import math
-
     from culet.study.comparison import medians
 
     for warning in difference.warnings:

@@ -211,7 +211,7 @@ def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
         *_rows(summarise(measured.steady, rate)),
         f"processor            {milliseconds:.1f} ms a frame, on {os.cpu_count()} cores",
         "",
-        "after a change       settled after   settings in 4 s",
+        f"after a change       settled after   settings in {CHANGE_SECONDS:g} s",
         *(_change_row(settled) for settled in settle(measured.changing, measured.changes, rate)),
         "",
         "with all of these changes",
@@ -239,7 +239,7 @@ def _rows(summary: Summary | None) -> list[str]:
 
 
 def _change_row(settled: Settled) -> str:
-    when = "not in 4 s" if settled.seconds is None else f"{settled.seconds:.2f} s"
+    when = f"not in {CHANGE_SECONDS:g} s" if settled.seconds is None else f"{settled.seconds:.2f} s"
     return f"{settled.name:<20} {when:<15} {settled.setting_changes + 1}"
 
 

@@ -28,8 +28,8 @@ class Limits(NamedTuple):
     single_flops: float
     """Additions and multiplications a second in single precision, two for each fused multiply-add."""
     double_flops: float
-    bandwidth: float
-    """Bytes a second, read and written, of a copy."""
+    bandwidth_per_second: float
+    """Bytes read and written, of a copy."""
 
 
 def measure_limits(device: Device, repeats: int = 5) -> Limits:

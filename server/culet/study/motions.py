@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as Settings
-from culet.simulation.floor import FLOOR
+from culet.scene.room import FLOOR_Y
 from culet.simulation.rotation import rotate
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
@@ -61,13 +61,13 @@ def motions_of(stone: Stone) -> Iterator[tuple[Motion, Callable[[str], End]]]:
     bounce = Motion(
         "bounce",
         23 / 15,
-        (0.0, FLOOR + 2.5, 0.0),
+        (0.0, FLOOR_Y + 2.5, 0.0),
         lying,
         {"spin": (0, 0, 0), "friction": 0, "restitution": 0.6, "random_torque": 0},
     )
     yield bounce, lambda model: bounce_truth(bounce, 1.0 if model == "classic" else half_height)
     slide = Motion(
-        "slide", 1.0, (0.0, FLOOR + half_height, 0.0), lying,
+        "slide", 1.0, (0.0, FLOOR_Y + half_height, 0.0), lying,
         {"spin": (0, 0, 0), "velocity": (1, 0, 0), "friction": 0.3, "rolling_resistance": 0, "sleeping": False},
     )  # fmt: skip
     yield slide, lambda _: _slide_end(slide)
@@ -127,15 +127,15 @@ def bounce_truth(motion: Motion, radius: float) -> End:
     """Where a body of that radius is that lands flat and without friction, each bounce e times as fast as the last."""
     settings = settings_of(motion, {})
     g, e, mass = settings.gravity, settings.restitution, settings.mass
-    clearance = motion.position[1] - FLOOR - radius
+    clearance = motion.position[1] - FLOOR_Y - radius
     t, speed = motion.seconds - math.sqrt(2 * clearance / g), e * math.sqrt(2 * g * clearance)
     if t >= 2 * speed / g / (1 - e):  # infinitely many bounces are over
         t = speed = 0.0
     while t > 2 * speed / g:
         t, speed = t - 2 * speed / g, e * speed
     height, velocity = speed * t - g * t * t / 2, speed - g * t
-    y = FLOOR + radius + height
-    energy = mass * (velocity**2 / 2 + g * (y - FLOOR - 1))
+    y = FLOOR_Y + radius + height
+    energy = mass * (velocity**2 / 2 + g * (y - FLOOR_Y - 1))
     start = mass * g * clearance
     return End(
         position=np.array([0.0, y, 0.0]),
@@ -156,7 +156,7 @@ def _slide_end(motion: Motion) -> End:
     return End(
         position=stopped,
         orientation=motion.orientation,
-        energy=settings.mass * settings.gravity * (y - FLOOR - 1),
+        energy=settings.mass * settings.gravity * (y - FLOOR_Y - 1),
         momentum=np.zeros(6),
         energy_scale=settings.mass * speed**2 / 2,
         momentum_scale=(scale, scale),

@@ -53,7 +53,7 @@ def rendering_report(
             front("One sample a pixel: time against the knob's own error", single, "kernel_seconds", "rmse_paired"),
         ),
         races=tuple(races),
-        limits={f"{name}_per_second" if name == "bandwidth" else name: v for name, v in limits._asdict().items()},
+        limits=limits._asdict(),
         headlines=(
             *_rendering_headlines(swept, base, limits, facets),
             *_race_headlines(points, races),

@@ -10,6 +10,7 @@ from culet.study.document import document, figure, heading, paragraph, picture, 
 from culet.study.pictures import LEAST, MOST, inline, picture_paths, scale_bar
 from culet.study.plot import SHAPES, Mark, Series, log_log
 from culet.study.report import Front, Point, Report
+from culet.study.simulation import DEFAULTS
 
 TITLES = {
     "rendering": "Error against run time: the renderer",
@@ -175,7 +176,8 @@ def _method(point: Point) -> str:
         return str(knobs["integrator"])
     if knobs["model"] != "rigid":
         return str(knobs["model"])
-    return f"rigid, {knobs['integrator']}" + ("" if knobs["contact_step"] == 0.02 else ", contact steps")
+    usual = knobs["contact_step"] == DEFAULTS.contact_step
+    return f"rigid, {knobs['integrator']}" + ("" if usual else ", contact steps")
 
 
 def _streaming(report: Report, pictures: Path) -> Iterator[str]:

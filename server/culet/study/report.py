@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from pathlib import Path
 from typing import Annotated, Literal
@@ -115,9 +117,6 @@ class Report(Model):
 
 def csv_text(report: Report) -> str:
     """A row a point: key, group, label, then every knob and every figure; empty where there is none."""
-    import csv
-    import io
-
     knobs = list(dict.fromkeys(name for point in report.points for name in point.knobs))
     figures = list(report.figures)
     text = io.StringIO(newline="")

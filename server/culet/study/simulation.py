@@ -39,7 +39,11 @@ FIGURES: dict[str, Figure] = {
 ROTATION_STEPS = tuple(1 / n for n in (15, 30, 60, 120, 240, 480, 960))
 TIME_STEPS = tuple(1 / n for n in (15, 30, 60, 120, 240))
 CONTACT_STEPS = (0.1, 0.05, 0.02, 0.01, 0.005)
-DEFAULT_TIME_STEP = 1 / 30
+CONTACT_TIME_STEP = 1 / 30
+"""s, where CONTACT_STEPS, in sqrt(R / g), are swept: the longest of them takes 0.032 s, and a shorter step would cut
+it off."""
+DEFAULTS = Settings()
+"""What a scene has that says nothing of it."""
 
 
 def measure_all(stone: Stone, journal: Journal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
@@ -123,7 +127,8 @@ def _motions(stone: Stone, repeats: int, *, quick: bool) -> Iterator[tuple[str, 
 def _variants(name: str, *, quick: bool) -> Iterator[dict[str, Knob]]:
     """One knob of the model after the other; `classic` has the time step alone."""
     base: dict[str, Knob] = {
-        "model": "rigid", "integrator": "rkmk4", "time_step": DEFAULT_TIME_STEP, "contact_step": 0.02,
+        "model": "rigid", "integrator": DEFAULTS.integrator, "time_step": CONTACT_TIME_STEP,
+        "contact_step": DEFAULTS.contact_step,
     }  # fmt: skip
     steps = TIME_STEPS[:3] if quick else TIME_STEPS
     yield from ({**base, "time_step": step} for step in steps)
