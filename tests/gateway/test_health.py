@@ -41,7 +41,9 @@ async def test_the_documentation_lists_every_route_and_loads_nothing_from_elsewh
         assert path in paths
     for path in ("/api/meshes", "/api/skies"):
         assert "post" in paths[path]
-    for path in ("/api/sessions", session, f"{session}/frame.tga", "/healthz", "/readyz", "/metrics"):
+    for path in ("/api/sessions", session, f"{session}/frame.tga", f"{session}/frame.png"):
+        assert path in paths
+    for path in ("/healthz", "/readyz", "/metrics"):
         assert path in paths
 
 

@@ -164,7 +164,8 @@ async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -
     assert (await gateway.http.delete(path)).status_code == 204
     for method, body in (("GET", None), ("PATCH", {}), ("DELETE", None)):
         assert_problem(await gateway.http.request(method, path, json=body), 404)
-    assert_problem(await gateway.http.get(f"{path}/frame.tga"), 404)
+    for name in ("frame.tga", "frame.png"):
+        assert_problem(await gateway.http.get(f"{path}/{name}"), 404)
 
 
 async def test_a_session_without_a_body_shows_the_default_scene(gateway: Gateway) -> None:
@@ -218,9 +219,33 @@ async def test_the_frame_of_a_step_is_the_picture_that_was_shown_then(gateway: G
         now = await gateway.http.get(path)
     assert again.content == before
     assert now.content != before
-    assert "attachment" in again.headers["content-disposition"]
+    assert again.headers["content-disposition"] == f'attachment; filename="culet-{shown.step}.tga"'
     assert Image.open(io.BytesIO(before)).size == (64, 36), "the size that the viewers see"
     assert_problem(await gateway.http.get(path, params={"step": 10**9}), 404)
+
+
+async def test_the_frame_of_a_session_is_the_same_picture_as_png_and_as_tga(gateway: Gateway) -> None:
+    path = f"/api/sessions/{await gateway.session({'sampling': {'samples_per_pixel': 1}})}/frame"
+    targa, png = [await gateway.http.get(f"{path}.{ending}", params=SMALL) for ending in ("tga", "png")]
+    assert png.headers["content-type"] == "image/png"
+    assert png.headers["content-disposition"] == 'inline; filename="culet-1.png"'
+    one, other = (Image.open(io.BytesIO(answer.content)) for answer in (targa, png))
+    assert (one.format, other.format, other.size) == ("TGA", "PNG", (64, 36))
+    assert one.tobytes() == other.tobytes()
+    assert_problem(await gateway.http.get(f"{path}.png", params={"width": 0}), 422, "width")
+    assert_problem(await gateway.http.get(f"{path}.png", params={"step": 10**9}), 404)
+
+
+async def test_the_description_says_of_what_kind_every_picture_is(gateway: Gateway) -> None:
+    paths = (await gateway.http.get("/openapi.json")).json()["paths"]
+    session = "/api/sessions/{session_id}/frame"
+    for operation, kinds in (
+        (paths["/api/render.tga"]["get"], {"image/x-tga"}),
+        (paths["/api/render"]["post"], {"image/x-tga", "image/png", "image/jpeg", "image/x-exr"}),
+        (paths[f"{session}.tga"]["get"], {"image/x-tga"}),
+        (paths[f"{session}.png"]["get"], {"image/png"}),
+    ):
+        assert set(operation["responses"]["200"]["content"]) == kinds
 
 
 async def test_sessions_are_capped(engine: Endpoints, tmp_path: Path) -> None:

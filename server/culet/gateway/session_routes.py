@@ -12,7 +12,8 @@ from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers, finite
 from culet.gateway.sessions import Session
-from culet.gateway.stills import MEDIA_TYPES, Height, PictureResponse, Width
+from culet.gateway.state import Gateway
+from culet.gateway.stills import MEDIA_TYPES, Height, PngResponse, TargaResponse, Width
 from culet.scene import Scene, preset
 from culet.scene.model import Model
 from culet_protocol.engine import Render
@@ -103,25 +104,40 @@ async def delete_session(session_id: str, gateway: ThisGateway) -> None:
     await gateway.sessions.close(gateway.sessions.get(session_id))
 
 
-@router.get(
-    "/api/sessions/{session_id}/frame.tga", response_class=PictureResponse, responses=answers(404, 422, 429, 503)
-)
+FRAME = "/api/sessions/{session_id}/frame"
+
+
+@router.get(f"{FRAME}.tga", response_class=TargaResponse, responses=answers(404, 422, 429, 503))
 async def frame_tga(
     http: Request, session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway
 ) -> Response:
     """What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a pixel."""
-    session = gateway.sessions.get(session_id)
-    message = Render(session=session.id, step=query.step, width=query.width, height=query.height, format="tga")
-    _, data = await while_waited_for(http, gateway.link.request(message, patient=True))
-    file_format: Literal["tga"] = "tga"
-    disposition = f'attachment; filename="culet-{"latest" if query.step is None else query.step}.tga"'
-    return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
+    return await _frame(http, session_id, query, gateway, "tga")
+
+
+@router.get(f"{FRAME}.png", response_class=PngResponse, responses=answers(404, 422, 429, 503))
+async def frame_png(
+    http: Request, session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway
+) -> Response:
+    """The same picture as a PNG, which a browser shows."""
+    return await _frame(http, session_id, query, gateway, "png")
 
 
 @router.websocket("/api/sessions/{session_id}/stream")
 async def stream(websocket: WebSocket, session_id: str, gateway: ThisGateway) -> None:
     """Frames to a viewer, its control events back."""
     await streaming.stream(websocket, gateway, session_id)
+
+
+async def _frame(
+    http: Request, session_id: str, query: FrameQuery, gateway: Gateway, file_format: Literal["tga", "png"]
+) -> Response:
+    session = gateway.sessions.get(session_id)
+    message = Render(session=session.id, step=query.step, width=query.width, height=query.height, format=file_format)
+    result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
+    kind = "attachment" if file_format == "tga" else "inline"  # no browser shows a TGA
+    disposition = f'{kind}; filename="culet-{result["step"]}.{file_format}"'
+    return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
 
 
 def _answer(session: Session) -> SessionAnswer:

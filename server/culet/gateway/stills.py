@@ -67,19 +67,32 @@ class StillRequest(Model):
     }
 
 
-class PictureResponse(Response):
-    """For OpenAPI: bytes of a picture."""
+class TargaResponse(Response):
+    """For OpenAPI: bytes of a TGA."""
 
-    media_type = "image/x-tga"
+    media_type = MEDIA_TYPES["tga"]
 
 
-@router.get("/api/render.tga", response_class=PictureResponse, responses=answers(404, 422, 429, 503))
+class PngResponse(Response):
+    """For OpenAPI: bytes of a PNG."""
+
+    media_type = MEDIA_TYPES["png"]
+
+
+@router.get("/api/render.tga", response_class=TargaResponse, responses=answers(404, 422, 429, 503))
 async def render_tga(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
     """Render a preset as a 24-bit TGA."""
     return await _picture(http, gateway, query.scene(), query.width, query.height, "tga")
 
 
-@router.post("/api/render", response_class=PictureResponse, responses=answers(413, 422, 429, 503))
+@router.post(
+    "/api/render",
+    response_class=Response,
+    responses={
+        200: {"description": "The picture", "content": {kind: {} for kind in MEDIA_TYPES.values()}},
+        **answers(413, 422, 429, 503),
+    },
+)
 async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> Response:
     """Render a scene in the format asked for."""
     return await _picture(http, gateway, request.scene, request.width, request.height, request.format)
