@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from command_line import culet
 from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES
 from engine.peer import TETRAHEDRON, connected, running_engine
@@ -23,17 +24,11 @@ COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view",
 TINY = ("--width", "48", "--height", "27")
 
 
-def culet(*arguments: str | Path, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:
-    return subprocess.run(
-        [sys.executable, "-m", "culet", *arguments], input=stdin, capture_output=True, check=False, timeout=300
-    )
-
-
-def refused(run: subprocess.CompletedProcess[bytes]) -> str:
+def refused(run: subprocess.CompletedProcess[str]) -> str:
     """The one line that says why not."""
     assert run.returncode == 1
-    assert b"Traceback" not in run.stderr
-    (line,) = run.stderr.decode().splitlines()
+    assert "Traceback" not in run.stderr
+    (line,) = run.stderr.splitlines()
     return line
 
 
@@ -41,22 +36,22 @@ def refused(run: subprocess.CompletedProcess[bytes]) -> str:
 def test_every_command_explains_itself(command: str) -> None:
     run = culet(command, "--help")
     assert run.returncode == 0
-    assert f"culet {command}" in run.stdout.decode()
+    assert f"culet {command}" in run.stdout
 
 
 def test_the_version_is_told() -> None:
     run = culet("--version")
-    assert (run.returncode, run.stdout.decode()) == (0, f"culet {version('culet')}\n")
+    assert (run.returncode, run.stdout) == (0, f"culet {version('culet')}\n")
 
 
 @pytest.mark.parametrize("command", ["render", "simulate"])
 def test_the_help_of_a_command_names_the_presets(command: str) -> None:
-    words = re.findall(r"[\w-]+", culet(command, "--help").stdout.decode())
+    words = re.findall(r"[\w-]+", culet(command, "--help").stdout)
     assert [name for name in PRESETS if name not in words] == []
 
 
 def test_without_a_command_all_are_listed() -> None:
-    shown = culet("--help").stdout.decode()
+    shown = culet("--help").stdout
     assert all(command in shown for command in COMMANDS)
 
 
@@ -73,16 +68,16 @@ def test_a_rendered_picture_can_be_opened(tmp_path: Path, ending: str, format_: 
 def test_a_linear_picture_holds_radiance_not_pixels(tmp_path: Path) -> None:
     out = tmp_path / "gem.npy"
     scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "constant", "radiance": [0.25, 2, 8]}}
-    run = culet("render", "-", "-o", out, *TINY, stdin=json.dumps(scene).encode())
+    run = culet("render", "-", "-o", out, *TINY, stdin=json.dumps(scene))
     assert run.returncode == 0, run.stderr
     assert np.load(out).reshape(-1, 3) == pytest.approx(np.tile([0.25, 2, 8], (48 * 27, 1)))
 
 
 def test_more_samples_are_taken_when_asked_for(tmp_path: Path) -> None:
     run = culet("render", "-o", tmp_path / "gem.png", "--samples", "3", "--preset", "matte", *TINY)
-    assert b"3 samples per pixel, mean radiance too low by at most 0." in run.stdout
+    assert "3 samples per pixel, mean radiance too low by at most 0." in run.stdout
     run = culet("render", "-o", tmp_path / "gem.png", "--samples", "1", *TINY)
-    assert b"1 sample per pixel, " in run.stdout
+    assert "1 sample per pixel, " in run.stdout
 
 
 def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
@@ -97,27 +92,27 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "stdin", "said"),
     [
-        (["-o", "a.gif"], b"", ".exr"),
-        (["-o", "missing/a.png"], b"", "cannot write"),
-        (["-o", "."], b"", "expected a name that ends in"),
-        (["nowhere.json"], b"", "nowhere.json: cannot be read"),
-        (["-"], b"{", "standard input: not JSON"),
-        (["-"], b"[" * 100_000, "not JSON"),
-        (["-"], b'{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
-        (["-"], b'{"colour": "red"}', "standard input: colour: unknown field"),
-        (["-"], b'{"stonez": []}', "did you mean `stones`?"),
-        (["-"], b'{"stones": [{"cut": {"star_percent": 1}}]}', "standard input: "),
-        (["--preset", "ruby"], b"", "classic"),
-        (["--mesh", "nowhere.obj"], b"", "nowhere.obj: cannot be read"),
-        (["--mesh", "/dev/null"], b"", "/dev/null: "),
-        (["--sky", "nowhere.exr"], b"", "nowhere.exr: cannot be read"),
-        (["--sky", "/dev/null"], b"", "/dev/null: expected a sky as .exr, .hdr or .png"),
-        (["-"], b'{"environment": {"kind": "image", "image": "sunset"}}', "environment.image"),
-        (["-", "--preset", "classic"], b"{}", "both"),
+        (["-o", "a.gif"], "", ".exr"),
+        (["-o", "missing/a.png"], "", "cannot write"),
+        (["-o", "."], "", "expected a name that ends in"),
+        (["nowhere.json"], "", "nowhere.json: cannot be read"),
+        (["-"], "{", "standard input: not JSON"),
+        (["-"], "[" * 100_000, "not JSON"),
+        (["-"], '{"camera": {"fov_degrees": NaN}}', "camera.fov_degrees"),
+        (["-"], '{"colour": "red"}', "standard input: colour: unknown field"),
+        (["-"], '{"stonez": []}', "did you mean `stones`?"),
+        (["-"], '{"stones": [{"cut": {"star_percent": 1}}]}', "standard input: "),
+        (["--preset", "ruby"], "", "classic"),
+        (["--mesh", "nowhere.obj"], "", "nowhere.obj: cannot be read"),
+        (["--mesh", "/dev/null"], "", "/dev/null: "),
+        (["--sky", "nowhere.exr"], "", "nowhere.exr: cannot be read"),
+        (["--sky", "/dev/null"], "", "/dev/null: expected a sky as .exr, .hdr or .png"),
+        (["-"], '{"environment": {"kind": "image", "image": "sunset"}}', "environment.image"),
+        (["-", "--preset", "classic"], "{}", "both"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_1(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: bytes, said: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: str, said: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert said in refused(culet("render", *TINY, *arguments, stdin=stdin))
@@ -134,7 +129,7 @@ def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_pa
     for _ in range(2):
         run = culet("bench", *TINY, "--repeats", "1", "-o", out)
         assert run.returncode == 0, run.stderr
-    shown = culet("bench", *TINY, "--repeats", "2", "--features", "--against", out).stdout.decode()
+    shown = culet("bench", *TINY, "--repeats", "2", "--features", "--against", out).stdout
     assert len(re.findall(r"1\.000 +1\.000 +1\.000 *$", shown, re.MULTILINE)) == len(CASES), "the same work, as exact"
     rows = {line.strip().split("  ")[0]: line.split() for line in reversed(shown.splitlines())}  # ratios come last
     lines = [json.loads(line) for line in out.read_text().splitlines()]
@@ -154,7 +149,7 @@ def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:
     out, sky = tmp_path / "gem.npy", tmp_path / "sky.png"
     Image.new("RGB", (16, 8), (255, 0, 255)).save(sky)
     scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "image", "image": "aset", "scale": 2}}
-    run = culet("render", "-", "-o", out, *TINY, "--sky", sky, stdin=json.dumps(scene).encode())
+    run = culet("render", "-", "-o", out, *TINY, "--sky", sky, stdin=json.dumps(scene))
     assert run.returncode == 0, run.stderr
     assert np.load(out).mean((0, 1)) == pytest.approx([2, 0, 2], abs=1e-6)  # measured 0; the scale is the scene's
 
@@ -164,7 +159,7 @@ def test_a_sky_of_odd_proportions_is_used_and_said_so(tmp_path: Path) -> None:
     Image.new("RGB", (16, 9), (255, 0, 255)).save(sky)
     run = culet("render", "-o", tmp_path / "gem.png", *TINY, "--sky", sky)
     assert run.returncode == 0, run.stderr
-    assert run.stderr.decode().startswith(f"{sky}: 16 x 9 pixels are stretched over all directions")
+    assert run.stderr.startswith(f"{sky}: 16 x 9 pixels are stretched over all directions")
 
 
 def test_a_benchmark_that_could_not_be_kept_is_not_begun(tmp_path: Path) -> None:
@@ -198,7 +193,7 @@ def test_a_path_that_could_not_be_kept_is_not_simulated(
 
 
 def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:
-    run = culet("simulate", "-", "-o", tmp_path / "path.csv", stdin=b'{"stones": []}')
+    run = culet("simulate", "-", "-o", tmp_path / "path.csv", stdin='{"stones": []}')
     assert "needs a stone" in refused(run)
 
 
@@ -221,8 +216,9 @@ def test_a_session_that_nobody_publishes_is_given_up(tmp_path: Path) -> None:
 
 
 def test_an_endpoint_that_cannot_be_bound_is_said_so(tmp_path: Path) -> None:
-    run = culet("engine", "--control", f"ipc://{tmp_path}/no/such/folder", "--frames", f"ipc://{tmp_path}/frames")
-    assert "cannot bind" in refused(run)
+    endpoint = f"ipc://{tmp_path}/no/such/control"
+    said = refused(culet("engine", "--control", endpoint, "--frames", f"ipc://{tmp_path}/frames"))
+    assert f"--control: cannot listen at '{endpoint}': there is no folder {tmp_path}/no/such; make it" in said
 
 
 def test_a_folder_without_a_page_is_refused_at_once(tmp_path: Path) -> None:

@@ -236,6 +236,7 @@ def test_a_taken_port_is_refused_before_anything_starts() -> None:
 
 def test_frames_that_cannot_be_published_are_refused_before_anything_starts() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        for endpoint in ("foo", f"tcp://127.0.0.1:{taken.getsockname()[1]}"):
-            with pytest.raises(InputError, match=f"cannot publish at {endpoint}: .*expected a free one"):
+        in_use = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
+        for endpoint, reason in (("foo", "expected ipc://"), (in_use, "another program listens there")):
+            with pytest.raises(InputError, match=f"--frames: cannot listen at '{endpoint}': {reason}"):
                 serve(port=0, frames=endpoint)

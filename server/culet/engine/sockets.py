@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import zmq
 import zmq.asyncio
 
-from culet.errors import InputError
+from culet.endpoints import bind
 from culet_protocol.engine import REQUEST_NUMBER
 
 log = logging.getLogger(__name__)
@@ -27,7 +27,7 @@ def bind_control(context: zmq.asyncio.Context, endpoint: str, upload_bytes: int)
     socket = context.socket(zmq.ROUTER)
     socket.setsockopt(zmq.MAXMSGSIZE, upload_bytes + JSON_BYTES)
     socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that left is an error, by which it is forgotten
-    return _bind(socket, [endpoint])
+    return _bind(socket, [endpoint], "control")
 
 
 def bind_frames(context: zmq.asyncio.Context, endpoints: Sequence[str]) -> zmq.asyncio.Socket:
@@ -36,21 +36,17 @@ def bind_frames(context: zmq.asyncio.Context, endpoints: Sequence[str]) -> zmq.a
     socket.setsockopt(zmq.XPUB_VERBOSE, 1)
     socket.setsockopt(zmq.SNDHWM, FRAMES_HIGH_WATER)  # before bind, or it has no effect
     socket.setsockopt(zmq.MAXMSGSIZE, 1024)  # subscriptions are short
-    return _bind(socket, endpoints)
+    return _bind(socket, endpoints, "frames")
 
 
-def _bind(socket: zmq.asyncio.Socket, endpoints: Sequence[str]) -> zmq.asyncio.Socket:
+def _bind(socket: zmq.asyncio.Socket, endpoints: Sequence[str], option: str) -> zmq.asyncio.Socket:
     socket.setsockopt(zmq.LINGER, 0)
     if any(endpoint.startswith("tcp:") for endpoint in endpoints):
         socket.setsockopt(zmq.HEARTBEAT_IVL, HEARTBEAT_MS)
         socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 2 * HEARTBEAT_MS)
         socket.setsockopt(zmq.HEARTBEAT_TTL, 3 * HEARTBEAT_MS)
     for endpoint in endpoints:
-        try:
-            socket.bind(endpoint)
-        except zmq.ZMQError as error:
-            socket.close()
-            raise InputError(f"cannot bind {endpoint}: {error}; expected such as ipc:///run/culet/control") from error
+        bind(socket, endpoint, option)
     return socket
 
 

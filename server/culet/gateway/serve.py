@@ -8,7 +8,7 @@ from pathlib import Path
 
 import zmq
 
-from culet.errors import InputError
+from culet.endpoints import bind
 from culet.gateway.listener import Listener
 from culet.gateway.settings import BUILT_CLIENT, GatewaySettings
 from culet.gateway.socket_folder import socket_folder
@@ -79,13 +79,7 @@ async def _serve(listener: Listener, supervisor: Supervisor | None) -> None:
 def check_free(endpoint: str) -> None:
     """InputError if frames cannot be published there."""
     with zmq.Context() as context, context.socket(zmq.XPUB) as socket:
-        try:
-            socket.bind(endpoint)
-        except zmq.ZMQError as error:
-            raise InputError(
-                f"--frames: cannot publish at {endpoint}: {error}; expected a free one such as tcp://127.0.0.1:5556",
-                "frames",
-            ) from error
+        bind(socket, endpoint, "frames")
 
 
 def reachable(endpoint: str) -> str:

@@ -1,0 +1,61 @@
+"""Where processes of culet listen for each other by ZeroMQ: `ipc://` and a path, or `tcp://`, an address and a port."""
+
+from __future__ import annotations
+
+import errno
+import re
+from pathlib import Path
+from typing import Any
+
+import zmq
+
+from culet.errors import InputError
+
+FORMS = "expected ipc:// and the path of a socket, such as ipc:///tmp/culet.control, or tcp://ADDRESS:PORT"
+_TCP = re.compile(r"tcp://(?P<address>[^/]+):(?P<port>\d{1,5}|\*)")
+_HIGHEST_PORT = 65535
+"""ZeroMQ itself takes what is above for the port of its lower 16 bits."""
+
+
+def bind(socket: zmq.Socket[Any], endpoint: str, option: str) -> None:
+    """Listen there; InputError that names the option, what was asked for, what is wrong and what to do."""
+    try:
+        _check(endpoint)
+        socket.bind(endpoint)
+    except InputError as error:
+        raise InputError(f"--{option}: cannot listen at {endpoint!r}: {error}", option) from None
+    except zmq.ZMQError as error:
+        raise InputError(f"--{option}: cannot listen at {endpoint!r}: {_reason(error)}", option) from error
+
+
+def _check(endpoint: str) -> None:
+    """InputError for what ZeroMQ would refuse in fewer words, take for something else, or overwrite."""
+    if endpoint.startswith("tcp://"):
+        parts = _TCP.fullmatch(endpoint)
+        if parts is None or (parts["port"] != "*" and int(parts["port"]) > _HIGHEST_PORT):
+            raise InputError(FORMS)
+        return
+    path = endpoint.removeprefix("ipc://")
+    if path in (endpoint, ""):
+        raise InputError(FORMS)
+    if path.startswith("@"):  # Linux's abstract names, which are no files
+        return
+    if len(path.encode()) > zmq.IPC_PATH_MAX_LEN:
+        raise InputError(f"a socket's path may have {zmq.IPC_PATH_MAX_LEN} bytes, and this has {len(path.encode())}")
+    place = Path(path)
+    if not place.parent.is_dir():
+        raise InputError(f"there is no folder {place.parent}; make it, or choose another")
+    if place.exists() and not place.is_socket():
+        raise InputError("that is there already, and is not a socket; choose another name")
+
+
+def _reason(error: zmq.ZMQError) -> str:
+    match error.errno:
+        case errno.EADDRINUSE:
+            return "another program listens there; end it, or choose another port"
+        case errno.EADDRNOTAVAIL | errno.ENODEV:
+            return "this machine has no such address; tcp://127.0.0.1:PORT serves itself, tcp://*:PORT others too"
+        case errno.EACCES | errno.EPERM | errno.EROFS:
+            return "permission denied; choose another place"
+        case _:
+            return f"{str(error).partition(' (addr=')[0]}; {FORMS}"
