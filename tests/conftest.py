@@ -1,4 +1,4 @@
-"""The device and its renderers, shared by all tests, so that each program is compiled once."""
+"""What tests of all parts share: the default stone; the device and its renderers, so that programs are compiled once."""
 
 from __future__ import annotations
 
@@ -8,10 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
 from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
+from culet.scene.model import StoneSettings
 
 RendererOf = Callable[[int, type[np.floating[Any]]], Renderer]
+
+
+@pytest.fixture(scope="session")
+def brilliant() -> Stone:
+    """The default cut."""
+    return stone_of(StoneSettings(), {})
 
 
 @pytest.fixture(scope="session")

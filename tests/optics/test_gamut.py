@@ -4,27 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from culet.errors import InputError
 from culet.optics.bands import bands
 from culet.optics.gamut import GAMUT_METHODS, clip, desaturate, into_gamut
-from culet.optics.observer import LUMINANCE, linear_srgb
-
-
-def hue(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angle about the grey axis, degrees."""
-    red, green, blue = np.moveaxis(rgb, -1, 0)
-    return np.asarray(np.degrees(np.arctan2(np.sqrt(3) * (green - blue), 2 * red - green - blue)))
-
-
-def turned(before: NDArray[np.float64], after: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far the hue has turned, degrees, 0 to 180."""
-    return np.abs((hue(after) - hue(before) + 180) % 360 - 180)
-
-
-SPECTRAL = linear_srgb(np.arange(420, 680, 2.0))
-"""Pure spectral colours, all outside the gamut."""
+from culet.optics.observer import LUMINANCE
+from optics.colours import SPECTRAL, turned
 
 
 def test_desaturation_keeps_hue_and_luminance_of_spectral_colours() -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from culet.errors import InputError
 from culet.optics.observer import LUMINANCE
 from culet.optics.tone import FILMIC_WHITE, TONE_MAPS, encode_srgb, filmic_curve, tone_map
-from optics.test_gamut import SPECTRAL, turned
+from optics.colours import SPECTRAL, turned
 
 
 def decoded(display: NDArray[np.float64]) -> NDArray[np.float64]:

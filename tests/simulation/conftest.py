@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -31,6 +34,13 @@ def stone_of(name: str, mesh: trimesh.Trimesh) -> Stone:
 def box() -> Stone:
     """Half edges 6/7, 3/7, 2/7: three different moments of inertia, 13/147, 40/147 and 45/147."""
     return stone_of("box", trimesh.creation.box((12 / 7, 6 / 7, 4 / 7)))
+
+
+@pytest.fixture(scope="session")
+def exact_box(box: Stone) -> Stone:
+    """Corners and tensor in closed form: trimesh's sums may round differently on another processor."""
+    corners = np.array(list(itertools.product((-6 / 7, 6 / 7), (-3 / 7, 3 / 7), (-2 / 7, 2 / 7))))
+    return replace(box, vertices=corners, mass=MassProperties(box.mass.volume, np.diag([13, 40, 45]) / 147))
 
 
 @pytest.fixture(scope="session")

@@ -1,8 +1,10 @@
-"""Bodies, states and surfaces for the tests of contact."""
+"""Bodies, states and surfaces for the tests of the simulation."""
 
 from __future__ import annotations
 
+import hashlib
 import math
+import struct
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from culet.simulation.surfaces import FLOOR, Surface
 
 G = 9.81
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
+TABLE_DOWN: Quaternion = (0.0, 1.0, 0.0, 0.0)
 
 
 def rigid(
@@ -31,6 +34,12 @@ def rigid(
     return Simulation(SimulationSettings.model_validate(bare | settings), stone, position, orientation, surfaces)
 
 
+def classic(stone: Stone, position: Triple = (0.0, 4.0, 0.0), **settings: object) -> Simulation:
+    """The report's model at its step, otherwise as the scene's default."""
+    reported = {"model": "classic", "time_step": 1 / 30}
+    return Simulation(SimulationSettings.model_validate(reported | settings), stone, position, UPRIGHT)
+
+
 def advance(moving: Simulation, seconds: float) -> list[RigidState]:
     """The states of the steps that make up so much time."""
     path = []
@@ -38,6 +47,24 @@ def advance(moving: Simulation, seconds: float) -> list[RigidState]:
         moving.step()
         path.append(moving.state)
     return path
+
+
+def apexes(path: list[RigidState]) -> list[float]:
+    """Heights of the tops between bounces."""
+    heights = [state.position[1] for state in path]
+    return [b for a, b, c in zip(heights, heights[1:], heights[2:], strict=False) if a < b >= c]
+
+
+def numbers(state: RigidState) -> list[float]:
+    return [state.time, *state.position, *state.orientation, *state.momentum, *state.angular_momentum]
+
+
+def digest(path: list[RigidState]) -> str:
+    """Of every bit of the states."""
+    sha = hashlib.sha256()
+    for state in path:
+        sha.update(struct.pack("<14d3q", *numbers(state), state.step, state.impacts, state.asleep))
+    return sha.hexdigest()
 
 
 def motion_of(state: RigidState) -> Motion:
@@ -59,6 +86,9 @@ def about(axis: Triple, angle: float) -> Quaternion:
     half = angle / 2
     sine = math.sin(half)
     return normalised((math.cos(half), sine * axis[0], sine * axis[1], sine * axis[2]))
+
+
+TILTED = about((0.6, 0.0, 0.8), 0.7)
 
 
 def lowest(stone: Stone) -> float:

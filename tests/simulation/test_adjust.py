@@ -11,9 +11,7 @@ from culet.geometry.stone import Stone
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
 from culet.simulation.surfaces import FLOOR, WALLS
-from simulation.solids import about, advance, lowest, nearest, rigid
-
-TILTED = about((0.6, 0.0, 0.8), 0.7)
+from simulation.solids import TILTED, advance, lowest, nearest, rigid
 
 CHANGES: dict[str, dict[str, Any]] = {
     "restitution": {"restitution": 0.1},

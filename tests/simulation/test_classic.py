@@ -9,23 +9,10 @@ from typing import Any
 import pytest
 
 from culet.geometry.stone import Stone
-from culet.scene.model import Simulation as SimulationSettings
-from culet.simulation import classic
 from culet.simulation.classic import random_torque, step
 from culet.simulation.simulation import Simulation
-from culet.simulation.state import RigidState, Triple
-
-G = 9.81
-UPRIGHT = (1.0, 0.0, 0.0, 0.0)
-
-
-def simulation(stone: Stone, position: Triple = (0.0, 4.0, 0.0), **settings: object) -> Simulation:
-    return Simulation(
-        SimulationSettings.model_validate({"model": "classic", "time_step": 1 / 30} | settings),
-        stone,
-        position,
-        UPRIGHT,
-    )
+from culet.simulation.state import RigidState
+from simulation.solids import G, apexes, classic
 
 
 def states(moving: Simulation, count: int) -> list[RigidState]:
@@ -36,15 +23,9 @@ def states(moving: Simulation, count: int) -> list[RigidState]:
     return path
 
 
-def apexes(path: list[RigidState]) -> list[float]:
-    """Heights of the tops between bounces."""
-    heights = [state.position[1] for state in path]
-    return [b for a, b, c in zip(heights, heights[1:], heights[2:], strict=False) if a < b >= c]
-
-
 def test_free_fall_is_symplectic_eulers_closed_form(box: Stone) -> None:
     h = 1 / 30
-    for n, state in enumerate(states(simulation(box, (1.0, 1000.0, -2.0), velocity=(3, 0, -1)), 300)):
+    for n, state in enumerate(states(classic(box, (1.0, 1000.0, -2.0), velocity=(3, 0, -1)), 300)):
         # v_n = -g h n, and y_n = y_0 + h (v_1 + ... + v_n)
         assert state.momentum[1] / 2 == pytest.approx(-G * h * n, rel=3e-14)  # measured 2.9e-15
         closed = (1 + 3 * h * n, 1000 - G * h * h * n * (n + 1) / 2, -2 - h * n)
@@ -53,16 +34,14 @@ def test_free_fall_is_symplectic_eulers_closed_form(box: Stone) -> None:
 
 
 def test_mass_does_not_matter_to_the_fall(box: Stone) -> None:
-    light, heavy = (
-        states(simulation(box, mass=2.0**power, random_torque=0, spin=(1, 2, 3)), 100) for power in (-20, 20)
-    )
+    light, heavy = (states(classic(box, mass=2.0**power, random_torque=0, spin=(1, 2, 3)), 100) for power in (-20, 20))
     # scaling by a power of two commutes with rounding, so even bounces agree to the bit
     assert [s.position for s in light] == [s.position for s in heavy]
     assert [s.orientation for s in light] == [s.orientation for s in heavy]
 
 
 def test_a_bounce_keeps_the_share_of_the_speed_that_restitution_says(box: Stone) -> None:
-    path = states(simulation(box, restitution=0.6), 60)
+    path = states(classic(box, restitution=0.6), 60)
     bounce = next(i for i, state in enumerate(path) if state.momentum[1] > 0)
     arriving = path[bounce - 1].momentum[1] - 2 * G / 30
     assert path[bounce].momentum[1] == pytest.approx(-0.6 * arriving, rel=1e-15)
@@ -70,7 +49,7 @@ def test_a_bounce_keeps_the_share_of_the_speed_that_restitution_says(box: Stone)
 
 
 def test_each_apex_is_restitution_squared_times_the_one_before(box: Stone) -> None:
-    tops = apexes(states(simulation(box, (0.0, 4.0, 0.0), restitution=0.8, time_step=1e-4), 60_000))
+    tops = apexes(states(classic(box, (0.0, 4.0, 0.0), restitution=0.8, time_step=1e-4), 60_000))
     assert len(tops) > 4
     for number, top in enumerate(tops[:5], start=1):
         assert top == pytest.approx(4 * 0.8 ** (2 * number), rel=2e-3)  # measured 2.4e-4, growing to 1.1e-3
@@ -78,54 +57,54 @@ def test_each_apex_is_restitution_squared_times_the_one_before(box: Stone) -> No
 
 def test_the_error_of_an_apex_is_of_first_order_in_the_step(box: Stone) -> None:
     def error(h: float) -> float:
-        return abs(apexes(states(simulation(box, restitution=0.8, time_step=h), round(2 / h)))[0] - 4 * 0.8**2)
+        return abs(apexes(states(classic(box, restitution=0.8, time_step=h), round(2 / h)))[0] - 4 * 0.8**2)
 
     assert error(1e-4) < error(1e-2) / 30  # measured: 84 times; uneven, as the floor lies anywhere in a step
 
 
 @pytest.mark.parametrize("h", [1 / 30, 1 / 100, 1 / 1000])
 def test_an_elastic_bounce_never_rises_above_the_last(box: Stone, h: float) -> None:
-    tops = apexes(states(simulation(box, restitution=1, random_torque=0, time_step=h), round(30 / h)))
+    tops = apexes(states(classic(box, restitution=1, random_torque=0, time_step=h), round(30 / h)))
     assert len(tops) > 10
     assert tops[0] < 4
     assert all(after <= before + 1e-12 for before, after in pairwise(tops))
 
 
 def test_a_slow_impact_stops_and_its_momentum_is_gone_too(box: Stone) -> None:
-    moving = simulation(box, (0.0, 0.0, 0.0), time_step=0.005, velocity_threshold=0.1)  # g h = 0.049 < 0.1
+    moving = classic(box, (0.0, 0.0, 0.0), time_step=0.005, velocity_threshold=0.1)  # g h = 0.049 < 0.1
     for state in states(moving, 50)[1:]:
         assert state.momentum[1] == 0
         assert state.position[1] == 0
 
 
 def test_an_impact_at_the_threshold_bounces(box: Stone) -> None:
-    moving = simulation(box, (0.0, 0.0, 0.0), time_step=0.005, velocity_threshold=G * 0.005, restitution=0.5)
+    moving = classic(box, (0.0, 0.0, 0.0), time_step=0.005, velocity_threshold=G * 0.005, restitution=0.5)
     assert states(moving, 1)[1].momentum[1] == pytest.approx(0.5 * 2 * G * 0.005, rel=1e-15)
 
 
 def test_above_the_threshold_the_stone_still_rests_at_the_reports_step(box: Stone) -> None:
     h = 1 / 30  # g h = 0.33 R/s: more than the threshold of 0.1 R/s, so the speed tends to its fixed point instead of 0
-    path = states(simulation(box, (0.0, 0.0, 0.0), angular_damping=1), 60)  # a spin undamped: awake
+    path = states(classic(box, (0.0, 0.0, 0.0), angular_damping=1), 60)  # a spin undamped: awake
     assert not any(state.asleep for state in path)
     assert all(state.position[1] == 0 for state in path)
     assert path[-1].momentum[1] / 2 == pytest.approx(G * h * 0.6 / 1.6, rel=1e-12)
 
 
 def test_each_contact_damps_the_slide(box: Stone) -> None:
-    path = states(simulation(box, (0.0, 0.0, 0.0), velocity=(2, 0, -1), tangential_damping=0.9), 10)
+    path = states(classic(box, (0.0, 0.0, 0.0), velocity=(2, 0, -1), tangential_damping=0.9), 10)
     for n, state in enumerate(path):
         assert state.momentum == pytest.approx((4 * 0.9**n, state.momentum[1], -2 * 0.9**n), rel=1e-14)
 
 
 def test_each_soft_contact_damps_the_spin(box: Stone) -> None:
-    path = states(simulation(box, (0.0, 0.0, 0.0), spin=(0, 3, 0), angular_damping=0.75), 10)
+    path = states(classic(box, (0.0, 0.0, 0.0), spin=(0, 3, 0), angular_damping=0.75), 10)
     for n, state in enumerate(path):
         assert state.angular_momentum == pytest.approx((0, 2 * 40 / 147 * 3 * 0.75**n, 0), rel=1e-14, abs=1e-15)
         assert state.impacts == 0
 
 
 def test_a_hard_impact_kicks_about_x_and_z_instead_of_damping(box: Stone) -> None:
-    path = states(simulation(box, seed=3, random_torque=5), 60)
+    path = states(classic(box, seed=3, random_torque=5), 60)
     hard = next(i for i, state in enumerate(path) if state.impacts == 1)
     before, after = path[hard - 1], path[hard]
     assert after.momentum[1] / 2 > 2
@@ -135,7 +114,7 @@ def test_a_hard_impact_kicks_about_x_and_z_instead_of_damping(box: Stone) -> Non
 
 
 def test_an_impact_is_soft_up_to_the_random_torque_speed(box: Stone) -> None:
-    path = states(simulation(box, random_torque_speed=1e6), 60)
+    path = states(classic(box, random_torque_speed=1e6), 60)
     assert path[-1].impacts == 0
     landed = next(i for i, state in enumerate(path) if state.momentum[1] > 0)
     assert path[landed].angular_momentum == tuple(c * 0.75 for c in path[landed - 1].angular_momentum)
@@ -160,7 +139,7 @@ def test_the_random_torque_depends_on_seed_and_impact_alone() -> None:
 
 
 def test_angular_momentum_is_constant_in_flight_to_the_bit(box: Stone) -> None:
-    path = states(simulation(box, (0.0, 1000.0, 0.0), spin=(1, -2, 3)), 300)
+    path = states(classic(box, (0.0, 1000.0, 0.0), spin=(1, -2, 3)), 300)
     assert {state.angular_momentum for state in path} == {path[0].angular_momentum}
 
 
@@ -168,7 +147,7 @@ def test_angular_momentum_is_constant_in_flight_to_the_bit(box: Stone) -> None:
 def test_a_spin_about_a_principal_axis_keeps_its_axis_and_rate(box: Stone, axis: int) -> None:
     spin = [0.0, 0.0, 0.0]
     spin[axis] = 3.0
-    moving = simulation(box, (0.0, 1000.0, 0.0), spin=tuple(spin))
+    moving = classic(box, (0.0, 1000.0, 0.0), spin=tuple(spin))
     for n, state in enumerate(states(moving, 30)):
         assert moving.body.angular_velocity(state) == pytest.approx(spin, abs=1e-13)  # measured 2e-15
         half_turn = math.atan(3 / 30 / 2) * n  # each step turns by 2 atan(h omega / 2)
@@ -178,7 +157,7 @@ def test_a_spin_about_a_principal_axis_keeps_its_axis_and_rate(box: Stone, axis:
 
 def test_the_energy_of_a_tumbling_flight_drifts_by_first_order_in_the_step(box: Stone) -> None:
     def drift(h: float) -> float:
-        moving = simulation(box, gravity=0, spin=(1, 3, 0.5), time_step=h)
+        moving = classic(box, gravity=0, spin=(1, 3, 0.5), time_step=h)
         start = moving.energy()
         for _ in range(round(1 / h)):
             moving.step()
@@ -190,24 +169,24 @@ def test_the_energy_of_a_tumbling_flight_drifts_by_first_order_in_the_step(box: 
 
 
 def test_walls_do_not_stop_the_stone(box: Stone) -> None:
-    path = states(simulation(box, (0.0, 100.0, 0.0), velocity=(100, 0, 0)), 30)
+    path = states(classic(box, (0.0, 100.0, 0.0), velocity=(100, 0, 0)), 30)
     assert path[-1].position[0] == pytest.approx(100, rel=1e-13)  # far behind a wall at 8
 
 
 def test_a_stone_that_is_not_convex_touches_by_its_sphere_as_well(ring: Stone, box: Stone) -> None:
     assert not ring.convex
-    hollow, solid = (states(simulation(stone, inertia="cone"), 200) for stone in (ring, box))
+    hollow, solid = (states(classic(stone, inertia="cone"), 200) for stone in (ring, box))
     assert hollow == solid
 
 
 def test_a_start_inside_the_floor_is_put_onto_it(box: Stone) -> None:
-    after = states(simulation(box, (0.0, -500.0, 0.0)), 1)[1]
+    after = states(classic(box, (0.0, -500.0, 0.0)), 1)[1]
     assert after.position == (0.0, 0.0, 0.0)
     assert after.momentum[1] / 2 == pytest.approx(0.6 * G / 30, rel=1e-15)  # no more than a step's fall gives back
 
 
 def test_the_stone_comes_to_rest_and_falls_asleep(box: Stone) -> None:
-    path = states(simulation(box), 300)
+    path = states(classic(box), 300)
     first = next(i for i, state in enumerate(path) if state.asleep)
     assert 2 < path[first].time < 8
     assert path[first].position[1] == 0
@@ -215,10 +194,10 @@ def test_the_stone_comes_to_rest_and_falls_asleep(box: Stone) -> None:
 
 
 def test_what_sleep_cuts_off_cannot_be_seen(box: Stone, monkeypatch: pytest.MonkeyPatch) -> None:
-    moving = simulation(box, velocity=(1, 0, -2))
+    moving = classic(box, velocity=(1, 0, -2))
     asleep = states(moving, 400)[-1]
-    monkeypatch.setattr(classic, "SLEEP_SPEED", 0.0)
-    monkeypatch.setattr(classic, "SLEEP_SPIN", 0.0)
+    monkeypatch.setattr("culet.simulation.classic.SLEEP_SPEED", 0.0)
+    monkeypatch.setattr("culet.simulation.classic.SLEEP_SPIN", 0.0)
     awake = states(moving, 400)[-1]
     assert asleep.asleep
     assert not awake.asleep
@@ -230,11 +209,11 @@ def test_what_sleep_cuts_off_cannot_be_seen(box: Stone, monkeypatch: pytest.Monk
     "settings", [{"velocity": (0.001, 0, 0), "spin": (0, 0, 0)}, {"velocity": (0, 0, 0), "spin": (0, 0.001, 0)}]
 )
 def test_a_stone_that_slides_or_turns_stays_awake(box: Stone, settings: dict[str, Any]) -> None:
-    assert not states(simulation(box, (0.0, 0.0, 0.0), **settings), 1)[1].asleep
+    assert not states(classic(box, (0.0, 0.0, 0.0), **settings), 1)[1].asleep
 
 
 def test_a_stone_that_neither_slides_nor_turns_bounces_on(box: Stone) -> None:
-    path = states(simulation(box, (0.0, 0.5, 0.0), spin=(0, 0, 0), time_step=0.001, restitution=0.5), 2000)
+    path = states(classic(box, (0.0, 0.5, 0.0), spin=(0, 0, 0), time_step=0.001, restitution=0.5), 2000)
     assert apexes(path)[:2] == pytest.approx(
         [0.5 * 0.25, 0.5 * 0.25**2], rel=0.05
     )  # measured 0.8 % and 2.7 %, by the step

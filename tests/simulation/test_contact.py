@@ -7,33 +7,32 @@ import math
 import pytest
 import trimesh
 
-from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
-from culet.scene.model import StoneSettings
 from culet.simulation.flight import SAGITTA
-from culet.simulation.state import RigidState, Triple
+from culet.simulation.state import Triple
 from simulation.conftest import stone_of as stone_of_mesh
-from simulation.solids import G, about, advance, lowest, nearest, rigid, spin_of, tilted_floor
+from simulation.solids import (
+    TABLE_DOWN,
+    TILTED,
+    G,
+    about,
+    advance,
+    apexes,
+    lowest,
+    nearest,
+    rigid,
+    spin_of,
+    tilted_floor,
+)
 
 CONTACT_STEP = 0.02 / math.sqrt(G)
 """s, as the scene's default."""
-TABLE_DOWN = (0.0, 1.0, 0.0, 0.0)
-
-
-@pytest.fixture(scope="module")
-def brilliant() -> Stone:
-    return stone_of(StoneSettings(), {})
 
 
 @pytest.fixture(scope="module")
 def ball() -> Stone:
     """A polyhedron of 2562 vertices: rolls like a sphere as far as it is one."""
     return stone_of_mesh("ball", trimesh.creation.icosphere(4))
-
-
-def apexes(path: list[RigidState]) -> list[float]:
-    heights = [state.position[1] for state in path]
-    return [b for a, b, c in zip(heights, heights[1:], heights[2:], strict=False) if a < b >= c]
 
 
 def test_free_fall_is_on_the_parabola_at_any_step(box: Stone) -> None:
@@ -62,7 +61,7 @@ def test_how_high_a_stone_bounces_does_not_depend_on_the_time_step(brilliant: St
     """Touches are found within a step: after the first impact of a tilted, spinning stone its energy is the same."""
     energies = []
     for step in (1 / 1000, 1 / 120, 1 / 30, 0.1):
-        moving = rigid(brilliant, (0.0, 2.0, 0.0), about((0.6, 0.0, 0.8), 0.7), spin=(1, 2, 3), time_step=step)
+        moving = rigid(brilliant, (0.0, 2.0, 0.0), TILTED, spin=(1, 2, 3), time_step=step)
         while moving.state.impacts == 0:
             moving.step()
         energies.append(moving.energy())

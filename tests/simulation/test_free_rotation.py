@@ -15,9 +15,9 @@ from culet.simulation.free_rotation import INTEGRATORS, MAX_DIVISIONS, rkmk4, tu
 from culet.simulation.rotation import rotate, rotate_back
 from culet.simulation.state import Quaternion, Triple
 from simulation.jacobi import FreeTop
+from simulation.solids import UPRIGHT
 
 MOMENTS = (1.0, 1.4, 2.1)
-UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 MIXED: Triple = (3.0, 4.0, 3.5)
 
 

@@ -7,24 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as SimulationSettings
-from culet.scene.model import StoneSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact, closing_speed, contacts
 from culet.simulation.impact import impact
 from culet.simulation.motion import Motion, gaps, kinetic_energy
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR
-from simulation.solids import about, random_body
+from simulation.solids import TABLE_DOWN, about, random_body
 
 SETTINGS = SimulationSettings.model_validate({"model": "rigid", "mass": 2})
-
-
-@pytest.fixture(scope="module")
-def brilliant() -> Stone:
-    return stone_of(StoneSettings(), {})
 
 
 def landed(
@@ -63,7 +56,7 @@ def test_a_single_vertex_without_friction_gets_the_textbook_impulse(box: Stone, 
 
 def test_a_flat_elastic_landing_keeps_its_energy_and_gains_no_spin(brilliant: Stone) -> None:
     """Eight vertices of the table at once: one pass of Gauss-Seidel would give three times the energy."""
-    body, before, points = landed(brilliant, (0.0, 1.0, 0.0, 0.0), (0.0, -3.0, 0.0), (0.0, 0.0, 0.0))
+    body, before, points = landed(brilliant, TABLE_DOWN, (0.0, -3.0, 0.0), (0.0, 0.0, 0.0))
     assert len(points) == 8
     after = impact(before, body, points, 1, 0.3)
     assert kinetic_energy(after, body) == pytest.approx(kinetic_energy(before, body), rel=1e-9)
@@ -73,7 +66,7 @@ def test_a_flat_elastic_landing_keeps_its_energy_and_gains_no_spin(brilliant: St
 
 @pytest.mark.parametrize("e", [0.0, 0.6])
 def test_a_flat_landing_leaves_with_the_restitutions_share(brilliant: Stone, e: float) -> None:
-    body, before, points = landed(brilliant, (0.0, 1.0, 0.0, 0.0), (0.0, -3.0, 0.0), (0.0, 0.0, 0.0))
+    body, before, points = landed(brilliant, TABLE_DOWN, (0.0, -3.0, 0.0), (0.0, 0.0, 0.0))
     after = impact(before, body, points, e, 0.3)
     assert after.momentum == pytest.approx((0, 6 * e, 0), abs=1e-9)
 

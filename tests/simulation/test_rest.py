@@ -11,20 +11,11 @@ import trimesh
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
-from culet.scene.model import StoneSettings
 from culet.simulation.rotation import normalised, rotate_back
 from culet.simulation.simulation import MAX_SPEED, Simulation
 from culet.simulation.surfaces import FLOOR, WALLS
-from simulation.solids import UPRIGHT, about, advance, lowest, nearest, rigid, spin_of
-
-TABLE_DOWN = (0.0, 1.0, 0.0, 0.0)
-
-
-@pytest.fixture(scope="module")
-def brilliant() -> Stone:
-    return stone_of(StoneSettings(), {})
+from simulation.solids import TABLE_DOWN, UPRIGHT, about, advance, lowest, nearest, rigid, spin_of
 
 
 def stable_normals(stone: Stone) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from command_line import culet
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
@@ -20,7 +21,6 @@ from culet.study.motion_record import Change, Seen
 from culet_protocol.engine import Control
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Message, ResetStone, ToggleFall, ToggleMirror
-from study.test_study_command import culet
 
 SIZE = 64, 36
 FLAT = Scene.read(

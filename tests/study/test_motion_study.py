@@ -9,9 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
 from culet.geometry.stone import MassProperties, Stone
-from culet.scene import Scene
 from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import rotate, rotate_back
@@ -21,11 +19,6 @@ from culet.study.report import Point
 from culet.study.simulation import fits_of, measure_all, points_of
 from culet.study.tops import TOP_MOMENTS, TOP_SPIN, UPRIGHT, angle_between, rotation_truth
 from simulation.jacobi import FreeTop
-
-
-@pytest.fixture(scope="module")
-def brilliant() -> Stone:
-    return stone_of(Scene().stones[0], {})
 
 
 @pytest.fixture(scope="module")
