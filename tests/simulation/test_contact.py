@@ -53,7 +53,7 @@ def test_each_apex_is_restitution_squared_times_the_one_before(box: Stone, e: fl
     assert len(tops) >= 3
     for number, top in enumerate(tops[:4], start=1):
         # sampled every 1/1000 s: the top is missed by g h^2 / 8 at most; contacts are made within 1e-6 R
-        assert top == pytest.approx(height * e ** (2 * number), abs=G / 8e6 + 1e-6 * number)
+        assert top == pytest.approx(height * e ** (2 * number), abs=G / 8e6 + 1e-6 * number)  # measured 9.7e-7
     assert max(tops) <= height
 
 
@@ -74,7 +74,7 @@ def test_a_hundred_elastic_bounces_keep_their_height(box: Stone) -> None:
     start = moving.energy()
     while moving.state.impacts < 100:
         moving.step()
-    assert moving.energy() == pytest.approx(start, rel=1e-9)
+    assert moving.energy() == pytest.approx(start, rel=1e-9)  # measured 1.7e-11
 
 
 def test_bouncing_ends_when_the_geometric_series_says(box: Stone) -> None:
@@ -101,8 +101,8 @@ def test_a_slide_ends_after_v2_over_2_mu_g_in_every_direction(box: Stone, headin
     advance(moving, 1.5)
     x, _, z = moving.state.position
     assert moving.state.asleep
-    assert math.hypot(x, z) == pytest.approx(speed**2 / (2 * mu * G), abs=5e-5)  # measured 1.3e-5 of 0.51
-    assert math.atan2(z, x) % (2 * math.pi) == pytest.approx(angle, abs=1e-6)
+    assert math.hypot(x, z) == pytest.approx(speed**2 / (2 * mu * G), abs=2e-5)  # measured 7.5e-6 of 0.51
+    assert math.atan2(z, x) % (2 * math.pi) == pytest.approx(angle, abs=1e-11)  # measured 6e-13
 
 
 @pytest.mark.parametrize("contact_step", [0.04, 0.02, 0.01, 0.005])
@@ -113,7 +113,7 @@ def test_the_error_of_a_slide_is_of_second_order_in_the_contact_step(box: Stone,
         box, (0.0, lowest(box), 0.0), friction=mu, velocity=(2, 0, 0), contact_step=contact_step, time_step=0.05
     )
     advance(moving, 1.5)
-    # measured 5.9e-5, 2.0e-5, 6e-7, 3e-7: the limits are 8e-5, 2e-5, 5e-6, 1.25e-6
+    # measured 5.4e-5, 1.9e-5, 1.7e-6, 7.6e-7: the limits are 8e-5, 2e-5, 5e-6, 1.25e-6
     limit = mu * contact_step**2 / 8
     assert moving.state.position[0] == pytest.approx(4 / (2 * mu * G), abs=limit * (1 + 1e-2))
 
@@ -136,7 +136,7 @@ def test_a_block_on_an_incline_sticks_just_if_friction_exceeds_the_slope(
     travelled = math.dist(moving.state.position, start)
     if slides:
         acceleration = G * (math.sin(slope) - friction * math.cos(slope))
-        assert travelled == pytest.approx(acceleration / 2, rel=1e-7)  # measured 3e-9
+        assert travelled == pytest.approx(acceleration / 2, rel=1e-8)  # measured 1e-9
     else:
         assert travelled < 1e-12  # measured 1e-16
     assert moving.state.impacts == 0
@@ -169,7 +169,7 @@ def test_a_spin_on_the_table_is_stopped_by_friction_in_time(brilliant: Stone) ->
     height = -1 + float(brilliant.vertices[:, 1].max())
     moving = rigid(brilliant, (0.0, height, 0.0), TABLE_DOWN, friction=mu, spin=(0, spin, 0), time_step=1 / 500)
     advance(moving, 0.2)
-    assert spin_of(moving)[1] == pytest.approx(spin - mu * G * radius / inertia * 0.2, rel=1e-6)
+    assert spin_of(moving)[1] == pytest.approx(spin - mu * G * radius / inertia * 0.2, rel=1e-12)  # measured 3e-15
     assert math.hypot(moving.state.position[0], moving.state.position[2]) < 1e-9
 
 
@@ -179,8 +179,8 @@ def test_a_sliding_ball_rolls_at_five_sevenths_of_its_speed(ball: Stone) -> None
     moving = rigid(ball, (0.0, lowest(ball), 0.0), friction=mu, velocity=(speed, 0, 0), restitution=0)
     advance(moving, 2 * speed / (7 * mu * G))
     vx = moving.body.velocity(moving.state)[0]
-    assert vx == pytest.approx(5 / 7 * speed, rel=0.02)
-    assert -spin_of(moving)[2] == pytest.approx(vx, rel=0.02)
+    assert vx == pytest.approx(5 / 7 * speed, rel=0.01)  # measured 4.5e-3
+    assert -spin_of(moving)[2] == pytest.approx(vx, rel=2e-3)  # measured 6e-4
 
 
 def test_a_slender_block_rocks_with_housners_period(box: Stone) -> None:
@@ -257,4 +257,4 @@ def test_rolling_resistance_slows_a_rolling_ball(ball: Stone) -> None:
         )[-1].momentum[0] / 2
         for c in (0, resistance)
     ]  # fmt: skip
-    assert speeds[0] - speeds[1] == pytest.approx(resistance * G / 1.4 * 0.25, rel=0.2)  # measured 0.15 less
+    assert speeds[0] - speeds[1] == pytest.approx(resistance * G / 1.4 * 0.25, rel=0.2)  # measured 0.18 less

@@ -1,4 +1,4 @@
-"""The machine's limits: counted by hand, and plausible when measured."""
+"""The work of the facet search, counted by hand."""
 
 from __future__ import annotations
 
