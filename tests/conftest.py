@@ -1,4 +1,4 @@
-"""What tests of all parts share: the default stone; the device and its renderers, so that programs are compiled once."""
+"""What tests of all parts share: the default stone; device and renderers, so that programs are compiled once."""
 
 from __future__ import annotations
 

@@ -53,8 +53,9 @@ def test_size_and_place_do_not_matter(size: float) -> None:
     planes[:, 3] *= size
     stone = stone_from_half_spaces("cube", planes)
     assert abs(stone.vertices) == pytest.approx(np.full((8, 3), 3**-0.5), rel=1e-12, abs=0)
+    # a cube of sides s = 2 / sqrt 3 has moments (s^2 + s^2) / 12
     assert stone.mass.volume == pytest.approx(8 * 3**-1.5, rel=1e-12, abs=0)
-    assert np.diag(stone.mass.inertia) == pytest.approx(np.full(3, 2 / 9), rel=1e-12, abs=0)  # (2 + 2) / 12 (2/sqrt 3)^2
+    assert np.diag(stone.mass.inertia) == pytest.approx(np.full(3, 2 / 9), rel=1e-12, abs=0)
 
 
 def test_normals_may_have_any_length() -> None:
