@@ -10,14 +10,14 @@
 #include "room.cl"
 #include "tile.cl"
 
-static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel,
+static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel, maskL active,
                                  intL *segments) {
   __constant const parameters_t *scene = world.scene;
   const channels_t channels = {channel, 1};
   const real eta = world.chains[channel].eta;
   const maskL all = splat(0) < splat(1), none = !all;
   rayL ray = {origin, direction, start, splat(1), unpolarised(direction)};
-  maskL inside = DECIDED(CAMERA_INSIDE, scene->camera_inside) ? all : none, active = all;
+  maskL inside = DECIDED(CAMERA_INSIDE, scene->camera_inside) ? all : none;
   if (any_lane(inside)) ray.origin = along(origin, start, direction);
   realL radiance = splat(0);
   for (int meeting = 0; meeting < scene->max_bounces && any_lane(active); meeting++) {
@@ -84,22 +84,37 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
   return radiance;
 }
 
-__kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
-                     __global const real4 *shadows, __global const real *boxes, __global const int *links,
-                     __global const real *corners, __global const chain_t *chains, __global const float *panorama,
-                     double jitter_x, double jitter_y, int first_tile_row, int accumulate, __global float *tallies) {
-  const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
-  const int tile_column = get_global_id(0), tile_row = get_global_id(1) + first_tile_row;
+// Traces one tile and writes it.
+static inline void render_tile(world_t world, __global real4 *image, int tile_column, int tile_row, double jitter_x,
+                               double jitter_y, int accumulate, __global float *tallies) {
+  __constant const parameters_t *scene = world.scene;
   tile_t tile;
   tile.segments = (intL)(0);
-  for (int y = 0; y < TILE; y += PACKET_HEIGHT)
-    for (int x = 0; x < TILE; x += PACKET_WIDTH) {
-      const primaryL primary = primary_rays(scene, tile_column * TILE + x, tile_row * TILE + y, jitter_x, jitter_y);
+  const int column = tile_column * TILE, row = tile_row * TILE;
+  const int columns = shown(column, scene->width), rows = shown(row, scene->height);
+  for (int y = 0; y < rows; y += PACKET_HEIGHT)
+    for (int x = 0; x < columns; x += PACKET_WIDTH) {
+      const primaryL primary = primary_rays(scene, column + x, row + y, jitter_x, jitter_y);
       const int first = first_pixel(x, y);
       for (int channel = 0; channel < 3; channel++)
-        store_lanes(classic_path(world, primary.origin, primary.direction, primary.eye, channel, &tile.segments),
+        store_lanes(classic_path(world, primary.origin, primary.direction, primary.eye, channel,
+                                 in_picture(scene, column + x, row + y), &tile.segments),
                     tile.radiance[channel] + first);
       store_lanes(splat(0), tile.cut + first);
     }
   write_tile(&tile, image, tallies, scene, tile_column, tile_row, accumulate);
+}
+
+__kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
+                     __global const real4 *shadows, __global const real *boxes, __global const int *links,
+                     __global const real *corners, __global const chain_t *chains, __global const float *panorama,
+                     double jitter_x, double jitter_y, int first_tile, int count, volatile __global dealer_t *dealer,
+                     int accumulate, __global float *tallies) {
+  const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
+  const int across = tiles_across(scene);
+  for (int number; (number = deal(dealer, count)) < count;) {
+    const int tile = first_tile + number;
+    render_tile(world, image, tile % across, tile / across, jitter_x, jitter_y, accumulate, tallies);
+  }
+  finish(dealer);
 }

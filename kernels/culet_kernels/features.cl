@@ -4,6 +4,7 @@
 // macros at the end of this one.
 #ifndef CULET_FEATURES
 #define CULET_FEATURES
+#include "lanes.cl"
 
 #define RUNTIME (-1)
 
@@ -82,7 +83,14 @@
 // of a wavelength, which all of them see a part of.
 #define CHANNELS (SPECTRAL || DISPERSION == 0 ? 3 : 1)
 
-// Neighbouring pixels take different wavelengths: GROUPS of them, one for each pixel of a square.
-#define GROUPS (SPECTRAL ? 4 : 1)
+// Neighbouring pixels take different wavelengths: GROUPS of chains, one for each pixel of a square. What belongs to a chain
+// then differs by lane.
+#if SPECTRAL
+#define GROUPS 4
+typedef realL chainL;
+#else
+#define GROUPS 1
+typedef real chainL;
+#endif
 
 #endif

@@ -44,22 +44,45 @@ static inline crossingL hull_entry(__global const real4 *facets, int count, vec3
 #define SMALLEST_GAP 1e-7f
 #endif
 
-// Where a ray inside leaves. Maximises speed / gap, which is 1 / t: one division for each facet and no branch on the
-// sign, since the facets that the ray moves away from are negative and never win.
+// The facet that a ray inside reaches first, of some: it nears it by `speed` per length and is `gap` away.
+typedef struct {
+  realL speed, gap;
+  vec3L normal; // outward
+} approachL;
+
+// Which is reached first, by the larger speed / gap, without a division: gaps are positive. A facet that the ray moves away
+// from has a negative speed, and is never reached.
+static inline approachL sooner(approachL a, approachL b) {
+  const maskL second = b.speed * a.gap > a.speed * b.gap;
+  const approachL first = {blend(second, b.speed, a.speed), blend(second, b.gap, a.gap),
+                           blend3(second, b.normal, a.normal)};
+  return first;
+}
+
+// Facets that are looked at beside each other: a comparison waits for the one before it, those of other facets do not.
+#define ABREAST 3
+
+// Where a ray inside leaves.
 static inline crossingL hull_exit(__global const real4 *facets, int count, vec3L origin, vec3L direction) {
-  realL nearness = splat(0);
-  vec3L normal = vec3(splat(0), splat(0), splat(0));
-  for (int i = 0; i < count; i++) {
-    const real4 facet = facets[i];
-    const realL speed = dot_uniform(direction, facet);
-    const realL gap =
-        fma(-origin.x, splat(facet.x), fma(-origin.y, splat(facet.y), fma(-origin.z, splat(facet.z), splat(facet.w))));
-    const realL candidate = speed / fmax(gap, splat(SMALLEST_GAP));
-    const maskL nearer = candidate > nearness;
-    nearness = fmax(nearness, candidate);
-    normal = blend3(nearer, vec3(splat(facet.x), splat(facet.y), splat(facet.z)), normal);
+  const vec3L nowhere = vec3(splat(0), splat(0), splat(0));
+  approachL first[ABREAST];
+  EACH (k, ABREAST) {
+    first[k].speed = splat(0);
+    first[k].gap = splat(1);
+    first[k].normal = nowhere;
   }
-  const crossingL crossing = {nearness > 0, (real)1 / fmax(nearness, splat(PARALLEL)), normal};
+  for (int i = 0; i < count; i += ABREAST)
+    EACH (k, ABREAST) {
+      const real4 facet = facets[min(i + k, count - 1)];
+      const realL gap = fma(-origin.x, splat(facet.x),
+                            fma(-origin.y, splat(facet.y), fma(-origin.z, splat(facet.z), splat(facet.w))));
+      const approachL next = {dot_uniform(direction, facet), fmax(gap, splat(SMALLEST_GAP)),
+                              vec3(splat(facet.x), splat(facet.y), splat(facet.z))};
+      first[k] = sooner(first[k], next);
+    }
+  EACH (k, ABREAST) first[0] = sooner(first[0], first[k]);
+  const crossingL crossing = {first[0].speed > 0, first[0].gap / fmax(first[0].speed, splat(PARALLEL)),
+                              first[0].normal};
   return crossing;
 }
 

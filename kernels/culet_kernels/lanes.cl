@@ -88,6 +88,55 @@ static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, L
 static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 #endif
 
+// The lanes that a mask names, in order and without gaps: AVX-512 has an instruction for it, by which a packet is stored
+// several times as fast as lane by lane. A whole packet is written, of which `count` lanes are meant.
+#if LANES == 16 && !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__)
+typedef struct {
+  ushort lanes;
+  int count;
+} packing_t;
+static inline packing_t packing_of(maskL mask) {
+  const ushort lanes = __builtin_ia32_cvtd2mask512(mask);
+  const packing_t packing = {lanes, popcount((uint)lanes)};
+  return packing;
+}
+static inline void pack_lanes(packing_t packing, realL value, real *to) {
+  store_lanes(__builtin_ia32_compresssf512_mask(value, value, packing.lanes), to);
+}
+static inline void pack_ints(packing_t packing, intL value, int *to) {
+  store_ints(__builtin_ia32_compresssi512_mask(value, value, packing.lanes), to);
+}
+#else
+typedef struct {
+  int place[LANES], count;
+} packing_t;
+static inline packing_t packing_of(maskL mask) {
+  packing_t packing;
+  int keep[LANES];
+  store_mask(mask, keep);
+  packing.count = 0;
+  for (int lane = 0; lane < LANES; lane++) {
+    packing.place[lane] = packing.count;
+    packing.count += keep[lane] != 0;
+  }
+  return packing;
+}
+static inline void pack_lanes(packing_t packing, realL value, real *to) {
+  real lanes[LANES];
+  store_lanes(value, lanes);
+  for (int lane = 0; lane < LANES; lane++) to[packing.place[lane]] = lanes[lane];
+}
+static inline void pack_ints(packing_t packing, intL value, int *to) {
+  int lanes[LANES];
+  store_ints(value, lanes);
+  for (int lane = 0; lane < LANES; lane++) to[packing.place[lane]] = lanes[lane];
+}
+#endif
+
+// For each k below a small number that is known at compile time. PoCL unrolls only what asks for it, and a loop that stays
+// one keeps its quantities in memory.
+#define EACH(k, number) _Pragma("unroll") for (int k = 0; k < (number); k++)
+
 static inline realL splat(real value) { return (realL)(value); }
 
 // Fast where the reference in double precision shows it to be exact enough, full where real is double.

@@ -40,12 +40,12 @@ typedef struct {
   int pierces;                      // the stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 
-// One index of refraction.
+// One index of refraction. Of a spectral scene the groups of pixels take them by turns.
 typedef struct {
   real eta;
-  real absorption; // per R
-  real share[3];   // of each channel's light; they sum to 1 over the chains that a pixel sees
-  int group;       // of pixels that see it
+  real absorption;   // per R
+  real share[3];     // of each channel's light; they sum to 1 over the chains that a pixel sees
+  real summed_share; // without their signs
 } chain_t;
 
 #endif

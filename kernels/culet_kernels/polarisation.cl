@@ -66,7 +66,7 @@ static inline polarisationL times(polarisationL p, realL a, realL b, realL c, re
 
 // cos_a in air, cos_s in the stone; squared_a is cos_a^2 from Snell's law, negative where light inside is totally
 // reflected. p must be aligned.
-static inline splitL split(polarisationL p, realL cos_a, realL cos_s, realL squared_a, real eta) {
+static inline splitL split(polarisationL p, realL cos_a, realL cos_s, realL squared_a, chainL eta) {
   const maskL total = squared_a <= 0;
   const realL rs = (cos_a - eta * cos_s) / (cos_a + eta * cos_s), rp = (eta * cos_a - cos_s) / (eta * cos_a + cos_s);
   const realL big_rs = rs * rs, big_rp = rp * rp;

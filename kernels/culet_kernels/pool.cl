@@ -10,10 +10,13 @@
 #define POOL_RAYS (REENTRY ? 64 * LANES : 4 * LANES)
 #define POOL_SIZE (POOL_RAYS + LANES) // a packet is written whole, and counted as far as it is meant
 
-// A ray's tag: its pixel within the tile, and above that how often it has met the surface from inside.
+// A ray's tag: its pixel within the tile, above that the group that the pixel belongs to, and above that how often the ray
+// has met the surface from inside.
 #define PIXEL_BITS 12
+#define GROUP_BITS 2
 #define PIXEL_MASK ((1 << PIXEL_BITS) - 1)
-#define ONE_BOUNCE (1 << PIXEL_BITS)
+#define BOUNCE_SHIFT (PIXEL_BITS + GROUP_BITS)
+#define ONE_BOUNCE (1 << BOUNCE_SHIFT)
 
 // A chain has one weight; one that the channels share has one for each, where they are absorbed unequally.
 #define WEIGHTS (!SPECTRAL && DISPERSION == 0 && ABSORPTION != 0 ? 3 : 1)
@@ -36,14 +39,14 @@ typedef struct {
   int count;
 } pool_t;
 
-static inline void store_polarisation(polarisationL p, real polar[6][LANES]) {
-  if (!POLARISED) return;
-  store_lanes(p.q, polar[0]);
-  store_lanes(p.u, polar[1]);
-  store_lanes(p.v, polar[2]);
-  store_lanes(p.axis.x, polar[3]);
-  store_lanes(p.axis.y, polar[4]);
-  store_lanes(p.axis.z, polar[5]);
+// To rows that lie `stride` numbers apart.
+static inline void pack_polarisation(packing_t packing, polarisationL p, real *rows, int stride) {
+  pack_lanes(packing, p.q, rows);
+  pack_lanes(packing, p.u, rows + stride);
+  pack_lanes(packing, p.v, rows + 2 * stride);
+  pack_lanes(packing, p.axis.x, rows + 3 * stride);
+  pack_lanes(packing, p.axis.y, rows + 4 * stride);
+  pack_lanes(packing, p.axis.z, rows + 5 * stride);
 }
 
 // From rows that lie `stride` numbers apart.
@@ -58,38 +61,26 @@ static inline polarisationL load_polarisation(const real *rows, int stride) {
   return p;
 }
 
-// Appends the lanes of a packet that the mask names. Every lane is written and the end moves on over those that stay:
-// no branch for the processor to guess wrong.
-static inline void push(pool_t *pool, maskL mask, packetL packet) {
-  int keep[LANES], tag[LANES];
-  real origin[3][LANES], direction[3][LANES], weight[WEIGHTS][LANES], radiance[CHANNELS][LANES], polar[6][LANES];
-  store_mask(mask, keep);
-  store_polarisation(packet.polarisation, polar);
-  store_ints(packet.tag, tag);
-  store_lanes(packet.origin.x, origin[0]);
-  store_lanes(packet.origin.y, origin[1]);
-  store_lanes(packet.origin.z, origin[2]);
-  store_lanes(packet.direction.x, direction[0]);
-  store_lanes(packet.direction.y, direction[1]);
-  store_lanes(packet.direction.z, direction[2]);
-  for (int k = 0; k < WEIGHTS; k++) store_lanes(packet.weight[k], weight[k]);
-  for (int k = 0; k < CHANNELS; k++) store_lanes(packet.radiance[k], radiance[k]);
-  int end = pool->count;
-  for (int lane = 0; lane < LANES; lane++) {
-    for (int k = 0; k < 3; k++) pool->origin[k][end] = origin[k][lane];
-    for (int k = 0; k < 3; k++) pool->direction[k][end] = direction[k][lane];
-    for (int k = 0; k < WEIGHTS; k++) pool->weight[k][end] = weight[k][lane];
-    for (int k = 0; k < CHANNELS; k++) pool->radiance[k][end] = radiance[k][lane];
-    for (int k = 0; k < POLAR; k++) pool->polar[k][end] = polar[k][lane];
-    pool->tag[end] = tag[lane];
-    end += keep[lane] != 0;
-  }
-  pool->count = end;
+// Appends the lanes of a packet that the mask names.
+static inline void push(pool_t *pool, maskL mask, const packetL *packet) {
+  const packing_t packing = packing_of(mask);
+  const int end = pool->count;
+  pack_lanes(packing, packet->origin.x, pool->origin[0] + end);
+  pack_lanes(packing, packet->origin.y, pool->origin[1] + end);
+  pack_lanes(packing, packet->origin.z, pool->origin[2] + end);
+  pack_lanes(packing, packet->direction.x, pool->direction[0] + end);
+  pack_lanes(packing, packet->direction.y, pool->direction[1] + end);
+  pack_lanes(packing, packet->direction.z, pool->direction[2] + end);
+  EACH (k, WEIGHTS) pack_lanes(packing, packet->weight[k], pool->weight[k] + end);
+  EACH (k, CHANNELS) pack_lanes(packing, packet->radiance[k], pool->radiance[k] + end);
+  if (POLARISED) pack_polarisation(packing, packet->polarisation, pool->polar[0] + end, POOL_SIZE);
+  pack_ints(packing, packet->tag, pool->tag + end);
+  pool->count = end + packing.count;
 }
 
 // Takes up to a packet from the end; the mask says which lanes hold one. The other lanes hold what was there before,
 // which is finite.
-static inline packetL pop(pool_t *pool, maskL *mask) {
+__attribute__((always_inline)) static inline packetL pop(pool_t *pool, maskL *mask) {
   const int start = max(pool->count - LANES, 0);
   *mask = widen(LANE_INDEX < (intL)(pool->count - start));
   pool->count = start;
@@ -98,8 +89,8 @@ static inline packetL pop(pool_t *pool, maskL *mask) {
                        load_lanes(pool->origin[2] + start));
   packet.direction = vec3(load_lanes(pool->direction[0] + start), load_lanes(pool->direction[1] + start),
                           load_lanes(pool->direction[2] + start));
-  for (int k = 0; k < WEIGHTS; k++) packet.weight[k] = load_lanes(pool->weight[k] + start);
-  for (int k = 0; k < CHANNELS; k++) packet.radiance[k] = load_lanes(pool->radiance[k] + start);
+  EACH (k, WEIGHTS) packet.weight[k] = load_lanes(pool->weight[k] + start);
+  EACH (k, CHANNELS) packet.radiance[k] = load_lanes(pool->radiance[k] + start);
   packet.polarisation = load_polarisation(pool->polar[0] + (POLARISED ? start : 0), POOL_SIZE);
   packet.tag = load_ints(pool->tag + start);
   return packet;
@@ -110,10 +101,10 @@ static inline int has_room(const pool_t *pool) { return pool->count <= POOL_RAYS
 static inline void clear(pool_t *pool) {
   pool->count = 0;
   for (int i = 0; i < LANES; i++) { // only here can a packet be taken that is not full
-    for (int k = 0; k < 3; k++) pool->origin[k][i] = pool->direction[k][i] = 0;
-    for (int k = 0; k < WEIGHTS; k++) pool->weight[k][i] = 0;
-    for (int k = 0; k < CHANNELS; k++) pool->radiance[k][i] = 0;
-    for (int k = 0; k < POLAR; k++) pool->polar[k][i] = 0;
+    EACH (k, 3) pool->origin[k][i] = pool->direction[k][i] = 0;
+    EACH (k, WEIGHTS) pool->weight[k][i] = 0;
+    EACH (k, CHANNELS) pool->radiance[k][i] = 0;
+    EACH (k, POLAR) pool->polar[k][i] = 0;
     pool->tag[i] = 0;
   }
 }

@@ -40,7 +40,7 @@ static inline radianceL lighting(world_t world, vec3L point, vec3L normal, maskL
     const maskL lit = mask & (cosine > 0);
     const maskL shaded = stone_shadow(world, i, point, to_light, lit);
     const realL arriving = blend(lit, cosine * blend(shaded, splat(SHADOW), splat(1)), splat(0));
-    for (int k = 0; k < channels.count; k++)
+    EACH_CHANNEL (k, channels)
       sum.channel[k] = fma(arriving, splat(scene->light_colour[i][channels.first + k]), sum.channel[k]);
   }
   return sum;
@@ -109,8 +109,7 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
   const realL mirrored = MIRROR_SHARE * blend(odd, splat((real)0.05), splat((real)0.1));
   const realL albedo = blend(mirror, mirrored, matte);
   const radianceL light = lighting(world, view.point, view.normal, met, channels);
-  for (int k = 0; k < channels.count; k++)
-    view.radiance.channel[k] = blend(met, albedo * light.channel[k], view.radiance.channel[k]);
+  EACH_CHANNEL (k, channels) view.radiance.channel[k] = blend(met, albedo * light.channel[k], view.radiance.channel[k]);
   view.meets = met;
   view.reflects = met & mirror;
   return view;
@@ -124,15 +123,15 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
 // follow, and gives back those that a mirror has sent towards the stone, in `ray` as they leave the mirror. A ray's whole
 // weight is `share` times its own; if that is below the cut-off, the stone is left out of its way. What that may have
 // hidden, and the rays that mirrors would pass on for ever, are added to `cut`.
-static inline radianceL gather(world_t world, rayL *ray, realL share, maskL *towards, realL *cut, channels_t channels) {
+__attribute__((always_inline)) static inline radianceL gather(world_t world, rayL *ray, realL share, maskL *towards,
+                                                              realL *cut, channels_t channels) {
   const real cutoff = world.scene->cutoff;
   radianceL radiance = black();
   maskL active = *towards;
   *towards = active & !active;
   for (;;) {
     const viewL view = look(world, *ray, channels);
-    for (int k = 0; k < channels.count; k++)
-      radiance.channel[k] += blend(active, ray->weight * view.radiance.channel[k], splat(0));
+    EACH_CHANNEL (k, channels) radiance.channel[k] += blend(active, ray->weight * view.radiance.channel[k], splat(0));
     active &= view.reflects;
     if (!any_lane(active)) return radiance;
     ray->start = blend(active, splat(0), ray->start);

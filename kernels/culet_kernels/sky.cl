@@ -5,7 +5,7 @@
 #include "world.cl"
 
 // Radiance in up to three channels. Which ones, `channels_t` says: all three, or the one of a dispersed chain; its count
-// is known at compile time wherever it is used, so that the channels left out cost nothing.
+// is known at compile time wherever it matters, so that the channels left out cost nothing.
 // With one lane in single precision it would be 12 bytes, which PoCL 3.1 (LLVM 15) returns in registers, and loses.
 #define RADIANCE_CHANNELS (LANES == 1 ? 5 : 3)
 typedef struct {
@@ -15,6 +15,10 @@ typedef struct {
 typedef struct {
   int first, count;
 } channels_t;
+
+#define EACH_CHANNEL(k, channels)                                                                                      \
+  EACH (k, 3)                                                                                                          \
+    if (k < (channels).count)
 
 static inline channels_t all_channels(void) {
   const channels_t channels = {0, 3};
@@ -39,7 +43,7 @@ static inline radianceL panorama(world_t world, vec3L direction, channels_t chan
   store_lanes(v, row);
   for (int lane = 0; lane < LANES; lane++) {
     const real left = floor(column[lane]), upper = floor(row[lane]), du = column[lane] - left, dv = row[lane] - upper;
-    for (int k = 0; k < channels.count; k++) radiance[k][lane] = 0;
+    EACH_CHANNEL (k, channels) radiance[k][lane] = 0;
     for (int corner = 0; corner < 4; corner++) {
       int x = (int)left + (corner & 1), y = (int)upper + (corner >> 1);
       if (y < 0 || y >= height) {
@@ -49,12 +53,12 @@ static inline radianceL panorama(world_t world, vec3L direction, channels_t chan
       x = (x % width + width) % width;
       y = clamp(y, 0, height - 1);
       const real share = (corner & 1 ? du : 1 - du) * (corner >> 1 ? dv : 1 - dv);
-      for (int k = 0; k < channels.count; k++)
+      EACH_CHANNEL (k, channels)
         radiance[k][lane] += share * world.panorama[((size_t)y * width + x) * 3 + channels.first + k];
     }
   }
   radianceL seen = black();
-  for (int k = 0; k < channels.count; k++) seen.channel[k] = world.scene->panorama_scale * load_lanes(radiance[k]);
+  EACH_CHANNEL (k, channels) seen.channel[k] = world.scene->panorama_scale * load_lanes(radiance[k]);
   return seen;
 }
 
@@ -64,7 +68,7 @@ static inline radianceL sky(world_t world, vec3L direction, channels_t channels)
   if (kind == IMAGE) return panorama(world, direction, channels);
   radianceL radiance = black();
   if (kind == STUDIO) {
-    for (int k = 0; k < channels.count; k++) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);
+    EACH_CHANNEL (k, channels) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);
     for (int i = 0; i < scene->lamps; i++) {
       // Smoothstep over 1 - cosine, from the lamp's rim to where it has its full radiance; as half the squared distance
       // between unit vectors, since small lamps would lose their digits in a cosine next to 1.
@@ -72,12 +76,12 @@ static inline radianceL sky(world_t world, vec3L direction, channels_t channels)
           vec3(direction.x - scene->lamp[i][0], direction.y - scene->lamp[i][1], direction.z - scene->lamp[i][2]);
       const realL s = clamp(scene->lamp_rim[i] - scene->lamp_slope[i] * dot3(apart, apart), (realL)0, (realL)1);
       const realL share = s * s * ((real)3 - 2 * s);
-      for (int k = 0; k < channels.count; k++)
+      EACH_CHANNEL (k, channels)
         radiance.channel[k] = fma(share, splat(scene->lamp_radiance[i][channels.first + k]), radiance.channel[k]);
     }
     return radiance;
   }
-  for (int k = 0; k < channels.count; k++) {
+  EACH_CHANNEL (k, channels) {
     const real bottom = scene->sky_bottom[channels.first + k], top = scene->sky_top[channels.first + k];
     if (kind == GRADIENT)
       radiance.channel[k] = bottom + (top - bottom) * ((real)0.5 * (direction.y + 1));

@@ -1,6 +1,7 @@
 // The pixels that one work-item owns, and how they reach the picture.
 #ifndef CULET_TILE
 #define CULET_TILE
+#include "features.cl"
 #include "parameters.cl"
 
 #ifndef TILE // pixels on each side: a multiple of a packet's sides, at most 64, for the bits of a ray's tag
@@ -23,10 +24,17 @@ static inline int pixel_at(int x, int y) {
   return first_pixel(x, y) + y % PACKET_HEIGHT * PACKET_WIDTH + x % PACKET_WIDTH;
 }
 
-// Which pixels of a packet belong to a group: one of each square of four, another one in the next sample.
-static inline maskL in_group(int x, int y, int group, int sample) {
-  const intL number = ((PACKET_X + x) & 1) + 2 * ((PACKET_Y + y) & 1) + sample;
-  return widen((number & 3) == (intL)(group));
+// The tile's rows, or columns, that are in the picture.
+static inline int shown(int first, int size) { return min(TILE, size - first); }
+
+// Which pixels of a packet are in the picture.
+static inline maskL in_picture(__constant const parameters_t *scene, int x, int y) {
+  return widen((x + PACKET_X < (intL)(scene->width)) & (y + PACKET_Y < (intL)(scene->height)));
+}
+
+// The groups that a packet's pixels belong to: the four of each square, in the next sample the next ones.
+static inline intL groups_of(int x, int y, int sample) {
+  return ((((PACKET_X + x) & 1) + 2 * ((PACKET_Y + y) & 1) + sample) & 3) % GROUPS;
 }
 
 // Of one sample, by tile: how many segments its chains had inside the stone, and the weight that they dropped, summed over
@@ -35,13 +43,33 @@ static inline maskL in_group(int x, int y, int group, int sample) {
 #define DROPPED 1
 #define TALLIES 2
 
+static inline int tiles_across(__constant const parameters_t *scene) { return (scene->width + TILE - 1) / TILE; }
+
+// A launch's tiles are dealt out one by one: a work-item stands for a core and takes the next tile until there are no more,
+// so that cores end together however unequal tiles are (T. Aila and S. Laine, Understanding the efficiency of ray traversal
+// on GPUs, HPG 2009). Zeros before and after a launch.
+typedef struct {
+  uint dealt, gone; // tiles, work-items
+} dealer_t;
+
+// The number of a tile that nobody else has, or `count` if there is none.
+static inline int deal(volatile __global dealer_t *dealer, int count) {
+  return min(atomic_inc(&dealer->dealt), (uint)count);
+}
+
+// Each work-item's last act; the last of all makes the dealer ready for the next launch.
+static inline void finish(volatile __global dealer_t *dealer) {
+  if (atomic_inc(&dealer->gone) + 1 == get_global_size(0)) dealer->dealt = dealer->gone = 0;
+}
+
 // Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.
 static inline void write_tile(const tile_t *tile, __global real4 *image, __global float *tallies,
                               __constant const parameters_t *scene, int tile_column, int tile_row, int accumulate) {
   const int column = tile_column * TILE, row = tile_row * TILE;
   real dropped = 0;
-  for (int y = 0; y < TILE && row + y < scene->height; y++)
-    for (int x = 0; x < TILE && column + x < scene->width; x++) {
+  const int columns = shown(column, scene->width), rows = shown(row, scene->height);
+  for (int y = 0; y < rows; y++)
+    for (int x = 0; x < columns; x++) {
       const int pixel = pixel_at(x, y);
       const real4 sample =
           (real4)(tile->radiance[0][pixel], tile->radiance[1][pixel], tile->radiance[2][pixel], tile->cut[pixel] / 3);
@@ -53,7 +81,7 @@ static inline void write_tile(const tile_t *tile, __global real4 *image, __globa
   store_ints(tile->segments, counts);
   int total = 0;
   for (int lane = 0; lane < LANES; lane++) total += counts[lane];
-  __global float *tally = tallies + TALLIES * (tile_row * get_global_size(0) + tile_column);
+  __global float *tally = tallies + TALLIES * (tile_row * tiles_across(scene) + tile_column);
   tally[SEGMENTS] = total;
   tally[DROPPED] = dropped;
 }

@@ -5,7 +5,7 @@
 // the stone, where it starts another chain. All of it waits in pools of rays, so that packets are full.
 //
 // A work-item owns a tile. It first finds where each pixel's ray meets the stone, then takes the chains one index of
-// refraction after the other: within a packet, everything that depends on the wavelength is the same.
+// refraction after the other, or four neighbouring wavelengths at a time, one for each group of pixels.
 #ifndef CULET_TRACE
 #define CULET_TRACE
 #include "fresnel.cl"
@@ -23,10 +23,29 @@ typedef struct {
 
 // What all rays of a pool have in common while it is worked on.
 typedef struct {
-  chain_t chain;
-  channels_t channels;
-  uint seed; // of chance
+  __global const chain_t *chains; // by group of pixels
+  int first_channel;
+  uint seed;                      // of chance
 } task_t;
+
+// How many they are is written out, not kept in the task, so that the compiler knows it in functions that it does not inline.
+static inline channels_t channels_of(task_t task) {
+  const channels_t channels = {task.first_channel, CHANNELS};
+  return channels;
+}
+
+// A quantity of each lane's chain.
+#if SPECTRAL
+#define OF_CHAIN(task, tag, quantity)                                                                                  \
+  by_group(tag, (task).chains[0].quantity, (task).chains[1].quantity, (task).chains[2].quantity,                       \
+           (task).chains[3].quantity)
+static inline realL by_group(intL tag, real first, real second, real third, real fourth) {
+  const maskL odd = widen((tag >> PIXEL_BITS & 1) != 0), high = widen((tag >> PIXEL_BITS & 2) != 0);
+  return blend(high, blend(odd, splat(fourth), splat(third)), blend(odd, splat(second), splat(first)));
+}
+#else
+#define OF_CHAIN(task, tag, quantity) ((task).chains[0].quantity)
+#endif
 
 static inline realL largest_weight(const packetL *packet) {
   realL largest = packet->weight[0];
@@ -35,14 +54,13 @@ static inline realL largest_weight(const packetL *packet) {
 }
 
 static inline void scale_weights(packetL *packet, realL factor) {
-  for (int k = 0; k < WEIGHTS; k++) packet->weight[k] *= factor;
+  EACH (k, WEIGHTS) packet->weight[k] *= factor;
 }
 
 // What a packet's weight is in a pixel's sum over the three channels.
 static inline realL summed_weight(task_t task, const packetL *packet) {
   if (WEIGHTS == 3) return packet->weight[0] + packet->weight[1] + packet->weight[2];
-  if (SPECTRAL)
-    return (fabs(task.chain.share[0]) + fabs(task.chain.share[1]) + fabs(task.chain.share[2])) * packet->weight[0];
+  if (SPECTRAL) return OF_CHAIN(task, packet->tag, summed_share) * packet->weight[0];
   return CHANNELS * packet->weight[0];
 }
 
@@ -61,12 +79,13 @@ static inline void deposit(tile_t *tile, task_t task, maskL mask, const packetL 
   real radiance[CHANNELS][LANES], lost[LANES];
   store_mask(mask, keep);
   store_ints(packet->tag & PIXEL_MASK, pixel);
-  for (int k = 0; k < CHANNELS; k++)
-    store_lanes(SPECTRAL ? task.chain.share[k] * packet->radiance[k] : packet->radiance[k], radiance[k]);
+  EACH (k, CHANNELS)
+    store_lanes(SPECTRAL ? OF_CHAIN(task, packet->tag, share[k]) * packet->radiance[k] : packet->radiance[k],
+                radiance[k]);
   store_lanes(cut, lost);
   for (int lane = 0; lane < LANES; lane++) {
     if (!keep[lane]) continue;
-    for (int k = 0; k < CHANNELS; k++) tile->radiance[task.channels.first + k][pixel[lane]] += radiance[k][lane];
+    EACH (k, CHANNELS) tile->radiance[task.first_channel + k][pixel[lane]] += radiance[k][lane];
     tile->cut[pixel[lane]] += lost[lane];
   }
 }
@@ -80,8 +99,8 @@ static inline realL leave(world_t world, pools_t *pools, task_t task, packetL *p
   maskL towards = mask;
   realL cut = splat(0);
   if (clear) {
-    const radianceL radiance = gather(world, &ray, share * largest_weight(packet), &towards, &cut, task.channels);
-    for (int k = 0; k < CHANNELS; k++)
+    const radianceL radiance = gather(world, &ray, share * largest_weight(packet), &towards, &cut, channels_of(task));
+    EACH (k, CHANNELS)
       packet->radiance[k] += blend(mask, share * packet->weight[min(k, WEIGHTS - 1)] * radiance.channel[k], splat(0));
     cut = blend(mask, cut * share * over_channels(task, packet), splat(0));
   }
@@ -91,9 +110,9 @@ static inline realL leave(world_t world, pools_t *pools, task_t task, packetL *p
     back.direction = ray.direction;
     back.polarisation = ray.polarisation;
     scale_weights(&back, share * ray.weight);
-    for (int k = 0; k < CHANNELS; k++) back.radiance[k] = splat(0);
+    EACH (k, CHANNELS) back.radiance[k] = splat(0);
     if (has_room(&pools->outside))
-      push(&pools->outside, towards, back);
+      push(&pools->outside, towards, &back);
     else
       cut += blend(towards, over_channels(task, &back), splat(0));
   }
@@ -134,8 +153,8 @@ static inline maskL settle(world_t world, task_t task, packetL *packet, maskL ma
     return mask & (lucky | !ends);
   }
   if (end_kind == SKYLIGHT) {
-    const radianceL fallback = sky(world, packet->direction, task.channels);
-    for (int k = 0; k < CHANNELS; k++)
+    const radianceL fallback = sky(world, packet->direction, channels_of(task));
+    EACH (k, CHANNELS)
       packet->radiance[k] += blend(ends, packet->weight[min(k, WEIGHTS - 1)] * fallback.channel[k], splat(0));
   }
   *cut += blend(ends, over_channels(task, packet), splat(0));
@@ -144,50 +163,50 @@ static inline maskL settle(world_t world, task_t task, packetL *packet, maskL ma
 
 // The boundary's reflectance for a packet, and its polarisation on either side.
 static inline splitL meet_boundary(world_t world, task_t task, const packetL *packet, vec3L normal, realL cos_a,
-                                   realL cos_s, realL squared_a) {
+                                   realL cos_s, realL squared_a, chainL eta) {
   splitL result;
-  if (POLARISED)
-    return split(align(packet->polarisation, packet->direction, normal), cos_a, cos_s, squared_a, task.chain.eta);
+  if (POLARISED) return split(align(packet->polarisation, packet->direction, normal), cos_a, cos_s, squared_a, eta);
   const int fresnel_kind = DECIDED(FRESNEL, world.scene->fresnel_kind);
-  result.kept = blend(squared_a > 0, reflectance(fresnel_kind, cos_a, cos_s, task.chain.eta), splat(1));
+  result.kept = blend(squared_a > 0, reflectance(fresnel_kind, cos_a, cos_s, eta), splat(1));
   result.reflected = result.transmitted = packet->polarisation;
   return result;
 }
 
 // Splits light that meets the stone from outside: what is reflected goes into the room, what enters starts a chain.
-static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, packetL packet, vec3L point,
+static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, packetL *packet, vec3L point,
                          vec3L normal, maskL mask) {
-  const realL cos_a = clamp(-dot3(packet.direction, normal), (realL)0, (realL)1);
-  const realL cos_s = cosine_in_stone(cos_a, task.chain.eta);
+  const realL cos_a = clamp(-dot3(packet->direction, normal), (realL)0, (realL)1);
+  const chainL eta = OF_CHAIN(task, packet->tag, eta);
+  const realL cos_s = cosine_in_stone(cos_a, eta);
   const splitL parts =
-      meet_boundary(world, task, &packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)));
-  realL cut = leave(world, pools, task, &packet, point, reflect3(packet.direction, -cos_a, normal), parts.kept,
+      meet_boundary(world, task, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
+  realL cut = leave(world, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept,
                     parts.reflected, mask, GEOMETRY != MESH);
 
-  packetL inner = packet;
+  packetL inner = *packet;
   inner.origin = point;
-  const real ratio = 1 / task.chain.eta;
-  inner.direction = renormalise(along(scale3(splat(ratio), packet.direction), ratio * cos_a - cos_s, normal));
+  const realL ratio = splat(1) / eta;
+  inner.direction = renormalise(along(scale3(ratio, packet->direction), ratio * cos_a - cos_s, normal));
   inner.polarisation = parts.transmitted;
   scale_weights(&inner, (real)1 - parts.kept);
-  inner.tag = packet.tag & PIXEL_MASK;
-  for (int k = 0; k < CHANNELS; k++) inner.radiance[k] = splat(0);
+  inner.tag = packet->tag & (ONE_BOUNCE - 1);
   maskL goes_on = settle(world, task, &inner, mask, mask & !mask, &cut);
   if (!has_room(&pools->inside)) {
     cut += blend(goes_on, over_channels(task, &inner), splat(0));
     goes_on = goes_on & !goes_on;
   }
-  push(&pools->inside, goes_on, inner);
-  // Where the chain ends at once, its sky is all that it has.
-  for (int k = 0; k < CHANNELS; k++) packet.radiance[k] += blend(mask & !goes_on, inner.radiance[k], splat(0));
-  deposit(tile, task, mask, &packet, cut);
+  push(&pools->inside, goes_on, &inner);
+  // A chain that goes on takes what its first reflection has gathered along, but not what it has lost.
+  EACH (k, CHANNELS) inner.radiance[k] = blend(goes_on, splat(0), inner.radiance[k]);
+  const maskL left = mask & (!goes_on | (cut > 0));
+  if (any_lane(left)) deposit(tile, task, left, &inner, cut);
 }
 
 // Advances one packet of light inside the stone by a few segments, and puts back what survives.
 static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t task) {
-  const real eta = task.chain.eta;
   maskL taken;
   packetL packet = pop(&pools->inside, &taken);
+  const chainL eta = OF_CHAIN(task, packet.tag, eta);
   maskL alive = taken;
   realL cut = splat(0);
   for (int segment = 0; segment < STRIDE && any_lane(alive); segment++) {
@@ -195,18 +214,19 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     tile->segments += count_mask(alive);
     packet.origin = along(packet.origin, crossing.t, packet.direction);
     if (ABSORPTION != 0) {
-      for (int k = 0; k < WEIGHTS; k++)
-        packet.weight[k] *= exp_fast(-(WEIGHTS == 3 ? world.scene->absorption[k] : task.chain.absorption) * crossing.t);
+      EACH (k, WEIGHTS)
+        packet.weight[k] *= exp_fast(
+            -(WEIGHTS == 3 ? world.scene->absorption[k] : OF_CHAIN(task, packet.tag, absorption)) * crossing.t);
     }
     const realL cos_s = clamp(dot3(packet.direction, crossing.normal), (realL)0, (realL)1);
     const realL squared_a = squared_cosine_in_air(cos_s, eta);
     const maskL leaves = alive & (squared_a > 0);
     if (POLARISED || any_lane(leaves)) {
       const realL cos_a = sqrt(fmax(squared_a, (realL)0));
-      const splitL parts = meet_boundary(world, task, &packet, crossing.normal, cos_a, cos_s, squared_a);
+      const splitL parts = meet_boundary(world, task, &packet, crossing.normal, cos_a, cos_s, squared_a, eta);
       if (any_lane(leaves)) {
         const vec3L outward =
-            renormalise(along(scale3(splat(eta), packet.direction), cos_a - eta * cos_s, crossing.normal));
+            renormalise(along(scale3((realL)(eta), packet.direction), cos_a - eta * cos_s, crossing.normal));
         cut += leave(world, pools, task, &packet, packet.origin, outward, (real)1 - parts.kept, parts.transmitted,
                      leaves, GEOMETRY != MESH);
       }
@@ -215,10 +235,10 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     }
     packet.direction = renormalise(reflect3(packet.direction, cos_s, crossing.normal));
     packet.tag += ONE_BOUNCE;
-    const maskL used_up = !crossing.hit | widen((packet.tag >> PIXEL_BITS) >= (intL)(world.scene->max_bounces));
+    const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
     alive = settle(world, task, &packet, alive, used_up, &cut);
   }
-  if (any_lane(alive)) push(&pools->inside, alive, packet);
+  if (any_lane(alive)) push(&pools->inside, alive, &packet);
   const maskL ended = taken & !alive;
   if (any_lane(ended)) deposit(tile, task, ended, &packet, cut);
 }
@@ -238,7 +258,7 @@ static inline void come_back(world_t world, tile_t *tile, pools_t *pools, task_t
     deposit(tile, task, misses, &passing, cut);
   }
   if (any_lane(hits))
-    enter(world, tile, pools, task, packet, along(packet.origin, crossing.t, packet.direction), crossing.normal, hits);
+    enter(world, tile, pools, task, &packet, along(packet.origin, crossing.t, packet.direction), crossing.normal, hits);
 }
 
 #endif

@@ -78,8 +78,9 @@ def test_a_decided_feature_shows_what_the_general_program_shows(
     general = take(narrow, Scene.read(scene), features=Features())
     decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
     assert machine_code(general) == size_of_general
-    # measured 7.5e-9 without dispersion, where three channels are one chain; otherwise every bit is the same
-    assert radiance(decided) == pytest.approx(radiance(general), abs=3e-8)
+    # measured 1.9e-7 of the radiance without dispersion, where the channels of one chain are summed in another order;
+    # otherwise every bit is the same
+    assert radiance(decided) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
 
 
 @pytest.mark.parametrize("name", OFF)
@@ -117,7 +118,8 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
 ) -> None:
     """Every feature decided, against every feature left to run time."""
     own, general = take(narrow, Scene.read(scene)), take(narrow, Scene.read(scene), features=Features())
-    assert radiance(own) == pytest.approx(radiance(general), abs=3e-8)
+    # measured 2.2e-7 of the radiance: where less is left to run time, other sums are rounded together
+    assert radiance(own) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
     assert machine_code(own) < size_of_general
 
 

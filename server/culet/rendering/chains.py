@@ -22,7 +22,7 @@ GOLDEN = 0.6180339887498949
 def layout(real: Real) -> np.dtype[np.void]:
     """`chain_t` of parameters.cl."""
     r = np.dtype(real)
-    return np.dtype([("eta", r), ("absorption", r), ("share", r, 3), ("group", np.int32)], align=True)
+    return np.dtype([("eta", r), ("absorption", r), ("share", r, 3), ("summed_share", r)], align=True)
 
 
 def is_spectral(scene: Scene) -> bool:
@@ -50,8 +50,8 @@ def is_coloured(scene: Scene) -> bool:
 def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArray[np.void]:
     """(N,) one row a chain. `common`: the channels share one index; else each has its own.
 
-    A spectral scene has `bands` wavelengths for each of the four groups of pixels instead; they move within their
-    strata from sample to sample.
+    A spectral scene has `bands` wavelengths for each of the GROUPS of pixels instead, which take the rows by turns;
+    they move within their strata from sample to sample.
     """
     if not is_spectral(scene):
         table = np.zeros(1 if common and scene.optics.estimator == "chain" else 3, layout(real))
@@ -67,7 +67,7 @@ def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArr
     table["eta"] = material.index(spectrum.wavelength, clamp=True)
     table["absorption"] = material.absorption_per_mm(spectrum.wavelength) * size + _asked(scene, spectrum.wavelength)
     table["share"] = spectrum.weights
-    table["group"] = spectrum.group
+    table["summed_share"] = abs(spectrum.weights).sum(axis=1)
     return table
 
 

@@ -91,20 +91,20 @@ class Programs:
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
         program = build(self._device, variant.source, [*variant.options, *features.options])
         kernel = cl.Kernel(program, "render")
-        warm_up(self._device, kernel, variant)
+        warm_up(self._device, kernel)
         return cl.Kernel(program, "render")
 
 
-def warm_up(device: Device, kernel: Any, variant: Variant) -> None:  # noqa: ANN401
-    """Launch once on one tile of a picture of no pixels, whose rays all pass the stone by, in a queue of its own."""
-    from culet.rendering.parameters import layout
+def dealer(device: Device) -> Any:  # noqa: ANN401 - pyopencl has no types
+    """What deals the tiles of one launch at a time out to the device's cores; see tile.cl."""
+    flags = cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR
+    return cl.Buffer(device.context, flags, hostbuf=np.zeros(2, np.uint32))
 
+
+def warm_up(device: Device, kernel: Any) -> None:  # noqa: ANN401
+    """Launch once for no tiles, in a queue of its own."""
     queue = cl.CommandQueue(device.context)
-    flags = cl.mem_flags.READ_WRITE
-    parameters = np.zeros((), layout(variant.real))
-    parameters["foot"], parameters["direction"] = (0, 10, 0), (1, 0, 0)
-    scene = cl.Buffer(device.context, flags | cl.mem_flags.COPY_HOST_PTR, hostbuf=parameters)
-    scratch = cl.Buffer(device.context, flags, 1024)
-    args = (scratch, scene, *[scratch] * 7, np.float64(0), np.float64(0), np.int32(0), np.int32(0), scratch)
-    kernel(queue, (1, 1), (1, 1), *args)
+    scratch = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, 1024)
+    real, integer = np.float64(0), np.int32(0)
+    kernel(queue, (1,), (1,), *[scratch] * 9, real, real, integer, integer, dealer(device), integer, scratch)
     queue.finish()

@@ -19,14 +19,12 @@ from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.panoramas import Panorama
-from culet.rendering.program import Programs, Variant, build
+from culet.rendering.program import Programs, Variant, build, dealer
 from culet.rendering.sums import Fold, Sums
 from culet.scene.model import Scene
 
 SOURCES = {"chain": "render.cl", "classic": "classic.cl"}
 """Of each estimator; both have a kernel `render` with the same arguments."""
-SPECTRAL_TILE = 64
-"""Pixels on a side: each wavelength has a quarter of a tile's pixels to fill packets with, so tiles are larger."""
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3}
@@ -51,6 +49,7 @@ class Renderer:
         self.programs = Programs(self.device)
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
+        self.dealer = dealer(self.device)
         self.fold = Fold(self.device, self.variant)
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
 
@@ -114,8 +113,6 @@ class Picture:
         features = features or features_of(scene, stone)
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._variant = replace(renderer.variant, source=SOURCES[scene.optics.estimator])
-        if is_spectral(scene):
-            self._variant = replace(self._variant, tile=SPECTRAL_TILE)
         self._kernel = get(features, self._variant)
         self._panorama = panorama
         self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
@@ -136,9 +133,9 @@ class Picture:
 
     def refine_in_bands(self, samples: int, rows: int) -> Iterator[float]:
         """The same in bands of about `rows` rows; yields the part that is done, between them."""
-        tile = self._variant.tile
-        tiles = max(1, math.ceil(rows / tile))
-        bands = math.ceil(self._tiles[1] / tiles)
+        across, down = self._tiles
+        tiles = across * min(down, max(1, math.ceil(rows / self._variant.tile)))
+        bands = math.ceil(across * down / tiles)
         queue = self._renderer.device.queue
         self.seconds = 0.0
         for sample in range(samples):
@@ -146,10 +143,11 @@ class Picture:
             target, accumulate = self._sums.next
             for band in range(bands):
                 start = time.perf_counter()
-                count = min(tiles, self._tiles[1] - band * tiles)
+                count = min(tiles, across * down - band * tiles)
                 event = self._kernel(
-                    queue, (self._tiles[0], count), (1, 1), target, *self._inputs.of_sample(self.samples),
-                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(accumulate), self._tallies,
+                    queue, (self._renderer.device.units,), (1,), target, *self._inputs.of_sample(self.samples),
+                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(count), self._renderer.dealer,
+                    np.int32(accumulate), self._tallies,
                 )  # fmt: skip
                 event.wait()
                 self.seconds += time.perf_counter() - start

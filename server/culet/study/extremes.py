@@ -258,7 +258,7 @@ def _judged(scene: Scene, brightest: float | None, pixels: Array, cut: Array) ->
     lowest, highest = 0.0, brightest or 1.0
     if is_spectral(scene):
         chains = chain_table(scene, 0, np.float64, common=False)
-        by_group = [chains["share"][chains["group"] == group] for group in range(GROUPS)]
+        by_group = [chains["share"][group::GROUPS] for group in range(GROUPS)]
         lowest = highest * min(np.minimum(share, 0).sum(axis=0).min() for share in by_group)
         highest = highest * max(np.maximum(share, 0).sum(axis=0).max() for share in by_group)
     if brightest is not None:
