@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 from gateway.running import Endpoints, Gateway, gateway_before
-
-NOBODY = Endpoints("ipc:///tmp/culet-nobody-control", "ipc:///tmp/culet-nobody-frames")
 
 
 async def test_with_an_engine_the_gateway_is_healthy_and_ready(gateway: Gateway) -> None:
@@ -74,12 +70,3 @@ async def test_the_page_is_served_or_its_absence_explained(engine: Endpoints, tm
         assert (await gateway.http.get("/")).text == "<h1>the page</h1>"
         assert (await gateway.http.get("/healthz")).status_code == 200
         assert (await gateway.http.get("/../../etc/passwd")).status_code == 404
-
-
-def test_the_gateway_never_loads_opencl_or_the_renderer() -> None:
-    script = (
-        "import sys, culet.gateway.serve\n"
-        "print([name for name in sys.modules if name.startswith(('pyopencl', 'culet.rendering', 'culet.engine'))])"
-    )
-    loaded = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert loaded.stdout.strip() == "[]"
