@@ -12,13 +12,13 @@ from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.motion import Motion, gaps
-from culet.simulation.rotation import normalised
+from culet.simulation.rotation import IDENTITY, normalised
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, RigidState, Triple
 from culet.simulation.surfaces import FLOOR, Surface
 
 G = 9.81
-UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
+UPRIGHT = IDENTITY
 TABLE_DOWN: Quaternion = (0.0, 1.0, 0.0, 0.0)
 
 

@@ -43,9 +43,9 @@ def check_rest(moving: Simulation, stone: Stone, stable: NDArray[np.float64]) ->
     down = np.array(rotate_back(moving.state.orientation, (0.0, -1.0, 0.0)))
     facets = stone.planes[:, :3]
     tilt = np.linalg.norm(facets - down, axis=1).min()
-    assert math.degrees(tilt) < 5e-3  # measured 7e-4, in 50 drops
+    assert math.degrees(tilt) < 5e-3  # measured 7e-4 in 500 drops
     assert np.linalg.norm(stable - down, axis=1).min() < 1e-4, "a facet that carries the stone"  # measured 1.2e-5
-    assert -1e-9 < nearest(moving) < 1e-5  # measured 0 to 7e-7
+    assert -1e-9 < nearest(moving) < 1e-5  # measured 0 to 9e-7
     assert spin_of(moving) == (0, 0, 0)
 
 

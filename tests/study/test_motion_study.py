@@ -17,8 +17,9 @@ from culet.study.journal import Journal
 from culet.study.motions import Motion, bounce_truth, flat_orientation
 from culet.study.report import Point
 from culet.study.simulation import fits_of, measure_all, points_of
-from culet.study.tops import TOP_MOMENTS, TOP_SPIN, UPRIGHT, angle_between, rotation_truth
+from culet.study.tops import TOP_MOMENTS, TOP_SPIN, angle_between, rotation_truth
 from simulation.jacobi import FreeTop
+from simulation.solids import UPRIGHT
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import sys
+from importlib import invalidate_caches
+from importlib.machinery import PathFinder
 from pathlib import Path
 
 import numpy as np
@@ -69,8 +70,14 @@ def test_the_newest_llvm_that_is_new_enough_is_found(tmp_path: Path, monkeypatch
     assert find_llvm((tmp_path,)) == "/elsewhere/libLLVM.so"
 
 
-def test_a_package_that_is_not_there_is_missing() -> None:
-    assert mitsuba_missing() == (importlib.util.find_spec("mitsuba") is None)
+def test_a_package_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "mitsuba", raising=False)
+    monkeypatch.setattr(sys, "path", [str(tmp_path)])
+    monkeypatch.setattr(sys, "meta_path", [PathFinder])  # an editable install would find it elsewhere
+    assert mitsuba_missing()
+    (tmp_path / "mitsuba.py").touch()
+    invalidate_caches()
+    assert not mitsuba_missing()
 
 
 @pytest.mark.validation

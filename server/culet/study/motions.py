@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as Settings
 from culet.scene.room import FLOOR_Y
-from culet.simulation.rotation import rotate
+from culet.simulation.rotation import IDENTITY, rotate
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
 from culet.study.report import Knob
-from culet.study.tops import UPRIGHT, rotation_truth
+from culet.study.tops import rotation_truth
 
 REFERENCE_STEP: dict[str, Knob] = {"time_step": 1 / 960, "contact_step": 0.001, "integrator": "rkmk4"}
 
@@ -54,7 +54,7 @@ class End(NamedTuple):
 
 def motions_of(stone: Stone) -> Iterator[tuple[Motion, Callable[[str], End]]]:
     """Each motion, and where it ends by the name of the model."""
-    flight = Motion("flight", 2.0, (0.0, 100.0, 0.0), UPRIGHT, {"spin": (0.5, 3, 1), "velocity": (1, 2, -0.5)})
+    flight = Motion("flight", 2.0, (0.0, 100.0, 0.0), IDENTITY, {"spin": (0.5, 3, 1), "velocity": (1, 2, -0.5)})
     yield flight, lambda _: _flight_end(flight, stone)
     lying = flat_orientation(stone)
     half_height = float(-_heights(stone, lying).min())

@@ -19,12 +19,13 @@ from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.free_rotation import INTEGRATORS
 from culet.simulation.models import MODELS
+from culet.simulation.rotation import IDENTITY
 from culet.simulation.state import Quaternion
 from culet.study.convergence import fit_order
 from culet.study.journal import Journal
 from culet.study.motions import End, Motion, motions_of, started
 from culet.study.report import Figure, Fit, Knob, Point
-from culet.study.tops import TOP_MOMENTS, TOP_SECONDS, TOP_SPIN, UPRIGHT, angle_between, rotation_truth
+from culet.study.tops import TOP_MOMENTS, TOP_SECONDS, TOP_SPIN, angle_between, rotation_truth
 
 FIGURES: dict[str, Figure] = {
     "cpu_seconds": Figure(unit="s/s", about="Processor seconds a simulated second, median."),
@@ -76,7 +77,7 @@ def fits_of(points: list[Point]) -> list[Fit]:
 def _rotations(stone: Stone, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
     shaped = replace(stone, mass=MassProperties(stone.mass.volume, np.diag(TOP_MOMENTS)))
     body = RigidBody.of(Settings(mass=1), shaped)
-    momentum = body.angular_momentum(UPRIGHT, TOP_SPIN)
+    momentum = body.angular_momentum(IDENTITY, TOP_SPIN)
     truth: list[Quaternion] = []
     for integrator in INTEGRATORS:
         for step in ROTATION_STEPS[: 5 if quick else None]:
@@ -84,14 +85,14 @@ def _rotations(stone: Stone, repeats: int, *, quick: bool) -> Iterator[tuple[str
 
             def run(integrator: str = integrator, step: float = step, knobs: dict[str, Knob] = knobs) -> Point:
                 if not truth:
-                    truth.append(rotation_truth(body, UPRIGHT, momentum, TOP_SECONDS))
-                seconds, q = [], UPRIGHT
+                    truth.append(rotation_truth(body, IDENTITY, momentum, TOP_SECONDS))
+                seconds, q = [], IDENTITY
                 for _ in range(repeats):
-                    q, start = UPRIGHT, time.process_time()
+                    q, start = IDENTITY, time.process_time()
                     for _ in range(round(TOP_SECONDS / step)):
                         q = INTEGRATORS[integrator](body, q, momentum, step)
                     seconds.append((time.process_time() - start) / TOP_SECONDS)
-                before = float(np.dot(momentum, body.angular_velocity_at(UPRIGHT, momentum)))
+                before = float(np.dot(momentum, body.angular_velocity_at(IDENTITY, momentum)))
                 after = float(np.dot(momentum, body.angular_velocity_at(q, momentum)))
                 return _point(
                     "rotation",

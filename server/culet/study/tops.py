@@ -19,7 +19,6 @@ TOP_SPIN: Triple = (3.0, 4.0, 3.5)
 TOP_SECONDS = 4.0
 TOLERANCE = 1e-13
 """Of DOP853 (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I), relative and absolute."""
-UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 
 def rotation_truth(body: RigidBody, orientation: Quaternion, angular_momentum: Triple, seconds: float) -> Quaternion:
