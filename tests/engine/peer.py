@@ -156,8 +156,9 @@ class Watcher:
 
     async def until(self, wanted: Callable[[Frame], bool]) -> Frame:
         """The next frame that fits."""
-        while not wanted(frame := await self.next()):
-            pass
+        async with asyncio.timeout(PATIENCE):  # of all together: a picture at rest is sent again for ever
+            while not wanted(frame := await self.next()):
+                pass
         return frame
 
     def leave(self) -> None:
