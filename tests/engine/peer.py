@@ -45,7 +45,11 @@ def running_engine(folder: Path) -> Iterator[EngineProcess]:
         yield EngineProcess(process, control, frames)
     finally:
         process.terminate()
-        process.wait(PATIENCE)
+        try:
+            process.wait(PATIENCE)
+        finally:
+            process.kill()  # one that outlived the tests would keep whoever reads their output waiting
+            process.wait()
 
 
 class Peer:
