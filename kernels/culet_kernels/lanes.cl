@@ -88,9 +88,15 @@ static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, L
 static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 #endif
 
-// The lanes that a mask names, in order and without gaps: AVX-512 has an instruction for it, by which a packet is stored
-// several times as fast as lane by lane. A whole packet is written, of which `count` lanes are meant.
-#if LANES == 16 && !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__)
+// Whether 16 numbers of single precision have the processor's instructions for masks and for packing, which OpenCL has not.
+#if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__)
+#define AVX512 1
+#else
+#define AVX512 0
+#endif
+
+// The lanes that a mask names, in order and without gaps. A whole packet is written, of which `count` lanes are meant.
+#if LANES == 16 && AVX512
 typedef struct {
   ushort lanes;
   int count;
@@ -133,8 +139,8 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 }
 #endif
 
-// For each k below a small number that is known at compile time. PoCL unrolls only what asks for it, and a loop that stays
-// one keeps its quantities in memory.
+// For each k below a small number that is known at compile time. PoCL does not unroll all that it could by itself, and a loop
+// that is left keeps its quantities in memory.
 #define EACH(k, number) _Pragma("unroll") for (int k = 0; k < (number); k++)
 
 static inline realL splat(real value) { return (realL)(value); }

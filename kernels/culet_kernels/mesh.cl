@@ -24,7 +24,9 @@ static inline uint byte_bits(uchar8 bytes) {
   return (uint)(((as_ulong(bytes) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
 }
 static inline uint mask_bits(maskW mask) {
-#if TREE_WIDTH == 16
+#if TREE_WIDTH == 16 && AVX512
+  return __builtin_ia32_cvtd2mask512(mask);
+#elif TREE_WIDTH == 16
   const uchar16 bytes = as_uchar16(convert_char16(mask));
   return byte_bits(bytes.lo) | byte_bits(bytes.hi) << 8;
 #else
@@ -140,13 +142,38 @@ static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) 
 
 static inline real away_from_zero(real x) { return fabs(x) < PARALLEL ? copysign(PARALLEL, x) : x; }
 
+// Nodes that wait to be looked into, and how far along the ray their boxes are. All children of a node are written at
+// once, and counted as far as they are meant.
+typedef struct {
+  int node[TREE_STACK + TREE_WIDTH];
+  real nearness[TREE_STACK + TREE_WIDTH];
+  int size;
+} stack_t;
+
+// Adds the children that the bits name, in any order: to sort them costs more than it saves.
+static inline void put(stack_t *stack, uint bits, __global const int *links, realW near) {
+#if TREE_WIDTH == 16 && AVX512
+  const int16 nodes = vload16(0, links);
+  vstore16(__builtin_ia32_compresssi512_mask(nodes, nodes, bits), 0, stack->node + stack->size);
+  vstore16(__builtin_ia32_compresssf512_mask(near, near, bits), 0, stack->nearness + stack->size);
+  stack->size += popcount(bits);
+#else
+  real nearness[TREE_WIDTH];
+  JOIN(vstore, TREE_WIDTH)(near, 0, nearness);
+  for (; bits != 0; bits &= bits - 1) {
+    const int child = lowest_bit(bits);
+    stack->node[stack->size] = links[child];
+    stack->nearness[stack->size++] = nearness[child];
+  }
+#endif
+}
+
 // The nearest triangle along a ray.
 static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
-  int stack[TREE_STACK];
-  real nearness[TREE_STACK];
-  int size = 1;
-  stack[0] = 0;
-  nearness[0] = probe->start;
+  stack_t stack;
+  stack.size = 1;
+  stack.node[0] = 0;
+  stack.nearness[0] = probe->start;
   // Along each axis a box is entered at one of its two sides and left at the other, by the direction's sign. Boxes are a
   // little larger than what they hold, by more than these operations round (rendering/tree.py).
   real inverse[3], enter[3], leave[3];
@@ -161,10 +188,10 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
     first_side[k] = inverse[k] < 0 ? 3 + k : k;
     most_facing[k] = side * probe->direction[k] < 0 ? 9 + k : 6 + k;
   }
-  while (size > 0) {
-    size--;
-    if (nearness[size] > probe->limit) continue;
-    const int node = stack[size];
+  while (stack.size > 0) {
+    stack.size--;
+    if (stack.nearness[stack.size] > probe->limit) continue;
+    const int node = stack.node[stack.size];
     if (node < 0) {
       probe_leaf(tree, ~node, side, probe);
       continue;
@@ -176,15 +203,8 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
       near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(inverse[k]), (realW)(enter[k])));
       far = fmin(far, fma(load_wide(rows, 3 + 2 * k - first_side[k]), (realW)(inverse[k]), (realW)(leave[k])));
     }
-    uint entered = mask_bits((near <= far) & (facing > 0));
-    if (entered == 0) continue;
-    real distance[TREE_WIDTH];
-    JOIN(vstore, TREE_WIDTH)(near, 0, distance);
-    for (; entered != 0; entered &= entered - 1) { // in any order: to sort them costs more than it saves
-      const int child = lowest_bit(entered);
-      stack[size] = tree.links[node * TREE_WIDTH + child];
-      nearness[size++] = distance[child];
-    }
+    const uint entered = mask_bits((near <= far) & (facing > 0));
+    if (entered != 0) put(&stack, entered, tree.links + node * TREE_WIDTH, near);
   }
 }
 

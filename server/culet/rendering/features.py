@@ -23,9 +23,9 @@ class Geometry(IntEnum):
     MESH = 2
 
 
-MOST_HALF_SPACES = 600
-"""Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. With
-the brilliant's 73 the tree takes some 5 times as long."""
+MOST_HALF_SPACES = 1500
+"""Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. Of
+balls, one of 400 facets takes 2.6 times as long by the tree, one of 1600 as long, one of 2000 0.8 times."""
 SURFACE = {"none": 0, "matte": 1, "mirror": 2}
 SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3, "image": 4}
 FRESNEL = {"exact": 0, "schlick": 1}
