@@ -26,6 +26,7 @@ class Geometry(IntEnum):
 MOST_HALF_SPACES = 1500
 """Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. Of
 balls, one of 400 facets takes 2.6 times as long by the tree, one of 1600 as long, one of 2000 0.8 times."""
+ESTIMATOR = {"chain": 0, "classic": 1}
 SURFACE = {"none": 0, "matte": 1, "mirror": 2}
 SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3, "image": 4}
 FRESNEL = {"exact": 0, "schlick": 1}
@@ -48,11 +49,14 @@ class Features:
     spectral: int = 0
     polarised: int = 0
     camera_inside: int = RUNTIME
+    estimator: int = ESTIMATOR["chain"]
 
     @property
     def general(self) -> Features:
-        """The program for every scene of this geometry, spectral or not, polarised or not."""
-        return Features(geometry=self.geometry, spectral=self.spectral, polarised=self.polarised)
+        """The program for every scene of this estimator and geometry, spectral or not, polarised or not."""
+        return Features(
+            geometry=self.geometry, spectral=self.spectral, polarised=self.polarised, estimator=self.estimator
+        )
 
     @property
     def options(self) -> list[str]:
@@ -96,4 +100,5 @@ def features_of(scene: Scene, stone: Stone | None) -> Features:
         spectral=int(is_spectral(scene)),
         polarised=int(optics.polarised and optics.estimator == "chain"),
         camera_inside=int(stone is not None and camera_is_inside(scene, stone)),
+        estimator=ESTIMATOR[optics.estimator],
     )
