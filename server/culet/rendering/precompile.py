@@ -12,19 +12,30 @@ from dataclasses import asdict
 
 import numpy as np
 
+from culet.errors import DeviceError
 from culet.rendering.device import open_device
 from culet.rendering.features import Features
 from culet.rendering.program import Programs, Variant
 
 NICENESS = 10
 """Of the compiling process: frames come first."""
+MOST_SECONDS = 600.0
+"""After which the compiler counts as hung. Programs take some 3 s of a core, measured, and more where many share it."""
+COMMAND = ("nice", "-n", str(NICENESS), sys.executable, "-m", __name__)
+"""The process, which takes the order as its argument."""
 
 
 def precompile(features: Features, variant: Variant) -> None:
-    """Start a process that makes the program, and wait for it. If it fails, the caller's own build will say why."""
+    """Start a process that makes the program, and wait for it; DeviceError if it does not end.
+
+    If it fails, the caller's own build will say why.
+    """
     order = {"features": asdict(features), "variant": {**asdict(variant), "real": np.dtype(variant.real).name}}
-    command = ["nice", "-n", str(NICENESS), sys.executable, "-m", __name__, json.dumps(order)]
-    subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)  # noqa: S603
+    command = [*COMMAND, json.dumps(order)]
+    try:
+        subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
+    except subprocess.TimeoutExpired:
+        raise DeviceError(f"the compiler did not end within {MOST_SECONDS:g} s") from None
 
 
 def main() -> None:

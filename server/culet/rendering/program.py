@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,8 @@ import culet_kernels
 from culet.errors import DeviceError
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
+
+log = logging.getLogger(__name__)
 
 FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 
@@ -53,7 +56,8 @@ class Programs:
     def __init__(self, device: Device) -> None:
         self._device = device
         self._ready: dict[tuple[Features, Variant], Any] = {}
-        self._making: set[tuple[Features, Variant]] = set()
+        self._begun: set[tuple[Features, Variant]] = set()
+        """Made in the background, or tried in vain."""
         self._compiler = threading.Lock()
 
     def exact(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
@@ -67,14 +71,17 @@ class Programs:
         return kernel
 
     def best(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
-        """The kernel for these features if it is ready; else the general one, while the special one is made."""
+        """The kernel for these features if it is ready; else the general one, while the special one is made.
+
+        That is tried once: where it fails, the general one goes on serving.
+        """
         key = features, variant
         kernel = self._ready.get(key)
         if kernel is not None:
             return kernel
         general = self.exact(features.general, variant)
-        if key not in self._making:
-            self._making.add(key)
+        if key not in self._begun:
+            self._begun.add(key)
             threading.Thread(target=self._make_ready, args=key, name="culet-compile", daemon=True).start()
         return general
 
@@ -84,8 +91,8 @@ class Programs:
         try:
             precompile(features, variant)
             self.exact(features, variant)
-        finally:
-            self._making.discard((features, variant))
+        except Exception:  # drivers fail in every way; another try with each frame would fail as well
+            log.exception("the general program goes on serving: the special one cannot be made (%s)", features)
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
         program = build(self._device, "render.cl", [*variant.options, *features.options])
