@@ -11,13 +11,15 @@ from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
-from geometry.shapes import obj
+from culet.study.cases import ring as finer_ring
+from geometry.shapes import obj, star_outline
 from geometry.shapes import prism as extruded
 from rendering.views import BARE, UPRIGHT, prism, radiance, slab, take
 from validation.stones import brilliant, ring, skew_block, step_cut
 
 STONES = [brilliant(), step_cut(), skew_block(), prism(40)]
-
+STAR = stone_from_mesh(obj(*extruded(star_outline(), 0.8)), "obj", name="star")
+BRANCHING = [ring(), finer_ring(), STAR]
 
 MODE = pytest.mark.parametrize("optics", [{}, {"polarised": True}, {"bands": 8}], ids=["scalar", "polarised", "bands"])
 
@@ -61,10 +63,17 @@ def test_every_pixel_is_one_to_a_hundred_thousandth(
 
 
 @MODE
-def test_where_light_branches_a_lower_cut_off_does(renderer: Renderer, optics: dict[str, object]) -> None:
-    """A ring: light that has left it meets it again, and each of many chains ends on its own."""
-    for scene in views({"cutoff": 4e-7, **optics}):
-        assert largest_error(renderer, ring(), scene) < 1e-5  # measured 7.6e-6; at a cut-off of 1e-6 1.8e-5
+@pytest.mark.parametrize("stone", BRANCHING, ids=lambda stone: stone.name)
+def test_where_light_branches_pixels_lose_no_more(
+    renderer: Renderer, exact: Renderer, stone: Stone, optics: dict[str, object]
+) -> None:
+    """Light that has left these stones meets them again, and each of many chains ends on its own. If all end at the
+    same weight, pixels are off by 7.7e-5 in the ring, 5.6e-5 in the finer one, and 1.0e-4 in the star."""
+    # In the star 8 bands are thousands of terms to a pixel, whose sum single precision rounds by 5e-6.
+    used = exact if stone.name == "star" and "bands" in optics else renderer
+    random = np.random.default_rng(4)
+    for scene in (scene for _ in range(4) for scene in views(optics, random)):
+        assert largest_error(used, stone, scene) < 1e-5  # measured 6.9e-6, 8.8e-6, 9.3e-6
 
 
 def triangle(angle_a: float, angle_b: float, height: float) -> Stone:
