@@ -223,6 +223,18 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   if (any_lane(left)) deposit(tile, task, left, &inner, cut);
 }
 
+// The direction of what stays inside. Where light comes back to the same directions for thousands of reflections, they are
+// made in double precision: rounded at each step, directions drift past the critical angle (rendering/mirrors.py).
+static inline vec3L reflect_inside(vec3L direction, realL cos_s, vec3L normal) {
+  if (!FEW_MIRRORS) return renormalise(reflect3(direction, cos_s, normal));
+  const doubleL x = to_double(direction.x), y = to_double(direction.y), z = to_double(direction.z),
+                nx = to_double(normal.x), ny = to_double(normal.y), nz = to_double(normal.z);
+  const doubleL twice = -2 * (x * nx + y * ny + z * nz) / (nx * nx + ny * ny + nz * nz);
+  const doubleL rx = fma(twice, nx, x), ry = fma(twice, ny, y), rz = fma(twice, nz, z);
+  const doubleL scale = 1.5 - 0.5 * (rx * rx + ry * ry + rz * rz); // to unit length
+  return vec3(from_double(scale * rx), from_double(scale * ry), from_double(scale * rz));
+}
+
 // Advances one packet of light inside the stone by a few segments, and puts back what survives.
 static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t task) {
   maskL taken;
@@ -254,7 +266,7 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
       scale_weights(&packet, parts.kept);
       packet.polarisation = parts.reflected;
     }
-    packet.direction = renormalise(reflect3(packet.direction, cos_s, crossing.normal));
+    packet.direction = reflect_inside(packet.direction, cos_s, crossing.normal);
     packet.tag += ONE_BOUNCE;
     const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
     alive = settle(world, tile, task, &packet, alive, used_up, &cut);
