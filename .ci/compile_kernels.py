@@ -12,7 +12,7 @@ import pyopencl as cl
 
 import culet_kernels
 from culet.rendering.device import Device, open_device
-from culet.rendering.features import Geometry
+from culet.rendering.features import ESTIMATOR, Geometry
 from culet.rendering.program import FLAGS, Variant
 
 # Pragmas, since PoCL refuses -W as an option. A file does not use all of what it includes; and where a packet has one
@@ -41,8 +41,9 @@ def main() -> int:
     device = open_device()
     programs = [(name, Variant().options) for name in culet_kernels.NAMES]
     programs += [
-        ("render.cl", [*Variant(lanes=lanes, real=real).options, f"-DGEOMETRY={int(geometry)}"])
+        ("render.cl", [*Variant(lanes=lanes, real=real).options, f"-DGEOMETRY={int(geometry)}", f"-DESTIMATOR={kind}"])
         for geometry in Geometry
+        for kind in ESTIMATOR.values()
         for lanes in WIDTHS
         for real in PRECISIONS
     ]

@@ -19,6 +19,7 @@ from command_line import culet
 from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES
 from engine.peer import TETRAHEDRON, connected, running_engine
+from gateway.running import announced
 
 COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record"]
 TINY = ("--width", "48", "--height", "27")
@@ -229,16 +230,17 @@ def test_serve_runs_and_ends_with_its_engine(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "culet", "serve", "--port", "0"]
     with (
         (tmp_path / "log").open("wb") as log,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log) as server,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as server,
     ):
-        assert server.stdout is not None
-        line = server.stdout.readline().decode()
-        assert line.startswith("culet is ready: http://127.0.0.1:"), (tmp_path / "log").read_text()
-        engines = children(server.pid)
-        assert len(engines) == 1
-        server.send_signal(signal.SIGTERM)
-        assert server.wait(15) == 0
-        assert not any(alive(engine) for engine in engines)
+        try:
+            assert announced(server)
+            engines = children(server.pid)
+            assert len(engines) == 1
+            server.send_signal(signal.SIGTERM)
+            assert server.wait(15) == 0
+        finally:
+            server.kill()
+    assert not any(alive(engine) for engine in engines)
 
 
 def children(pid: int) -> list[int]:

@@ -5,6 +5,8 @@
 // direction as if nothing were in the way; what can be refracted is, and only total reflection stays inside.
 // Absorption counts the last segment, where light leaves. Where meetings run out, the sky in the mirrored direction takes
 // the place of what is missing.
+#ifndef CULET_CLASSIC
+#define CULET_CLASSIC
 #include "camera.cl"
 #include "fresnel.cl"
 #include "room.cl"
@@ -84,13 +86,8 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
   return radiance;
 }
 
-// Traces one tile and writes it.
-static inline void render_tile(world_t world, __global real4 *image, int tile_column, int tile_row, double jitter_x,
-                               double jitter_y, int accumulate, __global float *tallies) {
+static inline void classic_tile(world_t world, tile_t *tile, int column, int row, double jitter_x, double jitter_y) {
   __constant const parameters_t *scene = world.scene;
-  tile_t tile;
-  tile.segments = (intL)(0);
-  const int column = tile_column * TILE, row = tile_row * TILE;
   const int columns = shown(column, scene->width), rows = shown(row, scene->height);
   for (int y = 0; y < rows; y += PACKET_HEIGHT)
     for (int x = 0; x < columns; x += PACKET_WIDTH) {
@@ -98,23 +95,10 @@ static inline void render_tile(world_t world, __global real4 *image, int tile_co
       const int first = first_pixel(x, y);
       for (int channel = 0; channel < 3; channel++)
         store_lanes(classic_path(world, primary.origin, primary.direction, primary.eye, channel,
-                                 in_picture(scene, column + x, row + y), &tile.segments),
-                    tile.radiance[channel] + first);
-      store_lanes(splat(0), tile.cut + first);
+                                 in_picture(scene, column + x, row + y), &tile->segments),
+                    tile->radiance[channel] + first);
+      store_lanes(splat(0), tile->cut + first);
     }
-  write_tile(&tile, image, tallies, scene, tile_column, tile_row, accumulate);
 }
 
-__kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
-                     __global const real4 *shadows, __global const real *boxes, __global const int *links,
-                     __global const real *corners, __global const chain_t *chains, __global const float *panorama,
-                     double jitter_x, double jitter_y, int first_tile, int count, volatile __global dealer_t *dealer,
-                     int accumulate, __global float *tallies) {
-  const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
-  const int across = tiles_across(scene);
-  for (int number; (number = deal(dealer, count)) < count;) {
-    const int tile = first_tile + number;
-    render_tile(world, image, tile % across, tile / across, jitter_x, jitter_y, accumulate, tallies);
-  }
-  finish(dealer);
-}
+#endif

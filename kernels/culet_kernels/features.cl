@@ -8,6 +8,10 @@
 
 #define RUNTIME (-1)
 
+// Kinds of ESTIMATOR.
+#define CHAIN 0
+#define CLASSIC 1
+
 // Kinds of surface for FLOOR and WALLS.
 #define NONE 0
 #define MATTE 1
@@ -35,6 +39,9 @@
 #define ROULETTE 1
 #define SKYLIGHT 2
 
+#ifndef ESTIMATOR // never RUNTIME
+#define ESTIMATOR CHAIN
+#endif
 #ifndef GEOMETRY
 #define GEOMETRY HULL
 #endif

@@ -25,6 +25,14 @@
 #define MASK int
 #endif
 
+// Whether 16 numbers of single precision have the processor's own instructions for masks and for packing: OpenCL has none
+// for packing, and PoCL's any() is many.
+#if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__)
+#define AVX512 1
+#else
+#define AVX512 0
+#endif
+
 typedef REAL real;
 typedef JOIN(REAL, 4) real4;
 
@@ -62,7 +70,11 @@ typedef JOIN(MASK, LANES) maskL;
 #define LANE_INDEX (intL)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #endif
 static inline realL blend(maskL mask, realL yes, realL no) { return select(no, yes, mask); }
+#if LANES == 16 && AVX512
+static inline int any_lane(maskL mask) { return __builtin_ia32_cvtd2mask512(mask) != 0; }
+#else
 static inline int any_lane(maskL mask) { return any(mask); }
+#endif
 static inline realL load_lanes(const real *from) { return JOIN(vload, LANES)(0, from); }
 static inline intL load_ints(const int *from) { return JOIN(vload, LANES)(0, from); }
 static inline void store_lanes(realL value, real *to) { JOIN(vstore, LANES)(value, 0, to); }
@@ -88,9 +100,8 @@ static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, L
 static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 #endif
 
-// The lanes that a mask names, in order and without gaps: AVX-512 has an instruction for it, by which a packet is stored
-// several times as fast as lane by lane. A whole packet is written, of which `count` lanes are meant.
-#if LANES == 16 && !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__)
+// The lanes that a mask names, in order and without gaps. A whole packet is written, of which `count` lanes are meant.
+#if LANES == 16 && AVX512
 typedef struct {
   ushort lanes;
   int count;
@@ -133,11 +144,21 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 }
 #endif
 
-// For each k below a small number that is known at compile time. PoCL unrolls only what asks for it, and a loop that stays
-// one keeps its quantities in memory.
+// For each k below a small number that is known at compile time. PoCL does not unroll all that it could by itself, and a loop
+// that is left keeps its quantities in memory.
 #define EACH(k, number) _Pragma("unroll") for (int k = 0; k < (number); k++)
 
 static inline realL splat(real value) { return (realL)(value); }
+
+// Clang's is one instruction, PoCL's is several.
+#ifndef __has_builtin
+#define __has_builtin(name) 0
+#endif
+#if __has_builtin(__builtin_elementwise_floor)
+static inline realL floor_lanes(realL x) { return __builtin_elementwise_floor(x); }
+#else
+static inline realL floor_lanes(realL x) { return floor(x); }
+#endif
 
 // Fast where the reference in double precision shows it to be exact enough, full where real is double.
 #if IS_DOUBLE

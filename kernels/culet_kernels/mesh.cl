@@ -24,7 +24,9 @@ static inline uint byte_bits(uchar8 bytes) {
   return (uint)(((as_ulong(bytes) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
 }
 static inline uint mask_bits(maskW mask) {
-#if TREE_WIDTH == 16
+#if TREE_WIDTH == 16 && AVX512
+  return __builtin_ia32_cvtd2mask512(mask);
+#elif TREE_WIDTH == 16
   const uchar16 bytes = as_uchar16(convert_char16(mask));
   return byte_bits(bytes.lo) | byte_bits(bytes.hi) << 8;
 #else
@@ -56,7 +58,7 @@ typedef struct {
 } tree_t;
 
 typedef struct {
-  real origin[3], direction[3];
+  real origin[3], direction[3], inverse[3];
   int axis[3];   // z is the direction's longest; x and y are so that triangles that count turn left
   real shear[2]; // how far the ray goes along x and y for each step along z
   real start;    // hits before this do not count,
@@ -65,16 +67,54 @@ typedef struct {
   int triangle;  // leaf x TREE_WIDTH + place, -1 for none
 } probe_t;
 
-static inline void set_shear(probe_t *probe, real side) {
-  const real *d = probe->direction;
-  const int z = fabs(d[0]) > fabs(d[1]) ? (fabs(d[0]) > fabs(d[2]) ? 0 : 2) : (fabs(d[1]) > fabs(d[2]) ? 1 : 2);
-  const int next = (z + 1) % 3, last = (z + 2) % 3, turned = side * d[z] > 0;
-  probe->axis[0] = turned ? last : next;
-  probe->axis[1] = turned ? next : last;
-  probe->axis[2] = z;
-  const real inverse = 1 / d[z];
-  probe->shear[0] = d[probe->axis[0]] * inverse;
-  probe->shear[1] = d[probe->axis[1]] * inverse;
+static inline realL away_from_zero(realL x) { return blend(fabs(x) < PARALLEL, copysign(splat(PARALLEL), x), x); }
+
+// What probes need of a packet of rays, one row a quantity: origin, direction and its inverse, the start, and how the ray
+// is sheared onto its longest axis.
+#define PROBE_ROWS 13
+static inline void aim(vec3L origin, vec3L direction, realL start, real side, real rows[PROBE_ROWS][LANES]) {
+  const realL x = fabs(direction.x), y = fabs(direction.y), z = fabs(direction.z);
+  const maskL along_x = (x > y) & (x > z), along_y = !(x > y) & (y > z);
+  const vec3L turned = vec3(blend(along_x, direction.y, blend(along_y, direction.z, direction.x)),
+                            blend(along_x, direction.z, blend(along_y, direction.x, direction.y)),
+                            blend(along_x, direction.x, blend(along_y, direction.y, direction.z)));
+  const vec3L inverse = vec3((real)1 / away_from_zero(direction.x), (real)1 / away_from_zero(direction.y),
+                             (real)1 / away_from_zero(direction.z));
+  const realL longest = blend(along_x, inverse.x, blend(along_y, inverse.y, inverse.z));
+  store_lanes(origin.x, rows[0]);
+  store_lanes(origin.y, rows[1]);
+  store_lanes(origin.z, rows[2]);
+  store_lanes(direction.x, rows[3]);
+  store_lanes(direction.y, rows[4]);
+  store_lanes(direction.z, rows[5]);
+  store_lanes(inverse.x, rows[6]);
+  store_lanes(inverse.y, rows[7]);
+  store_lanes(inverse.z, rows[8]);
+  store_lanes(start, rows[9]);
+  const maskL swaps = side * turned.z > 0;
+  store_lanes(longest * blend(swaps, turned.y, turned.x), rows[10]);
+  store_lanes(longest * blend(swaps, turned.x, turned.y), rows[11]);
+  const realL axis = blend(along_x, splat(0), blend(along_y, splat(1), splat(2)));
+  store_lanes(axis + blend(swaps, splat(3), splat(0)), rows[12]);
+}
+
+static inline probe_t probe_of(real rows[PROBE_ROWS][LANES], int lane, real limit) {
+  const int axis = rows[12][lane], z = axis >= 3 ? axis - 3 : axis, next = z == 2 ? 0 : z + 1, last = 3 - z - next;
+  probe_t probe;
+  EACH (k, 3) {
+    probe.origin[k] = rows[k][lane];
+    probe.direction[k] = rows[3 + k][lane];
+    probe.inverse[k] = rows[6 + k][lane];
+  }
+  probe.start = rows[9][lane];
+  EACH (k, 2) probe.shear[k] = rows[10 + k][lane];
+  probe.axis[0] = axis >= 3 ? last : next;
+  probe.axis[1] = axis >= 3 ? next : last;
+  probe.axis[2] = z;
+  probe.limit = limit;
+  probe.widening = 0;
+  probe.triangle = -1;
+  return probe;
 }
 
 typedef struct {
@@ -138,33 +178,56 @@ static inline void probe_leaf(tree_t tree, int leaf, real side, probe_t *probe) 
   }
 }
 
-static inline real away_from_zero(real x) { return fabs(x) < PARALLEL ? copysign(PARALLEL, x) : x; }
+// Nodes that wait to be looked into, and how far along the ray their boxes are. All children of a node are written at
+// once, and counted as far as they are meant.
+typedef struct {
+  int node[TREE_STACK + TREE_WIDTH];
+  real nearness[TREE_STACK + TREE_WIDTH];
+  int size;
+} stack_t;
+
+// Adds the children that the bits name, in any order: to sort them costs more than it saves.
+static inline void put(stack_t *stack, uint bits, __global const int *links, realW near) {
+#if TREE_WIDTH == 16 && AVX512
+  const int16 nodes = vload16(0, links);
+  vstore16(__builtin_ia32_compresssi512_mask(nodes, nodes, bits), 0, stack->node + stack->size);
+  vstore16(__builtin_ia32_compresssf512_mask(near, near, bits), 0, stack->nearness + stack->size);
+  stack->size += popcount(bits);
+#else
+  real nearness[TREE_WIDTH];
+  JOIN(vstore, TREE_WIDTH)(near, 0, nearness);
+  for (; bits != 0; bits &= bits - 1) {
+    const int child = lowest_bit(bits);
+    stack->node[stack->size] = links[child];
+    stack->nearness[stack->size++] = nearness[child];
+  }
+#endif
+}
 
 // The nearest triangle along a ray.
 static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
-  int stack[TREE_STACK];
-  real nearness[TREE_STACK];
-  int size = 1;
-  stack[0] = 0;
-  nearness[0] = probe->start;
+  stack_t stack;
+  stack.size = 1;
+  stack.node[0] = 0;
+  stack.nearness[0] = probe->start;
   // Along each axis a box is entered at one of its two sides and left at the other, by the direction's sign. Boxes are a
   // little larger than what they hold, by more than these operations round (rendering/tree.py).
-  real inverse[3], enter[3], leave[3];
+  real enter[3], leave[3];
   int first_side[3];
   // Of the normals in a box the component that faces the ray most, or, inside, is turned away most.
   int most_facing[3];
   for (int k = 0; k < 3; k++) {
-    inverse[k] = 1 / away_from_zero(probe->direction[k]);
-    const real offset = -probe->origin[k] * inverse[k], widening = probe->widening * fabs(inverse[k]);
+    const real inverse = probe->inverse[k];
+    const real offset = -probe->origin[k] * inverse, widening = probe->widening * fabs(inverse);
     enter[k] = offset - widening;
     leave[k] = offset + widening;
-    first_side[k] = inverse[k] < 0 ? 3 + k : k;
+    first_side[k] = inverse < 0 ? 3 + k : k;
     most_facing[k] = side * probe->direction[k] < 0 ? 9 + k : 6 + k;
   }
-  while (size > 0) {
-    size--;
-    if (nearness[size] > probe->limit) continue;
-    const int node = stack[size];
+  while (stack.size > 0) {
+    stack.size--;
+    if (stack.nearness[stack.size] > probe->limit) continue;
+    const int node = stack.node[stack.size];
     if (node < 0) {
       probe_leaf(tree, ~node, side, probe);
       continue;
@@ -173,18 +236,11 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
     realW near = (realW)(probe->start - SLACK - probe->widening), far = (realW)(probe->limit), facing = (realW)(0);
     for (int k = 0; k < 3; k++) {
       facing = fma(load_wide(rows, most_facing[k]), (realW)(-side * probe->direction[k]), facing);
-      near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(inverse[k]), (realW)(enter[k])));
-      far = fmin(far, fma(load_wide(rows, 3 + 2 * k - first_side[k]), (realW)(inverse[k]), (realW)(leave[k])));
+      near = fmax(near, fma(load_wide(rows, first_side[k]), (realW)(probe->inverse[k]), (realW)(enter[k])));
+      far = fmin(far, fma(load_wide(rows, 3 + 2 * k - first_side[k]), (realW)(probe->inverse[k]), (realW)(leave[k])));
     }
-    uint entered = mask_bits((near <= far) & (facing > 0));
-    if (entered == 0) continue;
-    real distance[TREE_WIDTH];
-    JOIN(vstore, TREE_WIDTH)(near, 0, distance);
-    for (; entered != 0; entered &= entered - 1) { // in any order: to sort them costs more than it saves
-      const int child = lowest_bit(entered);
-      stack[size] = tree.links[node * TREE_WIDTH + child];
-      nearness[size++] = distance[child];
-    }
+    const uint entered = mask_bits((near <= far) & (facing > 0));
+    if (entered != 0) put(&stack, entered, tree.links + node * TREE_WIDTH, near);
   }
 }
 
@@ -221,7 +277,7 @@ static inline real abreast(__global const real *rows, const probe_t *probe) {
                              edge[0] * normal[1] - edge[1] * normal[0]};
     const real margin = 2 * (SLACK + probe->widening) * (fabs(edge[0]) + fabs(edge[1]) + fabs(edge[2]));
     const real speed = dot_real(outward, probe->direction);
-    const real t = (dot_real(outward, from) + margin) / away_from_zero(speed);
+    const real t = (dot_real(outward, from) + margin) / (fabs(speed) < PARALLEL ? copysign(PARALLEL, speed) : speed);
     enter = speed < 0 ? fmax(enter, t) : enter;
     leave = speed > 0 ? fmin(leave, t) : leave;
     const real depth = from[probe->axis[2]] / probe->direction[probe->axis[2]];
@@ -234,41 +290,25 @@ static inline real abreast(__global const real *rows, const probe_t *probe) {
 // The nearest crossing of each lane's ray between t_min and t_max, from outside (side 1) or from inside (side -1).
 static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree_t tree, vec3L origin, vec3L direction,
                                       realL t_min, real t_max, maskL mask, real side) {
-  const vec3L o = to_stone(scene, origin), d = to_stone(scene, direction);
   int wanted[LANES];
-  real quantity[7][LANES], t[LANES], normal[3][LANES];
+  real rows[PROBE_ROWS][LANES], t[LANES], normal[3][LANES];
   store_mask(mask, wanted);
-  store_lanes(o.x, quantity[0]);
-  store_lanes(o.y, quantity[1]);
-  store_lanes(o.z, quantity[2]);
-  store_lanes(d.x, quantity[3]);
-  store_lanes(d.y, quantity[4]);
-  store_lanes(d.z, quantity[5]);
-  store_lanes(t_min, quantity[6]);
+  aim(to_stone(scene, origin), to_stone(scene, direction), t_min, side, rows);
   for (int lane = 0; lane < LANES; lane++) {
     t[lane] = -1e30f;
-    normal[0][lane] = normal[1][lane] = normal[2][lane] = 0;
+    EACH (k, 3) normal[k][lane] = 0;
     if (!wanted[lane]) continue;
-    probe_t probe;
-    for (int k = 0; k < 3; k++) {
-      probe.origin[k] = quantity[k][lane];
-      probe.direction[k] = quantity[3 + k][lane];
-    }
-    probe.start = quantity[6][lane];
-    probe.limit = t_max;
-    probe.triangle = -1;
-    set_shear(&probe, side);
-    probe.widening = 0;
+    probe_t probe = probe_of(rows, lane, t_max);
     probe_tree(tree, side, &probe);
     while (side < 0 && probe.triangle < 0 && probe.widening < LAST_WIDENING) {
       probe.widening = fmax(FIRST_WIDENING, WIDER * probe.widening);
       probe_tree(tree, side, &probe);
     }
     if (probe.triangle < 0) continue;
-    __global const real *rows =
+    __global const real *corners =
         tree.corners + probe.triangle / TREE_WIDTH * 12 * TREE_WIDTH + probe.triangle % TREE_WIDTH;
-    t[lane] = fmax(abreast(rows, &probe), probe.start);
-    for (int k = 0; k < 3; k++) normal[k][lane] = rows[(9 + k) * TREE_WIDTH];
+    t[lane] = fmax(abreast(corners, &probe), probe.start);
+    EACH (k, 3) normal[k][lane] = corners[(9 + k) * TREE_WIDTH];
   }
   const realL found = load_lanes(t);
   const maskL hit = mask & (found > (real)-1e29);

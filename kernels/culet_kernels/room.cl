@@ -24,8 +24,8 @@ typedef struct {
 } viewL;
 
 static inline realL checker(realL u, realL v) { // 0 or 0.5
-  const realL half_sum = (real)0.5 * (floor(u) + floor(v));
-  return half_sum - floor(half_sum);
+  const realL half_sum = (real)0.5 * (floor_lanes(u) + floor_lanes(v));
+  return half_sum - floor_lanes(half_sum);
 }
 
 // The light that falls on a surface, ambient included.

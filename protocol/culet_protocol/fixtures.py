@@ -49,8 +49,9 @@ MOVING = Frame(
     simulate_ms=0.125, render_ms=31.5, encode_ms=1.75, cut=0.03125, error=0.0625, payload=JPEG,
 )  # fmt: skip
 STILL = Frame(
-    session=bytes(range(240, 256)), codec=Codec.PNG, flags=Flags.FINAL | Flags.POLARISED, sequence=0xFFFFFFFF, width=4,
-    height=2, samples=1024, bands=64, max_bounces=65536, cutoff=2**-20, step=2**53 + 1, simulation_time=0,
+    session=bytes(range(240, 256)), codec=Codec.PNG,
+    flags=Flags.FINAL | Flags.POLARISED | Flags.BELOW | Flags.RIGHT, sequence=0xFFFFFFFF, width=4, height=2,
+    samples=1024, bands=64, max_bounces=65536, cutoff=2**-20, step=2**53 + 1, simulation_time=0,
     timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5, encode_ms=18.25, cut=0, error=0.015625,
     payload=_png(4, 2, b"\x10\x80\xf0"),
 )  # fmt: skip
@@ -101,6 +102,7 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.Translate(target="light_1", right=0.5, up=-0.5),
     messages.Dolly(target="light_2", forward=0.5),
     messages.ResetCamera(),
+    messages.LookAtStone(),
     messages.ToggleFall(),
     messages.ResetStone(),
     messages.Push(x=0.25, y=-0.125, right=0.5, up=1.5),

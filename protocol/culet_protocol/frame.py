@@ -34,6 +34,13 @@ class Flags(IntFlag):
     """Light was followed with its polarisation."""
     FRONTIER = 8
     """The error is not of this picture: it is what the measured front of error against time says of its settings."""
+    ABOVE = 16
+    """The whole stone is beyond the picture's upper edge: it is not seen. Likewise those that follow."""
+    BELOW = 32
+    LEFT = 64
+    RIGHT = 128
+    BEHIND = 256
+    """Behind the camera; then none of the other four is set."""
 
 
 class FrameError(ValueError):
@@ -53,7 +60,9 @@ FIELDS = (
     HeaderField("magic", "4s", "CULT"),
     HeaderField("version", "B", "version of this header"),
     HeaderField("codec", "B", "1 JPEG, 2 PNG"),
-    HeaderField("flags", "H", "bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier"),
+    HeaderField(
+        "flags", "H", "bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen"
+    ),
     HeaderField("sequence", "I", "number of the frame in its session, from 1"),
     HeaderField("width", "H", "pixels"),
     HeaderField("height", "H", "pixels"),

@@ -64,6 +64,12 @@ class ResetCamera(Message):
     type: Literal["reset_camera"] = "reset_camera"
 
 
+class LookAtStone(Message):
+    """Move the camera, without turning it, to where it has the stone in the middle and sees all its height."""
+
+    type: Literal["look_at_stone"] = "look_at_stone"
+
+
 class ToggleFall(Message):
     """Start or pause free fall."""
 
@@ -164,8 +170,8 @@ class Ping(Message):
 
 
 SessionEvent = (
-    Orbit | Translate | Dolly | ResetCamera | ToggleFall | ResetStone | Push | ToggleMirror | ToggleEnvironment
-    | ToggleWalls | PatchScene | SetScene | Balance
+    Orbit | Translate | Dolly | ResetCamera | LookAtStone | ToggleFall | ResetStone | Push | ToggleMirror
+    | ToggleEnvironment | ToggleWalls | PatchScene | SetScene | Balance
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 

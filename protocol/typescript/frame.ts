@@ -15,6 +15,11 @@ export const Flag = {
   FINAL: 2,
   POLARISED: 4,
   FRONTIER: 8,
+  ABOVE: 16,
+  BELOW: 32,
+  LEFT: 64,
+  RIGHT: 128,
+  BEHIND: 256,
 } as const;
 export type Flag = (typeof Flag)[keyof typeof Flag];
 
@@ -23,7 +28,7 @@ export interface Frame {
   session: string;
   /** 1 JPEG, 2 PNG */
   codec: Codec;
-  /** bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier */
+  /** bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen */
   flags: number;
   /** number of the frame in its session, from 1 */
   sequence: number;

@@ -63,6 +63,11 @@ export interface ResetCamera {
   type: "reset_camera";
 }
 
+/** Move the camera, without turning it, to where it has the stone in the middle and sees all its height. */
+export interface LookAtStone {
+  type: "look_at_stone";
+}
+
 /** Start or pause free fall. */
 export interface ToggleFall {
   type: "toggle_fall";
@@ -164,6 +169,7 @@ export type ControlEvent =
   | Translate
   | Dolly
   | ResetCamera
+  | LookAtStone
   | ToggleFall
   | ResetStone
   | Push

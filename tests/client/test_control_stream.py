@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TypeVar
 
 import httpx
 import pytest
+from websockets.sync.server import ServerConnection, serve
+from websockets.typing import Subprotocol
 
+from client.frames import FRAME, SESSION
 from culet_client import ClientError, ControlStream
 from culet_client.stream import stream_url
+from culet_protocol import SUBPROTOCOL
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Hello, Orbit, PatchScene, Ping, Pong, Problem, Resize, State, ToggleFall
+from culet_protocol.messages import Ack, Hello, Orbit, PatchScene, Ping, Pong, Problem, Resize, State, ToggleFall
 
 PATIENCE = 30
 T = TypeVar("T")
@@ -52,9 +59,29 @@ def test_a_viewer_is_greeted_and_shown_more_than_its_window_of_frames(server: st
         assert until(stream, Hello).session == session
         stream.send(Resize(width=64, height=36))
         stream.send(ToggleFall())
-        frames = [until(stream, Frame) for _ in range(12)]
-        # Unacknowledged, two would come at once and then two every 2 s: 10 s. Measured: 0.4 s.
-        assert frames[-1].timestamp - frames[0].timestamp < 8
+        sequences = [until(stream, Frame).sequence for _ in range(12)]
+        assert sequences == sorted(set(sequences))
+
+
+def test_every_frame_is_acknowledged() -> None:
+    """Without, the server would hold each frame's place in the viewer's window for 2 s."""
+    acknowledged = []
+
+    def send_three(connection: ServerConnection) -> None:
+        for sequence in (5, 6, 9):
+            connection.send(replace(FRAME, sequence=sequence).pack())
+            acknowledged.append(json.loads(connection.recv(PATIENCE)))
+
+    with serve(send_three, "127.0.0.1", 0, subprotocols=[Subprotocol(SUBPROTOCOL)]) as server:
+        threading.Thread(target=server.serve_forever).start()
+        try:
+            with ControlStream(f"http://127.0.0.1:{server.socket.getsockname()[1]}", SESSION) as stream:
+                assert [until(stream, Frame).sequence for _ in range(3)] == [5, 6, 9]
+                with pytest.raises(ClientError, match="closed the stream"):
+                    stream.receive(PATIENCE)
+        finally:
+            server.shutdown()
+    assert [Ack.model_validate(ack).sequence for ack in acknowledged] == [5, 6, 9]
 
 
 def test_an_event_changes_what_is_shown(server: str, session: str) -> None:

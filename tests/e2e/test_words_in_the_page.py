@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
+from culet_protocol.frame import Flags
 from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
-from e2e.view import View
+from e2e.view import View, difference
 
 NO_PICTURE = "window.createImageBitmap = () => new Promise(() => {})"
 """Then none is ever decoded."""
@@ -37,17 +39,41 @@ def test_a_page_without_a_picture_says_that_and_why_in_its_middle(view_of: ViewO
 def test_the_words_go_with_the_first_picture(view: View) -> None:
     assert not view.page.locator("#waiting").is_visible()
     assert not view.page.locator("#banner").is_visible()
+    assert not view.page.locator("#unseen").is_visible()
+
+
+def put_stone(view: View, server: Server, position: tuple[float, float, float]) -> None:
+    """Let the fall begin there."""
+    view.at_rest()
+    (stone,) = view.scene["stones"]
+    patch = {"stones": [stone | {"position": position}]}
+    assert server.http.patch(f"/api/sessions/{view.session}", json=patch).status_code == 200
 
 
 def test_a_stone_above_the_picture_is_said_to_be_there_until_it_falls(view: View, server: Server) -> None:
-    banner = view.page.locator("#banner")
-    view.at_rest()
-    (stone,) = view.scene["stones"]
-    patch = {"stones": [stone | {"position": [0, 8, 0]}]}
-    assert server.http.patch(f"/api/sessions/{view.session}", json=patch).status_code == 200
-    banner.get_by_text("The stone is above the picture. P lets it fall").wait_for()
+    unseen = view.page.locator("#unseen")
+    put_stone(view, server, (0, 8, 0))
+    unseen.get_by_text("The stone is above the picture. P lets it fall").wait_for()
     view.page.keyboard.press("p")
-    banner.wait_for(state="hidden")
+    unseen.wait_for(state="hidden")
+
+
+def test_a_stone_that_came_to_rest_beside_the_picture_is_looked_at_by_the_button(view: View, server: Server) -> None:
+    unseen = view.page.locator("#unseen")
+    put_stone(view, server, (12, 1, 0))
+    view.page.keyboard.press("p")
+    view.until("() => culet.state.asleep")
+    unseen.get_by_text("The stone is to the right of the picture.").wait_for()
+    empty = view.at_rest()
+    assert empty.frame["flags"] & Flags.RIGHT
+    unseen.get_by_role("button", name="Look at it").click()
+    unseen.wait_for(state="hidden")
+    seen = view.at_rest(after=empty.frame["step"])
+    assert seen.frame["simulationTime"] == empty.frame["simulationTime"], "the stone lies where it lay"
+    height, width, _ = seen.pixels.shape
+    middle = np.s_[height // 3 : 2 * height // 3, width // 3 : 2 * width // 3]
+    assert difference(seen.pixels[middle], empty.pixels[middle]) > 20  # measured 61 of 255
+    assert view.sent[-1] == {"type": "look_at_stone"}
 
 
 def test_a_stone_that_sleeps_is_not_shown_as_falling_and_falls_anew(wide_view: View) -> None:

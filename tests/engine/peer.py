@@ -45,7 +45,11 @@ def running_engine(folder: Path) -> Iterator[EngineProcess]:
         yield EngineProcess(process, control, frames)
     finally:
         process.terminate()
-        process.wait(PATIENCE)
+        try:
+            process.wait(PATIENCE)
+        finally:
+            process.kill()  # one that outlived the tests would keep whoever reads their output waiting
+            process.wait()
 
 
 class Peer:
@@ -156,8 +160,9 @@ class Watcher:
 
     async def until(self, wanted: Callable[[Frame], bool]) -> Frame:
         """The next frame that fits."""
-        while not wanted(frame := await self.next()):
-            pass
+        async with asyncio.timeout(PATIENCE):  # of all together: a picture at rest is sent again for ever
+            while not wanted(frame := await self.next()):
+                pass
         return frame
 
     def leave(self) -> None:

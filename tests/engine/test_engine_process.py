@@ -60,6 +60,29 @@ async def test_a_picture_at_rest_is_refined_to_its_end_and_then_costs_nothing(en
         await peer.result(type="close_session", session=peer.session)
 
 
+async def test_frames_say_where_a_stone_is_that_they_do_not_show_until_the_camera_looks_at_it(
+    engine: EngineProcess,
+) -> None:
+    async with connected(engine) as (peer, watch):
+        watcher = watch(await peer.open(PLAIN | {"stones": [{"position": [8, 1, 0]}]}))
+        await peer.demand()
+        frame = await watcher.until(lambda frame: frame.width == SIZE["width"])
+        assert Flags.RIGHT in frame.flags
+        await peer.demand(width=300, height=16)  # so wide that it is in the picture
+        frame = await watcher.until(lambda frame: frame.width == 300)
+        assert Flags.RIGHT not in frame.flags
+        await peer.demand()
+        before = await watcher.until(lambda frame: Flags.RIGHT in frame.flags and Flags.FINAL in frame.flags)
+        assert (await peer.control("look_at_stone"))["status"] == 200
+        frame = await watcher.until(lambda frame: frame.step > before.step)
+        assert frame.flags & (Flags.ABOVE | Flags.BELOW | Flags.LEFT | Flags.RIGHT | Flags.BEHIND) == 0
+        await peer.control("set_scene", scene=PLAIN | {"stones": []})
+        step = frame.step
+        frame = await watcher.until(lambda frame: frame.step > step)
+        assert frame.flags & (Flags.ABOVE | Flags.BELOW | Flags.LEFT | Flags.RIGHT | Flags.BEHIND) == 0
+        await peer.result(type="close_session", session=peer.session)
+
+
 async def test_a_frame_says_what_it_shows(engine: EngineProcess) -> None:
     async with connected(engine) as (peer, watch):
         watcher = watch(await peer.open(PLAIN))

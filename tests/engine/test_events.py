@@ -46,6 +46,21 @@ def test_the_camera_orbits_moves_and_goes_home() -> None:
     assert after(subject, messages.ResetCamera()).camera == start
 
 
+def test_the_camera_looks_at_the_stone_where_that_is_now_and_goes_home_again() -> None:
+    subject = falling(session(stones=[{"position": [5, 8, 0]}]))
+    start, shown = subject.scene.camera, subject.shown.scene.stones[0].position
+    assert shown[1] < 8
+    camera = after(subject, messages.LookAtStone()).camera
+    assert camera.target == shown
+    assert np.subtract(camera.position, camera.target) == pytest.approx(np.subtract(start.position, start.target))
+    assert after(subject, messages.ResetCamera()).camera == start
+
+
+def test_without_a_stone_there_is_nothing_to_look_at() -> None:
+    with pytest.raises(InputError, match="expected a scene with a stone, got none"):
+        after(session(stones=[]), messages.LookAtStone())
+
+
 @pytest.mark.parametrize(("target", "number"), [("light_1", 0), ("light_2", 1)])
 def test_each_light_moves_alone(target: Any, number: int) -> None:  # noqa: ANN401
     subject = session()

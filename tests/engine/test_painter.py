@@ -14,11 +14,12 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.governor import Governor, Plan, read_ladder
-from culet.engine.live import SETTLE_SECONDS, LivePicture
+from culet.engine.live import REST_SAMPLES, SETTLE_SECONDS, LivePicture
 from culet.engine.painter import Painter
 from culet.engine.session import Session
 from culet.engine.still import StillQueue
 from culet.engine.viewpoint import orbit
+from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
@@ -48,11 +49,15 @@ class Drawn:
 class World:
     """A clock, what happens when, and a device whose pictures take their time on that clock."""
 
-    def __init__(self, full_seconds: float) -> None:
-        self.now = 100.0
+    def __init__(self, full_seconds: float, *, with_stone: bool = False, now: float = 100.0) -> None:
+        self.now = now
         self.full_seconds = full_seconds
         self.drawn: list[Drawn] = []
-        self.session = Session("0" * 32, Scene.read({"stones": [], "optics": {"bands": 16, "polarised": True}}), None)
+        self.samples = 0
+        """Of the picture that got some last."""
+        scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
+        stone = stone_of(scene.stones[0], {}) if with_stone else None
+        self.session = Session("0" * 32, scene, stone)
         self.events: list[float] = []
         """When the camera turns a little."""
 
@@ -101,6 +106,7 @@ class TimedPicture:
             self._world.spend(seconds / bands)
             yield
         self.samples += samples
+        self._world.samples = self.samples
         self.seconds = seconds
         drawn.ended = self._world.now
 
@@ -122,7 +128,7 @@ class TimedPicture:
         )
 
 
-Play = Callable[[World, float], asyncio.Future[None]]
+Play = Callable[..., asyncio.Future[None]]
 
 
 @pytest.fixture
@@ -131,20 +137,20 @@ async def play() -> AsyncIterator[Play]:
     with ThreadPoolExecutor(1) as thread:
         painters: dict[int, Painter] = {}
 
-        async def paint(world: World, seconds: float) -> None:
+        async def paint(world: World, seconds: float, rate: float = 60) -> None:
             if id(world) not in painters:
                 painter = Painter(
                     world, thread, StillQueue(1),
                     send=lambda _: None, report=_fail, encode_still=lambda _, __: b"", clock=lambda: world.now,
                 )  # fmt: skip
-                painter.pictures["a"] = LivePicture(world.session, watched=True, rate=60, size=WANTED)
+                painter.pictures["a"] = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
                 painters[id(world)] = painter
             end = world.now + seconds
             while world.now < end:
                 if not await painters[id(world)].work():
                     world.spend(IDLE)
 
-        yield lambda world, seconds: asyncio.ensure_future(paint(world, seconds))
+        yield lambda world, seconds, **how: asyncio.ensure_future(paint(world, seconds, **how))
 
 
 def _fail(_session: str, error: Exception) -> None:
@@ -211,6 +217,32 @@ async def test_a_full_frame_is_given_up_for_what_is_newer(play: Play) -> None:
         (False, False), (True, True), (False, False), (True, False),
     ]  # fmt: skip
     assert world.drawn[2].ended - edited < 0.15, "measured 0.050 s: a band, and a reduced frame"
+
+
+@pytest.mark.parametrize(
+    ("full_seconds", "rate", "now"),
+    [
+        pytest.param(0.1, 60, 100.0, id="quick"),
+        pytest.param(SLOW, 60, 100.0, id="slow-scene"),
+        pytest.param(0.1, 5, 100.0, id="slow-viewer"),
+        pytest.param(0.1, 60, 2200.0, id="clock-that-rounds-down"),  # by the double that is 2200 + 0.2
+    ],
+)
+async def test_a_stone_that_fell_asleep_is_drawn_in_full_once_and_refined(
+    play: Play, full_seconds: float, rate: float, now: float
+) -> None:
+    """When time went on for a stone that slept, each of its frames showed something new, and was governed in turn."""
+    world = World(full_seconds, with_stone=True, now=now)
+    await play(world, 30 * full_seconds, rate=rate)
+    world.session.set_falling(True)
+    await play(world, 40 * full_seconds + 10, rate=rate)
+    assert world.session.asleep
+    assert [(drawn.full, drawn.size == WANTED) for drawn in world.drawn[-1:]] == [(True, True)]
+    assert not world.drawn[-2].full
+    assert world.samples == REST_SAMPLES
+    drawn = len(world.drawn)
+    await play(world, 3, rate=rate)
+    assert len(world.drawn) == drawn
 
 
 async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(

@@ -54,6 +54,17 @@ def test_a_long_pause_between_frames_is_slow_motion_and_no_leap() -> None:
     assert session.shown.simulation_time <= 0.25
 
 
+def test_of_a_stone_that_sleeps_not_even_the_time_shown_goes_on() -> None:
+    session = fallen(10, frames=300)
+    assert session.falling
+    assert session.asleep
+    resting = session.shown
+    assert not resting.moving
+    session.advance(200)
+    session.advance(200.1)
+    assert session.shown is resting
+
+
 def test_what_was_shown_can_be_had_again_until_it_is_forgotten() -> None:
     session = Session(NAME, SCENE, STONE, history=3)
     session.set_falling(True)

@@ -53,6 +53,19 @@ def test_a_view_steeper_than_the_limit_stays_and_can_be_left() -> None:
     assert viewpoint.orbit(steep, 0, -0.5).position[1] < 4.5
 
 
+def test_a_camera_that_looks_at_a_point_has_turned_no_way_and_is_as_far_from_it() -> None:
+    moved = viewpoint.look_at(OBLIQUE, (30.0, -1.0, 7.0))
+    assert moved.target == pytest.approx((30.0, -1.0, 7.0), abs=0)
+    assert np.subtract(moved.position, moved.target) == pytest.approx(np.subtract(OBLIQUE.position, OBLIQUE.target))
+    assert (moved.up, moved.fov_degrees) == (OBLIQUE.up, OBLIQUE.fov_degrees)
+
+
+def test_a_camera_too_near_for_a_whole_stone_steps_back_to_where_its_ball_touches_the_edges() -> None:
+    # A ball of radius 1 fills 60 degrees from 1 / sin 30 degrees.
+    near = Camera(position=(0, 0, 0.5), target=(0, 0, 0), fov_degrees=60)
+    assert viewpoint.look_at(near, (1, 2, 3)).position == pytest.approx((1, 2, 5), abs=1e-14)  # measured 9e-16
+
+
 def test_translation_moves_camera_and_target_alike_across_the_line_of_sight() -> None:
     moved = viewpoint.translate(OBLIQUE, 2, -1)
     shift = np.subtract(moved.position, OBLIQUE.position)

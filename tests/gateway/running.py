@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import io
 import json
+import select
 import subprocess
 import tempfile
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
@@ -87,7 +88,8 @@ class Viewer:
 
     async def say(self, message: Message) -> None:
         """Send a control event."""
-        await self.websocket.send(message.model_dump_json())
+        async with asyncio.timeout(PATIENCE):
+            await self.websocket.send(message.model_dump_json())
 
     async def receive(self) -> None:
         """One message."""
@@ -125,6 +127,15 @@ class Viewer:
         return self.frames[-1]
 
 
+def announced(server: subprocess.Popen[str]) -> str:
+    """The URL that a server which was just started prints once it is ready."""
+    assert server.stdout
+    readable, _, _ = select.select([server.stdout], [], [], PATIENCE)
+    line = server.stdout.readline() if readable else ""
+    assert line.startswith("culet is ready: http://127.0.0.1:"), line
+    return line.split()[-1]
+
+
 @contextlib.contextmanager
 def engine_process(command: Callable[[str, str], Sequence[str]]) -> Iterator[Endpoints]:
     """The endpoints of an engine that the command for these two starts."""
@@ -135,7 +146,11 @@ def engine_process(command: Callable[[str, str], Sequence[str]]) -> Iterator[End
             yield endpoints
         finally:
             process.terminate()
-            assert process.wait(10) == 0
+            try:
+                assert process.wait(PATIENCE) == 0
+            finally:
+                process.kill()  # one that outlived the tests would keep whoever reads their output waiting
+                process.wait()
 
 
 @contextlib.asynccontextmanager
@@ -144,12 +159,14 @@ async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gate
     with Listener(GatewaySettings(*engine, **limits), "127.0.0.1", 0) as listener:
         serving = asyncio.create_task(listener.run())
         try:
-            async with asyncio.timeout(PATIENCE), httpx.AsyncClient(base_url=listener.url, timeout=PATIENCE) as http:
-                await listener.gateway.link.ready.wait()
+            async with httpx.AsyncClient(base_url=listener.url, timeout=PATIENCE) as http:
+                async with asyncio.timeout(PATIENCE):
+                    await listener.gateway.link.ready.wait()
                 yield Gateway(listener.url, http, listener.gateway)
         finally:
             listener.stop()
-            await serving
+            async with asyncio.timeout(PATIENCE):
+                await serving
 
 
 async def eventually(condition: Callable[[], Any]) -> None:

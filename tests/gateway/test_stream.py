@@ -6,11 +6,15 @@ import asyncio
 import json
 import time
 from pathlib import Path
+from typing import cast
 
 import pytest
+from fastapi import WebSocket
+from starlette.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
+from culet.gateway import stream as streaming
 from culet.gateway.credit import WINDOW
 from culet.gateway.stream import MAX_CONTROL_BYTES
 from culet.scene import Scene
@@ -201,9 +205,13 @@ async def test_bad_control_messages_are_answered_and_the_session_lives_on(
 async def test_a_message_beyond_any_use_closes_that_viewer_only(gateway: Gateway) -> None:
     session = await gateway.session()
     async with gateway.viewer(session) as rude, gateway.viewer(session) as other:
-        await rude.websocket.send("x" * (2 << 20))
-        with pytest.raises(ConnectionClosed) as closed:
+
+        async def be_rude() -> None:  # refused by its length, maybe before all of it was sent
+            await rude.websocket.send("x" * (2 << 20))
             await rude.until(lambda: False)
+
+        with pytest.raises(ConnectionClosed) as closed:
+            await asyncio.wait_for(be_rude(), PATIENCE)
         assert closed.value.rcvd
         assert closed.value.rcvd.code == 1009
         await other.final()
@@ -262,6 +270,41 @@ async def test_a_session_takes_so_many_viewers_and_no_more(engine: Endpoints, tm
 async def test_a_page_of_the_same_host_may_open_a_stream(gateway: Gateway) -> None:
     async with gateway.viewer(await gateway.session(), origin=gateway.url.rstrip("/")) as viewer:
         await viewer.notice("hello")
+
+
+class StuckWebSocket:
+    """The server's end of a connection whose other end reads nothing after the first message, and says nothing."""
+
+    def __init__(self) -> None:
+        self.scope: dict[str, list[str]] = {"subprotocols": []}
+        self.headers = Headers()
+        self.sent: list[str] = []
+        self.closes: list[tuple[int, str]] = []
+
+    async def accept(self, _subprotocol: str | None) -> None: ...
+
+    async def send_text(self, text: str) -> None:
+        if self.sent:
+            await asyncio.Event().wait()
+        self.sent.append(text)
+
+    async def receive(self) -> None:
+        await asyncio.Event().wait()
+
+    async def close(self, code: int, reason: str) -> None:
+        self.closes.append((code, reason))
+        await asyncio.Event().wait()  # uvicorn too waits until what was sent before is taken
+
+
+async def test_a_viewer_that_reads_nothing_is_given_up_even_if_it_cannot_be_told_so(
+    gateway: Gateway, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(streaming, "SEND_SECONDS", 0.05)
+    session, websocket = await gateway.session(), StuckWebSocket()
+    async with asyncio.timeout(PATIENCE):
+        await streaming.stream(cast(WebSocket, websocket), gateway.parts, session)
+    assert websocket.closes == [(CloseCode.TOO_SLOW, "this viewer does not read what it is sent")]
+    assert gateway.parts.sessions.viewers == 0
 
 
 async def test_a_viewer_that_vanishes_in_mid_frame_leaves_the_others_alone(gateway: Gateway) -> None:

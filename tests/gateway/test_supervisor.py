@@ -26,7 +26,7 @@ from culet.gateway.supervisor import STARTS_BEFORE_GIVING_UP, Supervisor
 from culet_client import FrameSubscription
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Orbit, ToggleFall
-from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, eventually, png
+from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, announced, eventually, png
 
 
 class Served(NamedTuple):
@@ -63,13 +63,14 @@ def _serve(web: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], st
     command = [sys.executable, "-m", "culet", "serve", "--port", "0", "--web", str(web), *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
-        assert process.stdout
-        line = process.stdout.readline()
-        assert line.startswith("culet is ready: http://127.0.0.1:"), line
-        yield process, line.split()[-1]
+        yield process, announced(process)
     finally:
         process.terminate()
-        process.communicate(timeout=PATIENCE)
+        try:
+            process.communicate(timeout=PATIENCE)
+        finally:
+            process.kill()
+            process.wait()
 
 
 def alive(pid: int) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from importlib.resources import files
 from typing import Any
 
@@ -12,7 +13,7 @@ import pytest
 
 import culet_kernels
 from culet.rendering.device import Device
-from culet.rendering.features import FRESNEL, SKY, SURFACE, Features, Geometry
+from culet.rendering.features import ESTIMATOR, FRESNEL, SKY, SURFACE, Features, Geometry
 from culet.rendering.program import FLAGS, Variant, build
 
 FIXED = [
@@ -53,11 +54,12 @@ def test_every_source_compiles_by_itself_without_a_warning(
 
 @pytest.mark.parametrize("features", PROGRAMS.values(), ids=PROGRAMS.keys())
 @pytest.mark.parametrize("lanes", [1, 16])
-@pytest.mark.parametrize("source", ["render.cl", "classic.cl"])
+@pytest.mark.parametrize("estimator", ESTIMATOR.values(), ids=ESTIMATOR.keys())
 def test_programs_with_features_fixed_compile_without_a_warning(
-    device: Device, features: Features, lanes: int, source: str
+    device: Device, features: Features, lanes: int, estimator: int
 ) -> None:
-    build(device, source, [*Variant(lanes=lanes).options, *features.options, "-Werror"])
+    options = replace(features, estimator=estimator).options
+    build(device, "render.cl", [*Variant(lanes=lanes).options, *options, "-Werror"])
 
 
 def test_a_warning_would_be_an_error(device: Device) -> None:

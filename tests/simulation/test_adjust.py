@@ -53,7 +53,7 @@ def test_a_change_keeps_pose_and_velocities_and_alters_what_follows(box: Stone, 
     assert other.interpolated(1) == whole.interpolated(1)
     assert other.body.velocity(other.state) == pytest.approx(before[0].velocity(before[1]), rel=1e-15, abs=0)
     omega = before[0].angular_velocity(before[1])
-    assert other.body.angular_velocity(other.state) == pytest.approx(omega, rel=1e-14, abs=0)  # measured 7e-15
+    assert other.body.angular_velocity(other.state) == pytest.approx(omega, rel=1e-13, abs=0)  # measured 7e-15
     for moving in (whole, other):
         while moving.state.time < 2:
             moving.step()

@@ -42,14 +42,17 @@ export function obstacleText(code: number, reason: string): string {
 
 export class Banner {
   private readonly element: HTMLElement;
+  private readonly words: HTMLElement;
 
-  constructor(element: HTMLElement) {
+  /** `words`: the part of it that holds the text, if it has others. */
+  constructor(element: HTMLElement, words = element) {
     this.element = element;
+    this.words = words;
   }
 
   show(text: string | null): void {
     this.element.hidden = text === null;
-    if (text !== null && this.element.textContent !== text) this.element.textContent = text;
+    if (text !== null && this.words.textContent !== text) this.words.textContent = text;
   }
 }
 

@@ -20,10 +20,12 @@ import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
-import { whereabouts, whereaboutsText } from "./whereabouts";
+import { Whereabouts } from "./whereabouts";
 
 const canvas = element("picture", HTMLCanvasElement);
 const banner = new Banner(element("banner", HTMLElement));
+const unseen = new Banner(element("unseen", HTMLElement), element("unseen-text", HTMLElement));
+element("unseen-button", HTMLButtonElement).onclick = () => viewer?.send({ type: "look_at_stone" });
 const waiting = new Banner(element("waiting", HTMLElement));
 const WAITING_LONG_MS = 1500;
 const obstacle = new Obstacle(
@@ -38,6 +40,8 @@ const PROBLEMS_KEPT = 100;
 const problems: string[] = [];
 let session: string | null = null;
 let viewer: Viewer | null = null;
+/** Where the stone is, if the picture does not show it. */
+let elsewhere: string | null = null;
 
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
@@ -134,12 +138,11 @@ function connectionChanged(connection: Connection): void {
   if (connection.status === "waiting" && session) void leaveIfUnknown(session);
 }
 
-/** What is wrong, or why there is nothing to see. */
+/** What is wrong, or else why there is nothing to see. */
 function showBanner(connection: Connection): void {
-  const { state, lastFrame } = viewer ?? { state: INITIAL, lastFrame: null };
-  const atStart = lastFrame !== null && lastFrame.simulationTime === 0 && !state.falling;
-  const where = atStart ? whereabouts(state.scene, lastFrame.width / lastFrame.height) : null;
-  banner.show(bannerText(connection, state.engine) ?? whereaboutsText(where));
+  const wrong = bannerText(connection, viewer?.state.engine ?? INITIAL.engine);
+  banner.show(wrong);
+  unseen.show(wrong === null ? elsewhere : null);
 }
 
 async function leaveIfUnknown(id: string): Promise<void> {
@@ -165,11 +168,13 @@ function watch(id: string): void {
   history.replaceState(null, "", sessionAddress(id));
   waiting.show(WAITING);
   const timer = setTimeout(() => waiting.show(WAITING_LONG), WAITING_LONG_MS);
+  const whereabouts = new Whereabouts();
   viewer = new Viewer(streamUrl(location, id), {
     show: (picture, frame, arrival) => {
       screen.show(picture);
       clearTimeout(timer);
       waiting.show(null);
+      elsewhere = whereabouts.after(frame, arrival.time);
       if (viewer) showBanner(viewer.stream.connection);
       meter.take(frame, arrival);
     },

@@ -69,6 +69,7 @@ test("every control event has a TypeScript type", () => {
     { type: "translate", target: "light_1", right: 0.5, up: -0.5 },
     { type: "dolly", target: "light_2", forward: 0.5 },
     { type: "reset_camera" },
+    { type: "look_at_stone" },
     { type: "toggle_fall" },
     { type: "reset_stone" },
     { type: "push", x: 0.25, y: -0.125, right: 0.5, up: 1.5 },

@@ -25,6 +25,8 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
             _move(session, event)
         case messages.ResetCamera():
             session.change(session.scene.model_copy(update={"camera": session.home}))
+        case messages.LookAtStone():
+            _look_at_stone(session)
         case messages.ToggleFall():
             session.toggle_fall()
         case messages.ResetStone():
@@ -80,6 +82,16 @@ def _move(session: Session, event: messages.Orbit | messages.Translate | message
         raise InputError(
             f"{event.type} would move the {event.target} out of the world: {error.errors()[0]['msg']}"
         ) from error
+
+
+def _look_at_stone(session: Session) -> None:
+    if not session.shown.scene.stones:
+        raise InputError("expected a scene with a stone, got none: there is nothing to look at")
+    camera, position = session.scene.camera, session.shown.scene.stones[0].position
+    try:
+        session.change(session.scene.model_copy(update={"camera": viewpoint.look_at(camera, position)}))
+    except ValidationError as error:
+        raise InputError(f"the stone is beyond where a camera can be: {error.errors()[0]['msg']}") from error
 
 
 def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from culet.engine.drawing import Picture
 from culet.engine.governor import Plan
 from culet.engine.session import Session, Shown
+from culet.engine.whereabouts import whereabouts
 from culet.scene.model import Optics
 from culet_protocol.frame import Codec, Flags, Frame
 
@@ -69,7 +70,7 @@ class LiveFrame:
         return Frame(
             session=session.key,
             codec=Codec.JPEG,
-            flags=self._flags(frontier),
+            flags=self._flags(frontier) | self._unseen(),
             sequence=session.sequence,
             width=width,
             height=height,
@@ -87,6 +88,12 @@ class LiveFrame:
             error=self.expected_error if frontier else self.error,
             payload=payload,
         ).pack()
+
+    def _unseen(self) -> Flags:
+        """Where the stone is, if it is nowhere in the picture."""
+        height, width, _ = self.rgb.shape
+        scene = self.shown.scene
+        return whereabouts(scene.camera, scene.stones[0].position, width / height) if scene.stones else Flags.NONE
 
     def _flags(self, frontier: bool) -> Flags:
         flags = {

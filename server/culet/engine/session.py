@@ -214,9 +214,11 @@ class Session:
     def advance(self, now: float) -> None:
         """Simulate up to `now`, in seconds of a steady clock, in fixed steps; show the pose between the last two.
 
-        Steps that take too long are given up (`Allowance`). If one fails, the stone stops, and the error is raised.
+        Of a stone that does not move nothing changes, not even the time shown: another time would be another picture,
+        to be drawn anew. Steps that take too long are given up (`Allowance`). If one fails, the stone stops, and the
+        error is raised.
         """
-        if self._simulation is None or not self.falling:
+        if self._simulation is None or not self.moving:
             return
         elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
         self._advanced_at = now

@@ -44,6 +44,18 @@ def dolly(camera: Camera, forward: float) -> Camera:
     return _placed(camera, target + offset * (wanted / distance), target)
 
 
+def look_at(camera: Camera, point: Vector) -> Camera:
+    """The camera moved, not turned, to where it has a stone about this point in the middle and sees all its height.
+
+    So there is no line of sight that it cannot have, and a stone that went far away is as large as before.
+    """
+    offset = np.array(camera.position, float) - np.array(camera.target, float)
+    distance = float(np.linalg.norm(offset))
+    least = 1 / math.sin(math.radians(camera.fov_degrees) / 2)  # R, by which the stone's ball touches both edges
+    target = np.array(point, float)
+    return _placed(camera, target + offset * (max(distance, least) / distance), target)
+
+
 def axes(camera: Camera) -> tuple[Array, Array, Array]:
     """Right, up and forward of the picture: orthonormal, in world axes."""
     forward = np.array(camera.target, float) - np.array(camera.position, float)

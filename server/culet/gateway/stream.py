@@ -101,8 +101,10 @@ class _Stream:
                 task.cancel()
             results = await asyncio.gather(*tasks, return_exceptions=True)
         if sender in done and reader not in done:
-            with contextlib.suppress(RuntimeError):
-                await self._websocket.close(*self._reason())
+            # A close waits, as a send does, for room that who does not read never makes.
+            with contextlib.suppress(RuntimeError, TimeoutError):
+                async with asyncio.timeout(SEND_SECONDS):
+                    await self._websocket.close(*self._reason())
         for result in results[:2]:
             if isinstance(result, Exception):
                 raise result

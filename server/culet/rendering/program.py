@@ -21,7 +21,6 @@ FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 class Variant:
     """What names a program besides its features."""
 
-    source: str = "render.cl"
     lanes: int = 16
     real: Real = np.float32
     tile: int = 32
@@ -89,7 +88,7 @@ class Programs:
             self._making.discard((features, variant))
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
-        program = build(self._device, variant.source, [*variant.options, *features.options])
+        program = build(self._device, "render.cl", [*variant.options, *features.options])
         kernel = cl.Kernel(program, "render")
         warm_up(self._device, kernel)
         return cl.Kernel(program, "render")

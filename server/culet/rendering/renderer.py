@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,8 +22,6 @@ from culet.rendering.program import Programs, Variant, build, dealer
 from culet.rendering.sums import Fold, Sums
 from culet.scene.model import Scene
 
-SOURCES = {"chain": "render.cl", "classic": "classic.cl"}
-"""Of each estimator; both have a kernel `render` with the same arguments."""
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3}
@@ -112,11 +109,11 @@ class Picture:
         stone = stone if scene.stones else None
         features = features or features_of(scene, stone)
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
-        self._variant = replace(renderer.variant, source=SOURCES[scene.optics.estimator])
-        self._kernel = get(features, self._variant)
+        self._kernel = get(features, renderer.variant)
         self._panorama = panorama
         self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
-        self._tiles = math.ceil(width / self._variant.tile), math.ceil(height / self._variant.tile)
+        tile = renderer.variant.tile
+        self._tiles = math.ceil(width / tile), math.ceil(height / tile)
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
@@ -134,7 +131,7 @@ class Picture:
     def refine_in_bands(self, samples: int, rows: int) -> Iterator[float]:
         """The same in bands of about `rows` rows; yields the part that is done, between them."""
         across, down = self._tiles
-        tiles = across * min(down, max(1, math.ceil(rows / self._variant.tile)))
+        tiles = across * min(down, max(1, math.ceil(rows / self._renderer.variant.tile)))
         bands = math.ceil(across * down / tiles)
         queue = self._renderer.device.queue
         self.seconds = 0.0

@@ -23,8 +23,6 @@ from pydantic import (
 from culet.errors import SceneError
 from culet.scene.wording import expected, unknown_field
 
-SCHEMA_VERSION = 1
-
 Coordinate = Annotated[float, Field(ge=-1e9, le=1e9)]
 Component = Annotated[float, Field(ge=0, le=1e6)]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
@@ -121,7 +119,9 @@ class StoneSettings(Model):
         Annotated[float, Field(ge=0, le=1e9)],
     ] = Field((0, 0, 0), description="Absorption coefficient of each channel, per R (Beer-Lambert).")
     size_mm: Annotated[float, Field(gt=0, le=1e9)] | None = Field(
-        None, description="Girdle radius R in millimetres; then `absorption` is per millimetre."
+        None,
+        description="R in millimetres, from the centre of mass to the farthest corner; then `absorption` is per "
+        "millimetre.",
     )
     position: Vector = (0, 0.5, 0)
     orientation: tuple[Coordinate, Coordinate, Coordinate, Coordinate] = Field(

@@ -29,10 +29,8 @@ class Contact:
     normal: Triple
     arm: Triple
     """From the centre of mass to the vertex, world axes, R."""
-    inverse_mass: Symmetric
-    """K: impulse at the vertex to change of the vertex's velocity, 1/mass."""
     mass: Symmetric
-    """K's inverse."""
+    """Inverse of K, which takes an impulse at the vertex to the change of the vertex's velocity, 1/mass."""
     normal_inverse_mass: float
     """n . K n."""
     slip_mass: float
@@ -81,7 +79,7 @@ def _contact(motion: Motion, body: RigidBody, turning: Rows, surface: int, verte
     k = _inverse_mass(1 / body.mass, turning, arm)
     (a, b, c), (xx, yy, zz, xy, xz, yz) = normal, k
     along = xx * a * a + yy * b * b + zz * c * c + 2 * (xy * a * b + xz * a * c + yz * b * c)
-    return Contact(surface, vertex, gap, normal, arm, k, _inverse(k), along, 1 / (xx + yy + zz - along))
+    return Contact(surface, vertex, gap, normal, arm, _inverse(k), along, 1 / (xx + yy + zz - along))
 
 
 def _inverse_mass(light: float, turning: Rows, arm: Triple) -> Symmetric:

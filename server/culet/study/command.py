@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from culet.study.comparison import Difference
     from culet.study.frame import Studied
     from culet.study.report import Report
+    from culet.study.studies import Effort
 
 study_app = typer.Typer(
     help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.", no_args_is_help=True
@@ -54,12 +55,10 @@ def rendering(
 
     Stopped with Ctrl-C it goes on where it was when it is started again.
     """
-    from culet.study.studies import FULL, QUICK, study_rendering
+    from culet.study.studies import study_rendering
 
     with _errors(), _interruptible(out):
-        subject = _with_stone(read_subject(scene, preset, mesh, sky))
-        effort = QUICK if quick else FULL
-        effort = effort._replace(width=width or effort.width, height=height or effort.height)
+        subject, effort = _with_stone(read_subject(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
         _tell(study_rendering(subject, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
 
 
@@ -96,8 +95,8 @@ def streaming(
     with _errors(), _interruptible(out):
         from culet.study.studies import study_streaming
 
-        subject = _with_stone(read_subject(scene, preset, mesh, sky))
-        size = (width or (320 if quick else 640), height or (180 if quick else 360))
+        subject, effort = _with_stone(read_subject(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
+        size = effort.width, effort.height
         _tell(study_streaming(subject, out, _progress, size=size, quick=quick, fresh=fresh), out)
 
 
@@ -173,6 +172,14 @@ def _with_stone(named: Subject) -> Studied:
     if named.stone is None:
         raise SceneError("stones: a study needs a stone; the scene has none", "stones")
     return Studied(named.scene, named.stone, named.panorama)
+
+
+def _effort(width: int | None, height: int | None, *, quick: bool) -> Effort:
+    """The usual one, at the size that was asked for."""
+    from culet.study.studies import FULL, QUICK
+
+    usual = QUICK if quick else FULL
+    return usual._replace(width=width or usual.width, height=height or usual.height)
 
 
 @contextlib.contextmanager
