@@ -75,6 +75,9 @@
 #ifndef POLARISED // 1: chains carry the polarisation of light. Never RUNTIME.
 #define POLARISED 0
 #endif
+#ifndef FEW_MIRRORS // 1: the stone reflects light into few directions, which are kept exactly. Never RUNTIME.
+#define FEW_MIRRORS 0
+#endif
 #ifndef CAMERA_INSIDE // 1: the camera is inside the stone
 #define CAMERA_INSIDE RUNTIME
 #endif

@@ -139,9 +139,29 @@ static inline realL chance(task_t task, const packetL *packet) {
   return load_lanes(number);
 }
 
+// Cut-offs that a pixel's channel may lose before its cut-off is lowered, how many times it is then halved for each further
+// one, and how often at most.
+#define AMPLE ((real)1.5)
+#define HALVINGS ((real)3)
+#define MOST_HALVINGS ((real)5)
+
+// The weight below which a chain ends. In a stone that is not convex each pixel has a tree of chains, and where each of them
+// loses a cut-off, some lose a hundred. Here their sum grows like the logarithm of their number, down to a least cut-off
+// that bounds what it costs. Of sampled wavelengths one channel may lose twice the mean.
+static inline realL cutoff_now(world_t world, const tile_t *tile, task_t task, const packetL *packet) {
+  const real cutoff = world.scene->cutoff, channels = SPECTRAL ? (real)1.5 : (real)(task.first_channel + CHANNELS);
+  int pixel[LANES];
+  real lost[LANES];
+  store_ints(packet->tag & PIXEL_MASK, pixel);
+  for (int lane = 0; lane < LANES; lane++) lost[lane] = tile->cut[pixel[lane]];
+  const realL excess = load_lanes(lost) / (cutoff * channels) - AMPLE;
+  return cutoff * exp2(-clamp(HALVINGS * excess, (realL)0, (realL)MOST_HALVINGS));
+}
+
 // What becomes of chains whose weight is below the cut-off, or whose bounces are used up: which go on. What ends is added
 // to `cut`.
-static inline maskL settle(world_t world, task_t task, packetL *packet, maskL mask, maskL used_up, realL *cut) {
+static inline maskL settle(world_t world, const tile_t *tile, task_t task, packetL *packet, maskL mask, maskL used_up,
+                           realL *cut) {
   const int end_kind = DECIDED(END, world.scene->end_kind);
   const realL weight = largest_weight(packet);
   maskL ends = mask & (used_up | (weight < world.scene->cutoff));
@@ -152,6 +172,7 @@ static inline maskL settle(world_t world, task_t task, packetL *packet, maskL ma
     *cut += blend(ends & used_up, over_channels(task, packet), splat(0));
     return mask & (lucky | !ends);
   }
+  if (GEOMETRY == MESH) ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
   if (end_kind == SKYLIGHT) {
     const radianceL fallback = sky(world, packet->direction, channels_of(task));
     EACH (k, CHANNELS)
@@ -190,7 +211,7 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   inner.polarisation = parts.transmitted;
   scale_weights(&inner, (real)1 - parts.kept);
   inner.tag = packet->tag & (ONE_BOUNCE - 1);
-  maskL goes_on = settle(world, task, &inner, mask, mask & !mask, &cut);
+  maskL goes_on = settle(world, tile, task, &inner, mask, mask & !mask, &cut);
   if (!has_room(&pools->inside)) {
     cut += blend(goes_on, over_channels(task, &inner), splat(0));
     goes_on = goes_on & !goes_on;
@@ -200,6 +221,18 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   EACH (k, CHANNELS) inner.radiance[k] = blend(goes_on, splat(0), inner.radiance[k]);
   const maskL left = mask & (!goes_on | (cut > 0));
   if (any_lane(left)) deposit(tile, task, left, &inner, cut);
+}
+
+// The direction of what stays inside. Where light comes back to the same directions for thousands of reflections, they are
+// made in double precision: rounded at each step, directions drift past the critical angle (rendering/mirrors.py).
+static inline vec3L reflect_inside(vec3L direction, realL cos_s, vec3L normal) {
+  if (!FEW_MIRRORS) return renormalise(reflect3(direction, cos_s, normal));
+  const doubleL x = to_double(direction.x), y = to_double(direction.y), z = to_double(direction.z),
+                nx = to_double(normal.x), ny = to_double(normal.y), nz = to_double(normal.z);
+  const doubleL twice = -2 * (x * nx + y * ny + z * nz) / (nx * nx + ny * ny + nz * nz);
+  const doubleL rx = fma(twice, nx, x), ry = fma(twice, ny, y), rz = fma(twice, nz, z);
+  const doubleL scale = 1.5 - 0.5 * (rx * rx + ry * ry + rz * rz); // to unit length
+  return vec3(from_double(scale * rx), from_double(scale * ry), from_double(scale * rz));
 }
 
 // Advances one packet of light inside the stone by a few segments, and puts back what survives.
@@ -233,14 +266,18 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
       scale_weights(&packet, parts.kept);
       packet.polarisation = parts.reflected;
     }
-    packet.direction = renormalise(reflect3(packet.direction, cos_s, crossing.normal));
+    packet.direction = reflect_inside(packet.direction, cos_s, crossing.normal);
     packet.tag += ONE_BOUNCE;
     const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
-    alive = settle(world, task, &packet, alive, used_up, &cut);
+    alive = settle(world, tile, task, &packet, alive, used_up, &cut);
   }
   if (any_lane(alive)) push(&pools->inside, alive, &packet);
-  const maskL ended = taken & !alive;
-  if (any_lane(ended)) deposit(tile, task, ended, &packet, cut);
+  maskL given = taken & !alive;
+  if (REENTRY) { // a chain that goes on takes along what it has gathered, but not what mirrors have lost of it
+    EACH (k, CHANNELS) packet.radiance[k] = blend(alive, splat(0), packet.radiance[k]);
+    given |= alive & (cut > 0);
+  }
+  if (any_lane(given)) deposit(tile, task, given, &packet, cut);
 }
 
 // Takes one packet of light that a mirror has sent towards the stone: it enters, or goes on through the room.

@@ -8,6 +8,7 @@ from enum import IntEnum
 from culet.geometry.stone import Stone
 from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
+from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.projection import camera_is_inside
 from culet.scene.model import Environment, Plane, Scene
 
@@ -48,12 +49,14 @@ class Features:
     end: int = RUNTIME
     spectral: int = 0
     polarised: int = 0
+    few_mirrors: int = 0
     camera_inside: int = RUNTIME
     estimator: int = ESTIMATOR["chain"]
 
     @property
     def general(self) -> Features:
-        """The program for every scene of this estimator and geometry, spectral or not, polarised or not."""
+        """The program for every scene of this estimator and geometry, spectral or not, polarised or not. It reflects in
+        its own precision."""
         return Features(
             geometry=self.geometry, spectral=self.spectral, polarised=self.polarised, estimator=self.estimator
         )
@@ -99,6 +102,7 @@ def features_of(scene: Scene, stone: Stone | None) -> Features:
         end=END[optics.end],
         spectral=int(is_spectral(scene)),
         polarised=int(optics.polarised and optics.estimator == "chain"),
+        few_mirrors=int(stone is not None and makes_finite_group(stone)),
         camera_inside=int(stone is not None and camera_is_inside(scene, stone)),
         estimator=ESTIMATOR[optics.estimator],
     )

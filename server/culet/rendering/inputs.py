@@ -17,8 +17,7 @@ from culet.rendering.panoramas import Panorama, panorama_of
 from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
-from culet.rendering.tree import rounded_corners, tree_of
-from culet.rendering.unit_normals import rounded_normals
+from culet.rendering.tree import tree_of
 from culet.scene.model import ImageEnvironment, Scene
 
 
@@ -50,8 +49,7 @@ class Inputs:
                 self._struct["shadow_start"][: len(shadow_start)] = shadow_start
         elif stone is not None:
             tree = tree_of(stone)
-            corners = rounded_corners(tree, stone, real)
-            mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, corners)]
+            mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
         self._has_stone = stone is not None
         self._panorama = None
         if isinstance(scene.environment, ImageEnvironment):
@@ -61,10 +59,7 @@ class Inputs:
             self._struct["panorama_turn"] = scene.environment.turn_degrees / 360
             self._struct["panorama_scale"] = scene.environment.scale
             self._panorama = device.panorama(panorama)
-        planes = facets.astype(real)
-        if stone is not None and features.geometry == Geometry.HULL:
-            planes[:, :3] = rounded_normals(real, stone, facets[:, :3])
-        self._fixed = [self._upload(planes), self._upload(shadows.astype(real)), *mesh]
+        self._fixed = [self._upload(facets.astype(real)), self._upload(shadows.astype(real)), *mesh]
 
     def of_sample(self, sample: int) -> list[Any]:
         """The kernels' arguments for that sample."""

@@ -9,14 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
-from culet.rendering.device import Real
-from culet.rendering.unit_normals import rounded_normals
 
 WIDTH = 16
 """Children of a node, and triangles of a leaf: TREE_WIDTH of mesh.cl."""
@@ -73,14 +70,6 @@ def tree_of(stone: Stone) -> Tree:
         if (WIDTH - 1) * depth + 1 <= STACK:
             return tree
     raise AssertionError("splits at the median halve a node, so 2^32 triangles need no more than STACK")
-
-
-def rounded_corners(tree: Tree, stone: Stone, real: Real) -> NDArray[np.floating[Any]]:
-    """The tree's `corners` in the kernels' numbers."""
-    rounded: NDArray[np.floating[Any]] = tree.corners.astype(real)
-    normals = tree.corners[:, 9:].transpose(0, 2, 1)
-    rounded[:, 9:] = rounded_normals(real, stone, normals.reshape(-1, 3)).reshape(normals.shape).transpose(0, 2, 1)
-    return rounded
 
 
 def _grow(lower: Array, upper: Array, *, by_median: bool) -> _Branch:
