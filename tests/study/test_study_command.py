@@ -37,3 +37,15 @@ def test_a_scene_without_a_stone_has_nothing_to_study(tmp_path: Path) -> None:
     assert run.returncode == 1
     assert run.stderr.splitlines() == ["culet: stones: a study needs a stone; the scene has none"]
     assert not (tmp_path / "report").exists()
+
+
+@pytest.mark.parametrize("command", ["rendering", "simulation", "streaming"])
+def test_a_study_without_scikit_image_says_how_to_have_it(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As after `make serve`, which installs only what serving takes."""
+    (tmp_path / "skimage.py").write_text("raise ModuleNotFoundError(name='skimage')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    run = culet("study", command, "--quick", "-o", tmp_path / "report")
+    assert run.returncode == 1
+    assert run.stderr.splitlines() == ["culet: a study needs scikit-image: pip install 'culet[study]'"]

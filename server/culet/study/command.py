@@ -55,9 +55,9 @@ def rendering(
 
     Stopped with Ctrl-C it goes on where it was when it is started again.
     """
-    from culet.study.studies import study_rendering
-
     with _errors(), _interruptible(out):
+        from culet.study.studies import study_rendering
+
         subject, effort = _with_stone(read_subject(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
         _tell(study_rendering(subject, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
 
@@ -72,9 +72,9 @@ def simulation(
     fresh: Fresh = False,
 ) -> None:
     """Sweep integrators and step sizes on motions whose truth is known."""
-    from culet.study.studies import study_simulation
-
     with _errors(), _interruptible(out):
+        from culet.study.studies import study_simulation
+
         subject = _with_stone(read_subject(scene, preset, mesh))
         _tell(study_simulation(subject, out, _progress, quick=quick, fresh=fresh), out)
 
