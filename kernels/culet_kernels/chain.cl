@@ -77,7 +77,7 @@ static inline void chain_tile(world_t world, tile_t *tile, int column, int row, 
     clear(&pools.inside);
     clear(&pools.outside);
     for (int number = 0; number < scene->chains && hits.count > 0; number += GROUPS) {
-      const uint seed = ((scene->sample * 256 + number) * 8191 + row / TILE) * 8191 + column / TILE;
+      const uint seed = (((uint)scene->sample * 256 + number) * 8191 + row / TILE) * 8191 + column / TILE;
       const task_t task = {world.chains + number, CHANNELS == 3 ? 0 : number, seed * 0x9e3779b9u};
       trace(world, tile, &pools, task, &hits);
     }

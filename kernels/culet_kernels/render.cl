@@ -5,11 +5,11 @@
 __kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
                      __global const real4 *shadows, __global const real *boxes, __global const int *links,
                      __global const real *corners, __global const chain_t *chains, __global const float *panorama,
-                     double jitter_x, double jitter_y, int first_tile, int count, volatile __global dealer_t *dealer,
+                     double jitter_x, double jitter_y, int first_tile, int count, volatile __global uint *dealt,
                      int accumulate, __global float *tallies) {
   const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
   const int across = tiles_across(scene);
-  for (int number; (number = deal(dealer, count)) < count;) {
+  for (int number; (number = deal(dealt, count)) < count;) {
     const int tile_column = (first_tile + number) % across, tile_row = (first_tile + number) / across;
     const int column = tile_column * TILE, row = tile_row * TILE;
     tile_t tile;
@@ -20,5 +20,4 @@ __kernel void render(__global real4 *image, __constant const parameters_t *scene
       chain_tile(world, &tile, column, row, jitter_x, jitter_y);
     write_tile(&tile, image, tallies, scene, tile_column, tile_row, accumulate);
   }
-  finish(dealer);
 }

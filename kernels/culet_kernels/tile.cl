@@ -1,4 +1,4 @@
-// The pixels that one work-item owns, and how they reach the picture.
+// The tile of pixels that a work-item is at: how it gets it, and how the tile reaches the picture.
 #ifndef CULET_TILE
 #define CULET_TILE
 #include "features.cl"
@@ -47,20 +47,9 @@ static inline int tiles_across(__constant const parameters_t *scene) { return (s
 
 // A launch's tiles are dealt out one by one: a work-item stands for a core and takes the next tile until there are no more,
 // so that cores end together however unequal tiles are (T. Aila and S. Laine, Understanding the efficiency of ray traversal
-// on GPUs, HPG 2009). Zeros before and after a launch.
-typedef struct {
-  uint dealt, gone; // tiles, work-items
-} dealer_t;
-
-// The number of a tile that nobody else has, or `count` if there is none.
-static inline int deal(volatile __global dealer_t *dealer, int count) {
-  return min(atomic_inc(&dealer->dealt), (uint)count);
-}
-
-// Each work-item's last act; the last of all makes the dealer ready for the next launch.
-static inline void finish(volatile __global dealer_t *dealer) {
-  if (atomic_inc(&dealer->gone) + 1 == get_global_size(0)) dealer->dealt = dealer->gone = 0;
-}
+// on GPUs, HPG 2009). `dealt` counts them; the host sets it to 0 before each launch, whatever became
+// of the one before. Returns the number of a tile that nobody else has, or `count` if there is none.
+static inline int deal(volatile __global uint *dealt, int count) { return min(atomic_inc(dealt), (uint)count); }
 
 // Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.
 static inline void write_tile(const tile_t *tile, __global real4 *image, __global float *tallies,
@@ -79,7 +68,7 @@ static inline void write_tile(const tile_t *tile, __global real4 *image, __globa
     }
   int counts[LANES];
   store_ints(tile->segments, counts);
-  int total = 0;
+  float total = 0;
   for (int lane = 0; lane < LANES; lane++) total += counts[lane];
   __global float *tally = tallies + TALLIES * (tile_row * tiles_across(scene) + tile_column);
   tally[SEGMENTS] = total;

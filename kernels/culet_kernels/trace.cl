@@ -4,8 +4,8 @@
 // until its weight is under the cut-off. What leaves is followed through the room at once; a mirror may send it back to
 // the stone, where it starts another chain. All of it waits in pools of rays, so that packets are full.
 //
-// A work-item owns a tile. It first finds where each pixel's ray meets the stone, then takes the chains one index of
-// refraction after the other, or four neighbouring wavelengths at a time, one for each group of pixels.
+// A work-item is at one tile at a time. It first finds where each pixel's ray meets the stone, then takes the chains one
+// index of refraction after the other, or four neighbouring wavelengths at a time, one for each group of pixels.
 #ifndef CULET_TRACE
 #define CULET_TRACE
 #include "fresnel.cl"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -19,6 +21,16 @@ def test_the_same_picture_twice_is_the_same_to_the_last_bit(renderer: Renderer) 
     assert first.cut_map().tobytes() == second.cut_map().tobytes()
     assert first.rgb().tobytes() == second.rgb().tobytes()
     assert first.segments() == second.segments()
+
+
+@pytest.mark.parametrize("units", [1, 3, 64])
+def test_every_tile_is_dealt_once_however_many_cores_there_are(renderer: Renderer, units: int) -> None:
+    """Nine tiles to one work-item, to a few, and to more than there are tiles; launch after launch."""
+    size = (70, 90)
+    expected = take(renderer, SCENE, size=size, samples=3)
+    picture = take(Renderer(replace(renderer.device, units=units)), SCENE, size=size, samples=3)
+    assert picture.linear().tobytes() == expected.linear().tobytes()
+    assert picture.segments() == expected.segments()
 
 
 @pytest.mark.parametrize("rows", [1, 32, 40, 64])

@@ -14,6 +14,7 @@ import culet_kernels
 from culet.errors import DeviceError
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
+from culet.rendering.parameters import layout
 
 log = logging.getLogger(__name__)
 
@@ -101,16 +102,11 @@ class Programs:
         return cl.Kernel(program, "render")
 
 
-def dealer(device: Device) -> Any:  # noqa: ANN401 - pyopencl has no types
-    """What deals the tiles of one launch at a time out to the device's cores; see tile.cl."""
-    flags = cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR
-    return cl.Buffer(device.context, flags, hostbuf=np.zeros(2, np.uint32))
-
-
 def warm_up(device: Device, kernel: Any) -> None:  # noqa: ANN401
     """Launch once for no tiles, in a queue of its own."""
     queue = cl.CommandQueue(device.context)
-    scratch = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, 1024)
+    size = layout(np.float64).itemsize  # of the largest argument that is read: a scene in either precision
+    scratch = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, size)
     real, integer = np.float64(0), np.int32(0)
-    kernel(queue, (1,), (1,), *[scratch] * 9, real, real, integer, integer, dealer(device), integer, scratch)
+    kernel(queue, (1,), (1,), *[scratch] * 9, real, real, integer, integer, scratch, integer, scratch)
     queue.finish()

@@ -18,10 +18,12 @@ from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.panoramas import Panorama
-from culet.rendering.program import Programs, Variant, build, dealer
+from culet.rendering.program import Programs, Variant, build
 from culet.rendering.sums import Fold, Sums
 from culet.scene.model import Scene
 
+NONE_DEALT = np.zeros(1, np.uint32)
+"""Of a launch's tiles, before it begins; see tile.cl."""
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3}
@@ -46,7 +48,6 @@ class Renderer:
         self.programs = Programs(self.device)
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
-        self.dealer = dealer(self.device)
         self.fold = Fold(self.device, self.variant)
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
 
@@ -117,6 +118,7 @@ class Picture:
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
+        self._dealt = self._allocate(NONE_DEALT.nbytes)
 
     @property
     def samples(self) -> int:
@@ -141,9 +143,10 @@ class Picture:
             for band in range(bands):
                 start = time.perf_counter()
                 count = min(tiles, across * down - band * tiles)
+                cl.enqueue_fill_buffer(queue, self._dealt, NONE_DEALT, 0, NONE_DEALT.nbytes)
                 event = self._kernel(
                     queue, (self._renderer.device.units,), (1,), target, *self._inputs.of_sample(self.samples),
-                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(count), self._renderer.dealer,
+                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(count), self._dealt,
                     np.int32(accumulate), self._tallies,
                 )  # fmt: skip
                 event.wait()
