@@ -38,7 +38,7 @@ DECIDED: dict[str, tuple[str, int, dict[str, Any]]] = {
     "camera outside": ("camera_inside", 0, {}),
 }
 """What is decided, how, and a scene in which it is so."""
-OFF = ("no floor", "no walls", "no lights", "no absorption", "exact Fresnel", "camera outside", "constant sky")
+OFF = ("no floor", "no walls", "no lights", "no absorption", "exact Fresnel", "constant sky")
 
 
 def machine_code(picture: Picture) -> int:
@@ -85,7 +85,8 @@ def test_a_decided_feature_shows_what_the_general_program_shows(
 
 @pytest.mark.parametrize("name", OFF)
 def test_a_feature_that_is_off_is_not_in_the_program(narrow: Renderer, size_of_general: int, name: str) -> None:
-    """Measured: from 0.2 % (the floor, whose code the walls share) to 3.8 % (the camera outside) of 87 kB."""
+    """Measured: from 0.7 % (absorption) to 22 % (the sky) of 49 kB. What the camera's place decides is a branch or two,
+    less than what the compiler then orders otherwise: 0.2 % more."""
     feature, kind, scene = DECIDED[name]
     decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
     assert machine_code(decided) < size_of_general
