@@ -25,9 +25,13 @@
 #define MASK int
 #endif
 
+#ifndef __has_builtin
+#define __has_builtin(name) 0
+#endif
+
 // Whether 16 numbers of single precision have the processor's own instructions for masks and for packing: OpenCL has none
 // for packing, and PoCL's any() is many.
-#if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__)
+#if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_compresssf512_mask)
 #define AVX512 1
 #else
 #define AVX512 0
@@ -100,7 +104,7 @@ static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, L
 static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 #endif
 
-// The lanes that a mask names, in order and without gaps. A whole packet is written, of which `count` lanes are meant.
+// The lanes that a mask names, in order and without gaps (stream compaction). A whole packet is written, of which `count` lanes are meant.
 #if LANES == 16 && AVX512
 typedef struct {
   ushort lanes;
@@ -151,9 +155,6 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 static inline realL splat(real value) { return (realL)(value); }
 
 // Clang's is one instruction, PoCL's is several.
-#ifndef __has_builtin
-#define __has_builtin(name) 0
-#endif
 #if __has_builtin(__builtin_elementwise_floor)
 static inline realL floor_lanes(realL x) { return __builtin_elementwise_floor(x); }
 #else

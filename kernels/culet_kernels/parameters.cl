@@ -37,6 +37,7 @@ typedef struct {
   int sample;                       // its number, from which chance and the pixels' wavelengths are drawn
   int floor_kind, walls_kind, sky_kind, fresnel_kind, end_kind;
   int camera_inside;                // the stone
+  int convex;                       // the stone: light that leaves it does not come back by itself
   int pierces;                      // the stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 

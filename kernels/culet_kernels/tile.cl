@@ -46,9 +46,9 @@ static inline intL groups_of(int x, int y, int sample) {
 static inline int tiles_across(__constant const parameters_t *scene) { return (scene->width + TILE - 1) / TILE; }
 
 // A launch's tiles are dealt out one by one: a work-item stands for a core and takes the next tile until there are no more,
-// so that cores end together however unequal tiles are (T. Aila and S. Laine, Understanding the efficiency of ray traversal
-// on GPUs, HPG 2009). `dealt` counts them; the host sets it to 0 before each launch, whatever became
-// of the one before. Returns the number of a tile that nobody else has, or `count` if there is none.
+// so that cores end together however unequal tiles are (persistent threads: T. Aila and S. Laine, Understanding the
+// efficiency of ray traversal on GPUs, HPG 2009). `dealt` counts them; the host sets it to 0 before each launch, whatever
+// became of the one before. Returns the number of a tile that nobody else has, or `count` if there is none.
 static inline int deal(volatile __global uint *dealt, int count) { return min(atomic_inc(dealt), (uint)count); }
 
 // Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.

@@ -172,7 +172,7 @@ static inline maskL settle(world_t world, const tile_t *tile, task_t task, packe
     *cut += blend(ends & used_up, over_channels(task, packet), splat(0));
     return mask & (lucky | !ends);
   }
-  if (GEOMETRY == MESH) ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
+  if (GEOMETRY == MESH && !world.scene->convex) ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
   if (end_kind == SKYLIGHT) {
     const radianceL fallback = sky(world, packet->direction, channels_of(task));
     EACH (k, CHANNELS)

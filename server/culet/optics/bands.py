@@ -39,7 +39,7 @@ class Bands:
     wavelength: NDArray[np.float64]
     """(M,) nanometres."""
     group: NDArray[np.int32]
-    """(M,) which group traces it: stratum modulo groups."""
+    """(M,) which group traces it: stratum modulo groups, so that each group's neighbours are those of the others."""
     weights: NDArray[np.float64]
     """(M, 3) linear sRGB of unit radiance; those of each group sum to (1, 1, 1)."""
 

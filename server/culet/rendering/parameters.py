@@ -42,7 +42,7 @@ def layout(real: Real) -> np.dtype[np.void]:
             ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("max_bounces", i),
             ("width", i), ("height", i), ("chains", i), ("panorama_width", i), ("panorama_height", i), ("sample", i),
             ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i), ("end_kind", i),
-            ("camera_inside", i), ("pierces", i),
+            ("camera_inside", i), ("convex", i), ("pierces", i),
         ],
         align=True,
     )  # fmt: skip
@@ -109,6 +109,7 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
         p["absorption"] = absorption(scene)
         p["facets"] = len(stone.planes)
         p["camera_inside"] = camera_is_inside(scene, stone)
+        p["convex"] = stone.convex
         p["pierces"] = _pierces(scene, stone)
     return p
 

@@ -38,13 +38,12 @@ class Renderer:
         *,
         real: Real = np.float32,
         lanes: int | None = None,
-        tile: int = 32,
         background_compile: bool = False,
     ) -> None:
         """Open the device (DeviceError if none works). With `background_compile` a picture never waits for a special
         program: the general one serves until it is ready."""
         self.device = device or open_device()
-        self.variant = Variant(lanes=lanes or self.device.lanes_for(real), real=real, tile=tile)
+        self.variant = Variant(lanes=lanes or self.device.lanes_for(real), real=real)
         self.programs = Programs(self.device)
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
@@ -108,7 +107,10 @@ class Picture:
         self._renderer = renderer
         real = renderer.variant.real
         stone = stone if scene.stones else None
-        features = features or features_of(scene, stone)
+        needed = features_of(scene, stone)
+        features = features or needed
+        if features.estimator != needed.estimator:
+            raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._kernel = get(features, renderer.variant)
         self._panorama = panorama
