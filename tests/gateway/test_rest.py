@@ -162,6 +162,7 @@ async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -
         assert changed.json()["scene"]["environment"] == environment
 
     assert (await gateway.http.delete(path)).status_code == 204
+    assert_problem(await gateway.http.post(f"{path}/events", json={"type": "toggle_fall"}), 404)
     for method, body in (("GET", None), ("PATCH", {}), ("DELETE", None)):
         assert_problem(await gateway.http.request(method, path, json=body), 404)
     for name in ("frame.tga", "frame.png"):
@@ -203,6 +204,35 @@ async def test_a_patch_that_cannot_be_used_leaves_the_session_as_it_was(
     path = f"/api/sessions/{await gateway.session()}"
     before = (await gateway.http.get(path)).json()
     assert_problem(await gateway.http.patch(path, content=patch, headers=JSON), 422, field)
+    assert (await gateway.http.get(path)).json() == before
+
+
+async def test_an_event_by_rest_does_what_it_does_by_the_stream(gateway: Gateway) -> None:
+    path = f"/api/sessions/{await gateway.session()}"
+    before = (await gateway.http.get(path)).json()
+    assert not before["falling"]
+    answer = await gateway.http.post(f"{path}/events", json={"type": "toggle_fall"})
+    assert answer.status_code == 200
+    assert answer.json()["falling"]
+    answer = await gateway.http.post(f"{path}/events", json={"type": "dolly", "target": "camera", "forward": 0.5})
+    assert answer.json()["scene"]["camera"] != before["scene"]["camera"]
+
+
+@pytest.mark.parametrize(
+    ("event", "field"),
+    [
+        ('{"type": "explode"}', None),
+        ('{"type": "dolly", "target": "camera", "forward": "far"}', "dolly.forward"),
+        ('{"type": "patch_scene", "patch": {"camera": {"fov_degrees": NaN}}}', "camera.fov_degrees"),
+        ('{"type": "ack", "sequence": 1}', None),
+    ],
+)
+async def test_an_event_that_cannot_be_used_leaves_the_session_as_it_was(
+    gateway: Gateway, event: str, field: str | None
+) -> None:
+    path = f"/api/sessions/{await gateway.session()}"
+    before = (await gateway.http.get(path)).json()
+    assert_problem(await gateway.http.post(f"{path}/events", content=event, headers=JSON), 422, field)
     assert (await gateway.http.get(path)).json() == before
 
 

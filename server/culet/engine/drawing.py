@@ -16,7 +16,7 @@ from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 
 BAND_PIXELS = 2**17
-"""Pixels that get one more sample before other work gets its turn: some 20 ms of the default scene on two cores."""
+"""Pixels that get one more sample before other work gets its turn: some 10 ms of the default scene on two cores."""
 BAND_ROWS = 32
 """Rows of the thinnest band: a row of the renderer's tiles."""
 

@@ -15,6 +15,7 @@ from starlette.exceptions import HTTPException
 from culet.errors import CuletError, InputError
 from culet.scene.model import field_of
 from culet.scene.wording import expected
+from culet_protocol.messages import PatchScene, SessionEvent, SetScene, ViewerEvent
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_AFTER_SECONDS = "2"
@@ -59,6 +60,14 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
         status: {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": PROBLEM_SCHEMA}}}
         for status in statuses
     }
+
+
+def check_numbers(event: SessionEvent | ViewerEvent) -> None:
+    """`finite` of those events whose fields hold any JSON."""
+    if isinstance(event, PatchScene):
+        finite(event.patch)
+    if isinstance(event, SetScene):
+        finite(event.scene)
 
 
 def finite(value: object) -> None:

@@ -10,14 +10,14 @@ from pydantic import Field, model_validator
 from culet.gateway import stream as streaming
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
-from culet.gateway.problems import answers, finite
+from culet.gateway.problems import answers, check_numbers, finite
 from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
 from culet.gateway.stills import MEDIA_TYPES, Height, PngResponse, TargaResponse, Width
 from culet.scene import Scene, preset
 from culet.scene.model import Model
 from culet_protocol.engine import Render
-from culet_protocol.messages import PatchScene
+from culet_protocol.messages import PatchScene, SessionEvent
 
 router = APIRouter(tags=["sessions"])
 
@@ -94,6 +94,20 @@ async def patch_session(
     finite(patch)
     session = gateway.sessions.get(session_id)
     await gateway.sessions.apply(session, PatchScene(patch=patch))
+    await gateway.sessions.describe(session)
+    return _answer(session)
+
+
+@router.post("/api/sessions/{session_id}/events", responses=answers(404, 413, 422, 503))
+async def post_event(
+    session_id: str,
+    event: Annotated[SessionEvent, Body(discriminator="type", examples=[{"type": "toggle_fall"}])],
+    gateway: ThisGateway,
+) -> SessionAnswer:
+    """Do to a session what a viewer can do by its stream: let the stone fall, push it, turn the camera, and so on."""
+    check_numbers(event)
+    session = gateway.sessions.get(session_id)
+    await gateway.sessions.apply(session, event)
     await gateway.sessions.describe(session)
     return _answer(session)
 

@@ -17,7 +17,7 @@ from pydantic import ValidationError
 
 from culet.errors import BusyError, CuletError, InputError, NotFoundError
 from culet.gateway.admission import may_enter
-from culet.gateway.problems import finite
+from culet.gateway.problems import check_numbers
 from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
 from culet.gateway.viewer import Viewer
@@ -27,13 +27,11 @@ from culet_protocol.close import CloseCode
 from culet_protocol.messages import (
     Ack,
     Hello,
-    PatchScene,
     Ping,
     Pong,
     Problem,
     Resize,
     SessionEvent,
-    SetScene,
     Visibility,
     control_event,
 )
@@ -163,10 +161,7 @@ class _Stream:
                 continue
             try:
                 event = control_event.validate_json(text)
-                if isinstance(event, PatchScene):
-                    finite(event.patch)
-                if isinstance(event, SetScene):
-                    finite(event.scene)
+                check_numbers(event)
             except ValidationError as error:
                 finding = scene_error(error)
                 self._refuse("malformed", str(finding), finding.field)
