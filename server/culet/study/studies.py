@@ -47,6 +47,7 @@ class Effort(NamedTuple):
     model_samples: int
     physics_samples: int
     repeats: int
+    """Of a frame, at most: what else a machine does lasts longer than a few frames."""
     race_samples: int
     """Of the race's reference."""
     race_seconds: float
@@ -55,9 +56,9 @@ class Effort(NamedTuple):
     """Samples of a pass of Mitsuba's."""
 
 
-QUICK = Effort(320, 180, 256, 48, 3, 512, 4.0, 16)
+QUICK = Effort(320, 180, 256, 48, 9, 512, 4.0, 16)
 """For a first look."""
-FULL = Effort(640, 360, 1024, 192, 5, 1024, 15.0, 16)
+FULL = Effort(640, 360, 1024, 192, 25, 1024, 15.0, 16)
 """How long each takes, docs/study.md says."""
 
 
