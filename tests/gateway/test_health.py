@@ -59,7 +59,7 @@ async def test_every_example_in_the_documentation_runs(gateway: Gateway) -> None
                 answer = await gateway.http.request(method, path.replace("{session_id}", session), json=example)
                 assert answer.status_code in (200, 201), (path, answer.text)
                 ran += 1
-    assert ran == 3
+    assert ran == 4
 
 
 async def test_the_page_is_served_or_its_absence_explained(engine: Endpoints, tmp_path: Path) -> None:
