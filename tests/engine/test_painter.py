@@ -159,12 +159,12 @@ def _fail(_session: str, error: Exception) -> None:
 
 @pytest.mark.parametrize(
     ("full_seconds", "least_rate"),
-    [(0.1, 29), (0.3, 29), (SLOW, 29), (10 * SLOW, 8)],  # measured 29.9, 30, 29.9 and 8.25 frames/s
+    [(0.1, 29), (0.3, 29), (SLOW, 29), (10 * SLOW, 7)],  # measured 29.9, 30, 29.9 and 7.75 frames/s
 )
 async def test_a_drag_is_governed_however_long_a_frame_takes(
     play: Play, full_seconds: float, least_rate: float
 ) -> None:
-    """In the last case the best governed frame takes 0.9 s, and the quickest 0.11 s."""
+    """In the last case the best governed frame takes 0.9 s, and the quickest 0.12 s, by the ladder's costs."""
     world = World(full_seconds)
     await play(world, 30 * full_seconds)
     world.drawn.clear()
