@@ -21,13 +21,16 @@ log = logging.getLogger(__name__)
 FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 
 
+TILE = 32
+"""Pixels on each side of what a core renders at a time."""
+
+
 @dataclass(frozen=True)
 class Variant:
     """What names a program besides its features."""
 
     lanes: int = 16
     real: Real = np.float32
-    tile: int = 32
 
     @property
     def options(self) -> list[str]:
@@ -35,7 +38,7 @@ class Variant:
         return [
             f"-DLANES={self.lanes}",
             f"-DREAL={'double' if self.real is np.float64 else 'float'}",
-            f"-DTILE={self.tile}",
+            f"-DTILE={TILE}",
         ]
 
 

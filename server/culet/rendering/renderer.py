@@ -18,7 +18,7 @@ from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.panoramas import Panorama
-from culet.rendering.program import Programs, Variant, build
+from culet.rendering.program import TILE, Programs, Variant, build
 from culet.rendering.sums import Fold, Sums
 from culet.scene.model import Scene
 
@@ -115,8 +115,7 @@ class Picture:
         self._kernel = get(features, renderer.variant)
         self._panorama = panorama
         self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
-        tile = renderer.variant.tile
-        self._tiles = math.ceil(width / tile), math.ceil(height / tile)
+        self._tiles = math.ceil(width / TILE), math.ceil(height / TILE)
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
@@ -135,7 +134,7 @@ class Picture:
     def refine_in_bands(self, samples: int, rows: int) -> Iterator[float]:
         """The same in bands of about `rows` rows; yields the part that is done, between them."""
         across, down = self._tiles
-        tiles = across * min(down, max(1, math.ceil(rows / self._renderer.variant.tile)))
+        tiles = across * min(down, max(1, math.ceil(rows / TILE)))
         bands = math.ceil(across * down / tiles)
         queue = self._renderer.device.queue
         self.seconds = 0.0
