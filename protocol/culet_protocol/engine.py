@@ -67,7 +67,10 @@ class Demand(Message):
 
 
 class Render(Message):
-    """A still: of a scene, or of what a session showed at `step` (the latest if None)."""
+    """A still: of a scene, or of what a session showed at `step` (the latest if None).
+
+    `client` says on whose behalf, in whatever words the gateway tells clients apart: stills take turns by client.
+    """
 
     type: Literal["render"] = "render"
     scene: dict[str, Any] | None = None
@@ -76,6 +79,7 @@ class Render(Message):
     width: int | None = None
     height: int | None = None
     format: Format = "tga"
+    client: Annotated[str, Field(max_length=200)] = ""
 
 
 class PutMesh(Message):
