@@ -16,7 +16,7 @@ Grid = NDArray[np.floating[Any]]
 
 @dataclass(frozen=True, eq=False)
 class SettingErrors:
-    """Root mean square errors of the default scene at 1280x720, one sample a pixel, brought to that size.
+    """Root mean square errors of the legacy default scene at 1280x720, one sample a pixel, brought to that size.
 
     Between the settings measured they are interpolated: linearly by scale, by the logarithm of the other two.
     """

@@ -9,6 +9,7 @@ import trimesh
 from culet.geometry.load import stone_of
 from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
+from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import (
     Camera,
     GradientEnvironment,
@@ -31,7 +32,7 @@ CHECKER = Scene(
 )
 """The main job at its plainest: a brilliant of three indices over a checker without lights, 64 bounces."""
 
-_LIGHTS = Scene().lights
+_LIGHTS = LEGACY_DEFAULT.lights
 
 RING = "ring"
 """In place of the id of an upload."""
@@ -41,10 +42,12 @@ CASES: dict[str, Scene] = {
     "checker, 256 bounces": CHECKER.model_copy(update={"optics": Optics()}),
     "checker, both lights": CHECKER.model_copy(update={"lights": _LIGHTS}),
     "mirror, both lights": CHECKER.model_copy(update={"lights": _LIGHTS, "floor": Plane(kind="mirror")}),
-    "default": Scene(),
-    "default, 8 bands": Scene(optics=Optics(bands=8)),
-    "default, polarised": Scene(optics=Optics(polarised=True)),
-    "default, mesh of 5 000 triangles": Scene(stones=(Scene().stones[0].model_copy(update={"mesh": RING}),)),
+    "legacy default": LEGACY_DEFAULT,
+    "legacy default, 8 bands": LEGACY_DEFAULT.model_copy(update={"optics": Optics(bands=8)}),
+    "legacy default, polarised": LEGACY_DEFAULT.model_copy(update={"optics": Optics(polarised=True)}),
+    "legacy default, mesh of 5 000 triangles": LEGACY_DEFAULT.model_copy(
+        update={"stones": (LEGACY_DEFAULT.stones[0].model_copy(update={"mesh": RING}),)}
+    ),
 }
 """Name -> scene; the first is what the others are compared with."""
 
@@ -78,7 +81,7 @@ FEATURE_CASES: dict[str, tuple[Scene, Scene]] = {
         BARE.model_copy(update={"floor": Plane(kind="matte")}),
         BARE.model_copy(update={"floor": Plane(kind="matte"), "lights": _LIGHTS}),
     ),
-    "sky": (BARE, BARE.model_copy(update={"environment": Scene().environment})),
+    "sky": (BARE, BARE.model_copy(update={"environment": LEGACY_DEFAULT.environment})),
     "dispersion": (BARE, BARE.model_copy(update={"stones": CHECKER.stones})),
     "absorption": (
         BARE,

@@ -2,7 +2,7 @@
 
     python -m culet.study.ladder > server/culet/engine/ladder.json
 
-Each setting draws the default scene at one sample a pixel, as a moving frame is. They take turns, and what counts is
+Each setting draws the legacy default scene at one sample a pixel, as a moving frame is. They take turns, and what counts is
 the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them. The
 picture is brought to full size as a browser does, and compared, as it is shown and in radiance, with a converged one.
 Besides the ladder, the errors of all settings are kept: what is drawn may be a rung at another size.
@@ -26,6 +26,7 @@ from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.optics.tone import tone_map
 from culet.rendering.renderer import Picture, Renderer
+from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import Scene
 from culet.study.provenance import provenance
 from culet.study.radiance_error import Image, enlarged, radiance_error
@@ -141,7 +142,7 @@ def _with_optics(scene: Scene, cutoff: float, bounces: int) -> Scene:
 def main() -> None:
     """Print ladder and errors as JSON, and what they were measured on."""
     renderer = Renderer()
-    measured = measure(renderer, Scene())
+    measured = measure(renderer, LEGACY_DEFAULT)
     document = {
         "measured": {
             "made": dt.datetime.now(dt.UTC).isoformat(timespec="seconds"),

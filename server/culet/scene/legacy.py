@@ -1,0 +1,29 @@
+"""The default scene of version 0.1: what times and errors are compared with, whatever the default becomes."""
+
+from __future__ import annotations
+
+from culet.scene.model import Camera, Film, Lamp, Light, Plane, Scene, StoneSettings, StudioEnvironment
+
+LEGACY_DEFAULT = Scene(
+    stones=(StoneSettings(position=(0, 0.5, 0), orientation=(0.93670, 0.33047, 0, 0.11566)),),
+    floor=Plane(kind="mirror"),
+    walls=Plane(kind="none"),
+    lights=(
+        Light(position=(-4, 6, 4), colour=(1, 0.2, 0.2)),
+        Light(position=(4, 6, 4), colour=(0.2, 0.5, 1)),
+    ),
+    environment=StudioEnvironment(
+        ambient=(0.03, 0.035, 0.05),
+        lamps=(
+            Lamp(direction=(-0.6, 1, 0.35), half_angle_degrees=24, radiance=(1.5, 1.45, 1.35)),
+            Lamp(direction=(0.9, 0.75, -0.4), half_angle_degrees=16, radiance=(1.1, 1.3, 1.6)),
+            Lamp(direction=(0.25, 0.9, 0.9), half_angle_degrees=6, radiance=(8, 8, 8)),
+            Lamp(direction=(-0.9, 0.45, -0.9), half_angle_degrees=5, radiance=(9, 8, 7)),
+            Lamp(direction=(0.7, 0.3, 1), half_angle_degrees=4, radiance=(10, 10, 11)),
+            Lamp(direction=(-0.2, 1, -0.35), half_angle_degrees=5, radiance=(9, 9, 9)),
+        ),
+    ),
+    camera=Camera(position=(0, 2.4, 4.6), target=(0, 0.1, 0), fov_degrees=40),
+    film=Film(exposure=1, tone_map="srgb"),
+)
+"""A diamond that floats over a mirror floor under six round lamps, lit red and blue."""
