@@ -14,6 +14,7 @@ import uvicorn
 
 from culet.errors import InputError
 from culet.gateway.app import create_app
+from culet.gateway.client_address import read_proxies, trusted_hosts
 from culet.gateway.settings import MEBIBYTE, GatewaySettings
 from culet.gateway.state import Gateway
 
@@ -28,6 +29,7 @@ class Listener:
     """Holds the address from its creation on, so that a taken port is known before anything is started."""
 
     def __init__(self, settings: GatewaySettings, host: str, port: int) -> None:
+        proxies = trusted_hosts(read_proxies(settings.trusted_proxies))
         family = socket.AF_INET6 if ":" in host else socket.AF_INET
         self._socket = socket.socket(family, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -50,6 +52,7 @@ class Listener:
                 ws="websockets-sansio",
                 ws_max_size=MAX_WEBSOCKET_MESSAGE,
                 ws_per_message_deflate=False,  # frames are compressed already
+                forwarded_allow_ips=proxies,
                 timeout_graceful_shutdown=GRACEFUL_SHUTDOWN_SECONDS,
             )
         )

@@ -23,6 +23,8 @@ class GatewaySettings:
     """Folder of the built web client, served at `/`."""
     allowed_origins: tuple[str, ...] = ()
     """Origins besides the page's own that may open streams and change things, such as `https://gems.example`."""
+    trusted_proxies: tuple[str, ...] = ()
+    """Addresses or networks of proxies, whose X-Forwarded-For says which client a request comes from."""
     max_sessions: int = 64
     session_idle_seconds: float = 900
     """A session that nobody watched or asked about for so long is forgotten."""
