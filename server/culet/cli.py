@@ -6,16 +6,19 @@ import json
 import logging
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from culet import __version__
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
-from culet.command.places import check_place, check_web, opened
+from culet.command.places import check_place, opened
+from culet.command.settings import options_of
 from culet.command.subject import read_subject
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
+from culet.engine.limits import Limits
 from culet.errors import InputError, SceneError
+from culet.gateway.settings import GatewaySettings
 from culet.study.command import study_app
 
 if TYPE_CHECKING:
@@ -32,17 +35,6 @@ BAND_ROWS = 64
 
 Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")]
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
-Host = Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 for every one.")]
-Port = Annotated[int, typer.Option(min=0, max=65535, help="Port to listen on; 0 for a free one.")]
-Web = Annotated[
-    Path | None, typer.Option(help="Folder of the built web client, instead of the one that belongs to it.")
-]
-Origins = Annotated[
-    list[str] | None,
-    typer.Option("--allow-origin", metavar="ORIGIN", help="A further page that may use this server; repeatable."),
-]
-
-
 Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
 SessionId = Annotated[
     str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
@@ -194,60 +186,53 @@ def bench(
 
 
 @app.command()
+@options_of(Gateway=GatewaySettings, Engine=Limits)
 def serve(
-    host: Host = "127.0.0.1",
-    port: Port = 8000,
     frames: Annotated[
         str | None,
         typer.Option(
             metavar="ENDPOINT", help="Publish frames for native viewers here too, such as tcp://127.0.0.1:5556."
         ),
     ] = None,
-    web: Web = None,
-    allow_origin: Origins = None,
+    *,
+    given: dict[str, Any],
 ) -> None:
     """Serve the web page: gateway and engine, restarted when it dies. Stop with Ctrl-C."""
     from culet.gateway.serve import serve as run
-    from culet.gateway.settings import BUILT_CLIENT
 
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
-        check_web(web)
-        run(host, port, frames=frames, web=web or BUILT_CLIENT, allowed_origins=allow_origin or ())
+        Limits.read(given)  # before the child would complain of them
+        run(given, frames=frames, engine_options=[*Limits.words(given)])
 
 
 @app.command()
-def gateway(
-    control: Control,
-    frames: Frames,
-    host: Host = "127.0.0.1",
-    port: Port = 8000,
-    web: Web = None,
-    allow_origin: Origins = None,
-) -> None:
+@options_of(Gateway=GatewaySettings)
+def gateway(control: Control, frames: Frames, *, given: dict[str, Any]) -> None:
     """Run the web process alone, for an engine that runs elsewhere."""
     from culet.gateway.serve import run_gateway
-    from culet.gateway.settings import BUILT_CLIENT
 
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
-        check_web(web)
-        run_gateway(control, frames, host, port, web=web or BUILT_CLIENT, allowed_origins=allow_origin or ())
+        run_gateway(given, control, frames)
 
 
 @app.command()
+@options_of(Engine=Limits)
 def engine(
     control: Control,
     frames: Annotated[
         list[str], typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames; repeatable, for several at once.")
     ],
+    *,
+    given: dict[str, Any],
 ) -> None:
     """Run the render process alone: sessions, simulation and frames over ZeroMQ."""
     from culet.engine.serve import run
 
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
-        run(control, frames)
+        run(control, frames, Limits.read(given))
 
 
 @app.command()

@@ -24,6 +24,6 @@ def test_a_size_beyond_the_limits_is_refused_by_name(width: int, height: int, fi
 def test_a_large_live_frame_is_scaled_down_and_keeps_its_shape() -> None:
     assert live_size(1280, 720, LIMITS) == (1280, 720)
     assert live_size(3840, 2160, LIMITS) == (2560, 1440)
-    width, height = live_size(8192, 16, Limits(live_pixels=1000))
+    width, height = live_size(8192, 16, Limits(max_live_pixels=1000))
     assert width * height <= 1000
     assert height >= 1

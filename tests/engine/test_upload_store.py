@@ -33,9 +33,9 @@ async def test_what_is_no_stone_is_refused_with_its_defect(data: bytes) -> None:
 
 async def test_limits_of_size_are_kept() -> None:
     with pytest.raises(TooLargeError, match="at most 10 bytes, got"):
-        await UploadStore(MESH, Limits(upload_bytes=10)).put("a", "off", TETRAHEDRON)
+        await UploadStore(MESH, Limits(max_upload_bytes=10)).put("a", "off", TETRAHEDRON)
     with pytest.raises(InputError, match="4"):
-        await UploadStore(MESH, Limits(mesh_triangles=3)).put("a", "off", TETRAHEDRON)
+        await UploadStore(MESH, Limits(max_mesh_triangles=3)).put("a", "off", TETRAHEDRON)
 
 
 async def test_a_mesh_that_takes_too_long_is_given_up() -> None:
@@ -50,7 +50,7 @@ async def test_an_id_that_could_be_a_path_is_refused() -> None:
 
 
 async def test_the_least_recently_used_mesh_is_forgotten_first() -> None:
-    store = UploadStore(MESH, Limits(uploads=2))
+    store = UploadStore(MESH, Limits(max_uploads=2))
     await store.put("a", "off", TETRAHEDRON)
     await store.put("b", "off", TETRAHEDRON)
     assert store["a"].convex
@@ -106,7 +106,7 @@ async def test_a_sky_of_too_many_pixels_is_too_large_before_it_is_decoded() -> N
 
 async def test_what_is_kept_is_bounded_in_memory_too() -> None:
     one = 1000 * 500 * 3 * 4  # bytes of a panorama
-    store = UploadStore(SKY, Limits(kept_bytes=int(2.5 * one)))
+    store = UploadStore(SKY, Limits(max_kept_bytes=int(2.5 * one)))
     for name in "abc":
         await store.put(name, "png", png(1000, 500, (1, 2, 3)))
     assert list(store) == ["b", "c"]

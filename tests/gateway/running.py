@@ -156,7 +156,8 @@ def engine_process(command: Callable[[str, str], Sequence[str]]) -> Iterator[End
 @contextlib.asynccontextmanager
 async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gateway]:  # noqa: ANN401
     """A web server with these settings, in this process, once it hears the engine."""
-    with Listener(GatewaySettings(*engine, **limits), "127.0.0.1", 0) as listener:
+    settings = GatewaySettings(control=engine.control, frames=engine.frames, port=0, **limits)
+    with Listener(settings) as listener:
         serving = asyncio.create_task(listener.run())
         try:
             async with httpx.AsyncClient(base_url=listener.url, timeout=PATIENCE) as http:

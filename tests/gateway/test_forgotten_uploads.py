@@ -15,7 +15,7 @@ FORGETFUL = """
 import sys
 from culet.engine.limits import Limits
 from culet.engine.serve import run
-run(sys.argv[1], [sys.argv[2]], Limits(uploads=1))
+run(sys.argv[1], [sys.argv[2]], Limits(max_uploads=1))
 """
 SIZE = {"width": 16, "height": 9}
 COMMENT = 3

@@ -12,7 +12,7 @@ from culet.gateway.viewer import DEFAULT_SIZE
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Engine, State, Viewers
 
-SETTINGS = GatewaySettings("ipc://unused", "ipc://unused")
+SETTINGS = GatewaySettings(control="ipc://unused", frames="ipc://unused")
 
 
 @pytest.fixture

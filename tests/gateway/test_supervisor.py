@@ -232,7 +232,7 @@ def test_a_taken_port_is_refused_before_anything_starts() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(InputError, match=rf"cannot listen on 127.0.0.1 port {port}: .*in use"):
-            Listener(GatewaySettings("ipc://unused", "ipc://unused"), "127.0.0.1", port)
+            Listener(GatewaySettings(control="ipc://unused", frames="ipc://unused", port=port))
 
 
 def test_frames_that_cannot_be_published_are_refused_before_anything_starts() -> None:
@@ -240,4 +240,4 @@ def test_frames_that_cannot_be_published_are_refused_before_anything_starts() ->
         in_use = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
         for endpoint, reason in (("foo", "expected ipc://"), (in_use, "another program listens there")):
             with pytest.raises(InputError, match=f"--frames: cannot listen at '{endpoint}': {reason}"):
-                serve(port=0, frames=endpoint)
+                serve({"port": "0"}, frames=endpoint)

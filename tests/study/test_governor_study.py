@@ -44,7 +44,7 @@ class Staged(EngineLink):
     """An engine whose every frame the test sends."""
 
     def __init__(self, recorder: Recorder) -> None:
-        super().__init__(GatewaySettings("ipc:///nowhere", "ipc:///nowhere"))
+        super().__init__(GatewaySettings(control="ipc:///nowhere", frames="ipc:///nowhere"))
         self.recorder = recorder
         self.step = 0
         self.falling = False

@@ -35,9 +35,3 @@ def opened(out: Path | None) -> Iterator[TextIO | None]:
         raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
     with file:
         yield file
-
-
-def check_web(folder: Path | None) -> None:
-    """InputError unless it is none, or a folder that holds a built page."""
-    if folder is not None and not (folder / "index.html").is_file():
-        raise InputError(f"web: expected the folder of a built web client; there is no {folder / 'index.html'}", "web")

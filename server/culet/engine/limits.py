@@ -3,52 +3,60 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from pydantic import ByteSize, Field
 
 from culet.errors import InputError
+from culet.settings import Settings
 
 
-@dataclass(frozen=True)
-class Limits:
+class Limits(Settings):
     """Configured limits of an engine."""
 
-    sessions: int = 64
-    idle_seconds: float = 3600
-    """A session that nobody watched or touched for this long makes room when the engine is full."""
-    stills: int = 8
-    """Stills that wait or are being rendered."""
-    still_edge: int = 8192
-    """Pixels."""
-    still_pixels: int = 2**25
-    """33.5 Mpixel: 0.4 GB of float32 RGB."""
-    live_pixels: int = 2560 * 1440
-    """A larger frame that a viewer asks for is rendered this large, with the viewer's aspect ratio."""
-    uploads: int = 32
-    """Of each kind, mesh or sky, that are kept."""
-    upload_bytes: int = 64 * 2**20
-    """Of one file."""
-    kept_bytes: int = 2**30
-    """Of what all kept uploads of a kind take in memory; the latest one is kept in any case."""
-    read_seconds: float = 60
-    """For reading one upload."""
-    mesh_triangles: int = 200_000
-    shown_states: int = 600
-    """Shown states of a session that can be rendered again: 10 s of motion at 60 frames/s."""
+    engine_idle_seconds: float = Field(
+        3600,
+        gt=0,
+        description="A session that nobody watched or touched for so long makes room when the engine is full.",
+    )
+    max_stills: int = Field(8, ge=1, description="Stills that wait or are being rendered.")
+    max_still_edge: int = Field(8192, ge=1, le=8192, description="Pixels of a still's longer side.")
+    max_still_pixels: int = Field(
+        2**25, ge=1, description="Pixels of a still in all; 33.5 million take 0.4 GB of linear colours."
+    )
+    max_live_pixels: int = Field(
+        2560 * 1440,
+        ge=1,
+        description="Pixels of a live frame; one asked for larger is rendered so large, with the same aspect ratio.",
+    )
+    max_uploads: int = Field(32, ge=1, description="Uploads of each kind, mesh or sky, that are kept.")
+    max_kept_bytes: ByteSize = Field(
+        ByteSize(2**30),
+        ge=1,
+        description="Memory of all kept uploads of a kind; the latest one is kept in any case.",
+    )
+    read_seconds: float = Field(60, gt=0, description="Time for reading one upload.")
+    max_mesh_triangles: int = Field(200_000, ge=1, description="Triangles of an uploaded mesh.")
+    max_shown_states: int = Field(
+        600,
+        ge=1,
+        description="Shown states of a session that can be rendered again; 600 are 10 s of motion at 60 frames/s.",
+    )
 
 
 def check_still_size(width: int, height: int, limits: Limits) -> None:
     """InputError if it is beyond the limits."""
     for field, pixels in (("width", width), ("height", height)):
-        if not 1 <= pixels <= limits.still_edge:
-            raise InputError(f"{field}: expected 1 to {limits.still_edge} pixels, got {pixels}", field)
-    if width * height > limits.still_pixels:
+        if not 1 <= pixels <= limits.max_still_edge:
+            raise InputError(f"{field}: expected 1 to {limits.max_still_edge} pixels, got {pixels}", field)
+    if width * height > limits.max_still_pixels:
         raise InputError(
-            f"width: expected at most {limits.still_pixels} pixels in all, got {width} x {height} = {width * height}",
+            f"width: expected at most {limits.max_still_pixels} pixels in all, "
+            f"got {width} x {height} = {width * height}",
             "width",
         )
 
 
 def live_size(width: int, height: int, limits: Limits) -> tuple[int, int]:
     """The size, scaled down to the limit if it is beyond; at least 1 x 1."""
-    scale = min(1.0, math.sqrt(limits.live_pixels / (width * height)))
+    scale = min(1.0, math.sqrt(limits.max_live_pixels / (width * height)))
     return max(1, int(width * scale)), max(1, int(height * scale))

@@ -137,7 +137,7 @@ class Requests:
         if request.session in pictures:  # opened twice at once
             return described(self._live(request.session))
         self._make_room()
-        history = self._limits.shown_states
+        history = self._limits.max_shown_states
         if snapshot is None:
             session = Session(request.session, scene, stone, sky=sky, history=history)
         else:
@@ -148,12 +148,12 @@ class Requests:
 
     def _make_room(self) -> None:
         pictures, now = self._painter.pictures, time.monotonic()
-        if len(pictures) < self._limits.sessions:
+        if len(pictures) < self._limits.max_sessions:
             return
         idle = [name for name, live in pictures.items() if not live.watched]
         oldest = min(idle, key=lambda name: self._touched[name], default=None)
-        if oldest is None or now - self._touched[oldest] < self._limits.idle_seconds:
-            raise BusyError(f"there are {self._limits.sessions} sessions already; close one, or try again later")
+        if oldest is None or now - self._touched[oldest] < self._limits.engine_idle_seconds:
+            raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
         self._close(oldest)
 
     def _close(self, session: str) -> dict[str, Any]:

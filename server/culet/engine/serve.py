@@ -90,13 +90,13 @@ class Engine:
         render_thread: ThreadPoolExecutor,
         encode: Callable[[Picture, str], bytes],
     ) -> None:
-        self._control = bind_control(context, control, limits.upload_bytes)
+        self._control = bind_control(context, control, limits.max_upload_bytes)
         self._frames = bind_frames(context, frames)
         self._peers = Peers(self._control)
         self._tasks: set[asyncio.Task[None]] = set()
         self._under_way: dict[tuple[bytes, bytes], asyncio.Task[None]] = {}
         """Requests that are not answered yet, by peer and number."""
-        stills = StillQueue(limits.stills)
+        stills = StillQueue(limits.max_stills)
         self._painter = Painter(
             renderer, render_thread, stills, send=self._send_frame, report=self._report_problem, encode_still=encode
         )

@@ -60,8 +60,8 @@ class UploadStore(Mapping[str, T]):
         kind = self._kind.name
         if not re.fullmatch(r"[A-Za-z0-9_-]{1,64}", name):
             raise InputError(f"{kind}: expected 1 to 64 letters, digits, - or _ as its id, got {name!r}", kind)
-        if len(data) > self._limits.upload_bytes:
-            raise TooLargeError(f"expected a {kind} of at most {self._limits.upload_bytes} bytes, got {len(data)}")
+        if len(data) > self._limits.max_upload_bytes:
+            raise TooLargeError(f"expected a {kind} of at most {self._limits.max_upload_bytes} bytes, got {len(data)}")
         if self._waiting >= WAITING:
             raise BusyError(f"{WAITING} uploads ({kind}) are waiting to be read")
         self._waiting += 1
@@ -72,18 +72,18 @@ class UploadStore(Mapping[str, T]):
             self._waiting -= 1
         self._kept[name] = read
         self._kept.move_to_end(name)
-        while len(self._kept) > self._limits.uploads or self._over_memory():
+        while len(self._kept) > self._limits.max_uploads or self._over_memory():
             self._kept.popitem(last=False)
         return {kind: name, **self._kind.describe(read.content)}
 
     def _over_memory(self) -> bool:
-        return len(self._kept) > 1 and sum(read.size for read in self._kept.values()) > self._limits.kept_bytes
+        return len(self._kept) > 1 and sum(read.size for read in self._kept.values()) > self._limits.max_kept_bytes
 
     async def _read(self, data: bytes, file_type: str) -> _Read[T]:
         """What the file holds, read by a process that can be ended, so that no frame waits for it."""
         kind, limits = self._kind, self._limits
         process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "culet.engine.upload_reader", kind.name, file_type, str(limits.mesh_triangles),
+            sys.executable, "-m", "culet.engine.upload_reader", kind.name, file_type, str(limits.max_mesh_triangles),
             stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
         )  # fmt: skip
         try:

@@ -14,7 +14,7 @@ from culet.gateway.problems import problem
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
-def may_enter(headers: Headers, allowed_origins: Collection[str]) -> bool:
+def may_enter(headers: Headers, allow_origin: Collection[str]) -> bool:
     """Whether a request comes from no page at all, from a page of this host, or from an allowed origin.
 
     Browsers open a WebSocket to any host, and send forms there, without asking: CORS covers neither.
@@ -22,7 +22,7 @@ def may_enter(headers: Headers, allowed_origins: Collection[str]) -> bool:
     origin = headers.get("origin")
     if origin is None:
         return True
-    return origin in allowed_origins or urlsplit(origin).netloc == headers.get("host")
+    return origin in allow_origin or urlsplit(origin).netloc == headers.get("host")
 
 
 class Admission:
@@ -32,10 +32,10 @@ class Admission:
     """
 
     def __init__(
-        self, app: ASGIApp, *, allowed_origins: Collection[str], max_body_bytes: int, own_limit: Collection[str]
+        self, app: ASGIApp, *, allow_origin: Collection[str], max_body_bytes: int, own_limit: Collection[str]
     ) -> None:
         self._app = app
-        self._allowed_origins = allowed_origins
+        self._allow_origin = allow_origin
         self._max_body_bytes = max_body_bytes
         self._own_limit = own_limit
 
@@ -44,7 +44,7 @@ class Admission:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        if scope["method"] not in SAFE_METHODS and not may_enter(headers, self._allowed_origins):
+        if scope["method"] not in SAFE_METHODS and not may_enter(headers, self._allow_origin):
             detail = f"pages of {headers['origin']} may not change anything here"
             await problem(403, "forbidden", detail)(scope, receive, send)
             return

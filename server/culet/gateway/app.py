@@ -60,7 +60,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
 
     app.add_middleware(
         Admission,
-        allowed_origins=settings.allowed_origins,
+        allow_origin=settings.allow_origin,
         max_body_bytes=settings.max_body_bytes,
         own_limit=upload_routes.PATHS,
     )

@@ -15,8 +15,9 @@ import uvicorn
 from culet.errors import InputError
 from culet.gateway.app import create_app
 from culet.gateway.client_address import read_proxies, trusted_hosts
-from culet.gateway.settings import MEBIBYTE, GatewaySettings
+from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
+from culet.settings import MEBIBYTE
 
 GRACEFUL_SHUTDOWN_SECONDS = 3
 """For answers under way at SIGTERM; containers are killed after 10 s."""
@@ -28,8 +29,9 @@ STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 class Listener:
     """Holds the address from its creation on, so that a taken port is known before anything is started."""
 
-    def __init__(self, settings: GatewaySettings, host: str, port: int) -> None:
-        proxies = trusted_hosts(read_proxies(settings.trusted_proxies))
+    def __init__(self, settings: GatewaySettings) -> None:
+        host, port = settings.host, settings.port
+        proxies = trusted_hosts(read_proxies(settings.trusted_proxy))
         family = socket.AF_INET6 if ":" in host else socket.AF_INET
         self._socket = socket.socket(family, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -2,41 +2,49 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
+
+from pydantic import ByteSize, Field
+
+from culet.settings import MEBIBYTE, Settings, Words
 
 BUILT_CLIENT = Path(__file__).parents[3] / "client" / "web" / "dist"
 """Where the web client's build lies in a checkout."""
 
-MEBIBYTE = 1 << 20
 
+class GatewaySettings(Settings):
+    """Endpoints of the engine, the address, and the gateway's limits."""
 
-@dataclass(frozen=True)
-class GatewaySettings:
-    """Endpoints of the engine, and the gateway's limits."""
-
-    control: str
-    """ZeroMQ endpoint of the engine's ROUTER."""
-    frames: str
-    """ZeroMQ endpoint of the engine's XPUB."""
-    web: Path = BUILT_CLIENT
-    """Folder of the built web client, served at `/`."""
-    allowed_origins: tuple[str, ...] = ()
-    """Origins besides the page's own that may open streams and change things, such as `https://gems.example`."""
-    trusted_proxies: tuple[str, ...] = ()
-    """Addresses or networks of proxies, whose X-Forwarded-For says which client a request comes from."""
-    max_sessions: int = 64
-    session_idle_seconds: float = 900
-    """A session that nobody watched or asked about for so long is forgotten."""
-    max_viewers: int = 32
-    """Of one session."""
-    max_body_bytes: int = MEBIBYTE
-    """Of a request body that is not an upload."""
-    max_upload_bytes: int = 64 * MEBIBYTE
-    """Of an uploaded file."""
-    max_kept_upload_bytes: int = 256 * MEBIBYTE
-    """Of all uploads kept to be given to an engine again; the oldest go first, but for those that sessions use."""
-    request_seconds: float = 10
-    """An engine that lives but does not answer a small request for so long is reported as unavailable."""
-    engine_silence_seconds: float = 3.5
-    """Without a heartbeat (one a second) for so long, the engine counts as down."""
+    control: str = Field(description="ZeroMQ endpoint of the engine's ROUTER.")
+    frames: str = Field(description="ZeroMQ endpoint of the engine's XPUB.")
+    host: str = Field("127.0.0.1", description="Address to listen on; 0.0.0.0 for every one.")
+    port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 for a free one.")
+    web: Path = Field(BUILT_CLIENT, description="Folder of the built web client, served at /.")
+    allow_origin: Words = Field(
+        (),
+        description="A further page that may open streams and change things, such as https://gems.example; repeatable.",
+    )
+    trusted_proxy: Words = Field(
+        (),
+        description="Address or network of a proxy, such as 172.16.0.0/12, whose X-Forwarded-For says which client a "
+        "request comes from; repeatable.",
+    )
+    session_idle_seconds: float = Field(
+        900, gt=0, description="A session that nobody watched or asked about for so long is forgotten."
+    )
+    max_viewers: int = Field(32, ge=1, description="Viewers of one session.")
+    max_body_bytes: ByteSize = Field(
+        ByteSize(MEBIBYTE), ge=1024, description="Size of a request's body that is not an upload."
+    )
+    max_kept_upload_bytes: ByteSize = Field(
+        ByteSize(256 * MEBIBYTE),
+        ge=1,
+        description="Size of all uploads that are kept to be given to an engine again; those that sessions do not use "
+        "go first, oldest first.",
+    )
+    request_seconds: float = Field(
+        10, gt=0, description="An engine that lives but does not answer a small request for so long is unavailable."
+    )
+    engine_silence_seconds: float = Field(
+        3.5, gt=1, description="Without a heartbeat (one a second) for so long, the engine counts as down."
+    )

@@ -49,7 +49,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     """Serve one viewer until it leaves."""
     offered: list[str] = websocket.scope["subprotocols"]
     await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in offered else None)
-    if not may_enter(websocket.headers, gateway.settings.allowed_origins):
+    if not may_enter(websocket.headers, gateway.settings.allow_origin):
         await websocket.close(
             CloseCode.FORBIDDEN_ORIGIN, f"pages of {websocket.headers['origin'][:60]} may not open streams here"
         )

@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from culet.errors import EngineUnavailableError
 
@@ -28,10 +28,10 @@ PR_SET_PDEATHSIG = 1
 """linux/prctl.h: the signal a process gets when its parent dies."""
 
 
-def engine_command(control: str, *frames: str) -> list[str]:
-    """The command line of an engine that binds these endpoints."""
+def engine_command(control: str, *frames: str, options: Iterable[str] = ()) -> list[str]:
+    """The command line of an engine that binds these endpoints; `options` are further words of it."""
     published = [word for endpoint in frames for word in ("--frames", endpoint)]
-    return [sys.executable, "-m", "culet", "engine", "--control", control, *published]
+    return [sys.executable, "-m", "culet", "engine", "--control", control, *published, *options]
 
 
 class Supervisor:

@@ -185,7 +185,7 @@ async def running_engine() -> AsyncIterator[tuple[EngineLink, int]]:
         control, frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
         command = [sys.executable, "-m", "culet", "engine", "--control", control, "--frames", frames]
         with subprocess.Popen(command) as process:  # noqa: ASYNC220, S603 - it is there before anything else happens
-            link = EngineLink(GatewaySettings(control, frames))
+            link = EngineLink(GatewaySettings(control=control, frames=frames))
             running = asyncio.create_task(link.run())
             try:
                 async with asyncio.timeout(START_SECONDS):

@@ -1,0 +1,91 @@
+"""Options of a command that are the fields of settings, so that a new field is an option without another word."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+import typer
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import ByteSize
+from pydantic.fields import FieldInfo
+
+from culet.settings import Settings, option, shown, variable
+
+Command = Callable[..., None]
+
+
+def options_of(**panels: type[Settings]) -> Callable[[Command], Command]:
+    """Give a command the options of settings, under these titles of its help.
+
+    The command gets those that its user gave as `given`, by field: `Settings.read` checks them and adds the
+    environment's. A field that several settings share is one option. Its own parameters keep their names.
+    """
+
+    def decorate(command: Command) -> Command:
+        signature = inspect.signature(command, eval_str=True)
+        own = {name: parameter for name, parameter in signature.parameters.items() if name != "given"}
+        generated: dict[str, inspect.Parameter] = {}
+        for title, settings in panels.items():
+            for name, parameter in _parameters(title, settings):
+                if name not in own:
+                    generated.setdefault(name, parameter)
+
+        @functools.wraps(command)
+        def run(**arguments: Any) -> None:  # noqa: ANN401 - typer gives what the signature below says
+            given = {name: arguments.pop(name) for name in generated}
+            command(**arguments, given={name: value for name, value in given.items() if value not in (None, [])})
+
+        parameters = [*own.values(), *generated.values()]
+        keyword_only = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in parameters]
+        vars(run)["__signature__"] = inspect.Signature(keyword_only)  # where inspect.signature looks first
+        run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+        return run
+
+    return decorate
+
+
+def _parameters(title: str, settings: type[Settings]) -> Iterator[tuple[str, inspect.Parameter]]:
+    for name, field in settings.model_fields.items():
+        if field.is_required():  # endpoints, which each command names by itself
+            continue
+        kind, metavar = _kind(field)
+        help_text = f"{field.description} ({variable(name)}; {_range(field)}default {shown(field.default)})"
+        names = [f"{option(name)}/--no-{option(name)[2:]}"] if kind == bool | None else [option(name)]
+        default = typer.Option(None, *names, metavar=metavar, help=help_text, show_default=False, rich_help_panel=title)
+        yield name, inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+
+
+def _kind(field: FieldInfo) -> tuple[Any, str | None]:
+    """What typer reads, and what the help calls it. Text, but for switches: pydantic reads it, as from a variable."""
+    annotation: Any = field.annotation
+    inner = [part for part in get_args(annotation) if part is not type(None)]
+    if get_origin(annotation) is Literal:
+        return str | None, "|".join(map(str, inner))
+    if get_origin(annotation) is tuple:
+        return list[str] | None, "TEXT"
+    if type(None) in get_args(annotation):
+        (annotation,) = inner
+    if annotation is bool:
+        return bool | None, None
+    metavars: dict[Any, str] = {int: "NUMBER", float: "NUMBER", ByteSize: "BYTES", Path: "PATH"}
+    return str | None, metavars.get(annotation, "TEXT")
+
+
+def _range(field: FieldInfo) -> str:
+    """In words: `at least 1, `."""
+    words = []
+    for bound in field.metadata:
+        match bound:
+            case Ge(ge=limit):
+                words.append(f"at least {limit}")
+            case Gt(gt=limit):
+                words.append(f"over {limit}")
+            case Le(le=limit):
+                words.append(f"at most {limit}")
+            case Lt(lt=limit):
+                words.append(f"under {limit}")
+    return " and ".join(words) + "; " if words else ""

@@ -1,0 +1,87 @@
+"""Every setting is an option and a variable, read by the same rules."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from command_line import culet
+from culet.engine.limits import Limits
+from culet.errors import InputError
+from culet.gateway.settings import GatewaySettings
+from culet.settings import Settings, option, variable
+
+ENDPOINTS = {"control": "ipc://unused", "frames": "ipc://unused"}
+
+
+@pytest.mark.parametrize(
+    ("command", "kinds"), [("serve", [GatewaySettings, Limits]), ("gateway", [GatewaySettings]), ("engine", [Limits])]
+)
+def test_the_help_of_a_command_lists_every_setting_with_its_variable(
+    command: str, kinds: list[type[Settings]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    words = re.findall(r"[\w-]+", culet(command, "--help").stdout)
+    fields = {name for kind in kinds for name, field in kind.model_fields.items() if not field.is_required()}
+    assert len(fields) > 10
+    assert [name for name in fields if option(name) not in words or variable(name) not in words] == []
+
+
+def test_every_setting_says_what_it_means() -> None:
+    for kind in (GatewaySettings, Limits):
+        assert [name for name, field in kind.model_fields.items() if not field.description] == []
+
+
+def test_an_option_counts_before_the_variable_and_the_variable_before_the_default(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert GatewaySettings.read({}, **ENDPOINTS).max_viewers == 32
+    monkeypatch.setenv("CULET_MAX_VIEWERS", "5")
+    assert GatewaySettings.read({}, **ENDPOINTS).max_viewers == 5
+    assert GatewaySettings.read({"max_viewers": "7"}, **ENDPOINTS).max_viewers == 7
+    monkeypatch.setenv("CULET_MAX_VIEWERS", "")
+    assert GatewaySettings.read({}, **ENDPOINTS).max_viewers == 32
+
+
+def test_sizes_have_units_and_lists_have_commas(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CULET_MAX_UPLOAD_BYTES", "1.5 MiB")
+    monkeypatch.setenv("CULET_ALLOW_ORIGIN", "https://a.example, https://b.example")
+    settings = GatewaySettings.read({}, **ENDPOINTS)
+    assert settings.max_upload_bytes == 3 << 19
+    assert settings.allow_origin == ("https://a.example", "https://b.example")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "wanted"),
+    [
+        ("max_stills", "0", "expected at least 1"),
+        ("max_stills", "many", "expected a whole number"),
+        ("read_seconds", "nan", "expected a finite number"),
+        ("max_upload_bytes", "3 furlongs", "expected a size such as 64MiB"),
+    ],
+)
+def test_a_bad_value_is_told_by_the_name_that_its_user_gave(
+    name: str, value: str, wanted: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(InputError) as by_option:
+        Limits.read({name: value})
+    assert str(by_option.value) == f"{option(name)}: {wanted}; got {value!r}"
+    monkeypatch.setenv(variable(name), value)
+    with pytest.raises(InputError) as by_variable:
+        Limits.read({})
+    assert str(by_variable.value) == f"{variable(name)}: {wanted}; got {value!r}"
+
+
+def test_a_bad_setting_of_the_engine_is_one_line_of_serve() -> None:
+    run = culet("serve", "--port", "0", "--max-stills", "-1")
+    assert (run.returncode, run.stderr) == (1, "culet: --max-stills: expected at least 1; got '-1'\n")
+
+
+def test_a_child_process_is_given_what_was_given() -> None:
+    given = {"max_sessions": "3", "allow_origin": ["https://a.example", "https://b.example"], "max_stills": "2"}
+    assert [*Limits.words(given)] == ["--max-sessions", "3", "--max-stills", "2"]
+    assert [*GatewaySettings.words(given)] == [
+        *("--max-sessions", "3"),
+        *("--allow-origin", "https://a.example", "--allow-origin", "https://b.example"),
+    ]
