@@ -12,8 +12,15 @@ from culet_protocol.frame import Frame, FrameError
 
 FRAMES_WAITING = 64
 """Frames that wait here when every one is wanted: two seconds at 30 frames/s."""
-HEARTBEAT_MS = 2000
-"""Between ZeroMQ's probes on tcp, so that an engine that vanished is reconnected to when it comes back."""
+KEEP_ALIVE = (
+    (zmq.TCP_KEEPALIVE, 1),
+    (zmq.TCP_KEEPALIVE_IDLE, 5),
+    (zmq.TCP_KEEPALIVE_INTVL, 5),
+    (zmq.TCP_KEEPALIVE_CNT, 3),
+)
+"""The kernel notices an engine's machine that vanished after 5 s of silence and three questions 5 s apart, so that it
+is reconnected to when it comes back. ZeroMQ's own heartbeats would do that too, but libzmq 4.3.5 ends the process where
+one runs out while frames wait at the high-water mark, that is, whenever the taker pauses for long."""
 
 
 class FrameSubscription:
@@ -34,9 +41,8 @@ class FrameSubscription:
             self._socket.setsockopt(zmq.CONFLATE, 1)
         else:
             self._socket.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
-        if endpoint.startswith("tcp:"):
-            self._socket.setsockopt(zmq.HEARTBEAT_IVL, HEARTBEAT_MS)
-            self._socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 2 * HEARTBEAT_MS)
+        for option, value in KEEP_ALIVE:
+            self._socket.setsockopt(option, value)
         self._socket.setsockopt(zmq.SUBSCRIBE, bytes.fromhex(session))
         try:
             self._socket.connect(endpoint)

@@ -121,8 +121,9 @@ class Engine:
     async def _take_requests(self) -> None:
         while True:
             peer, *parts = await self._control.recv_multipart()
-            self._peers.heard_from(peer)
-            if parts in ([], [b""]):  # ZMQ_PROBE_ROUTER: somebody connected
+            greeting = parts in ([], [b""])  # ZMQ_PROBE_ROUTER: somebody connected
+            self._peers.heard_from(peer, asks=not greeting)
+            if greeting:
                 await self._peers.send(peer, [protocol.REQUEST_NUMBER.pack(0), self._heartbeat()])
                 continue
             self._answer(peer, parts)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import zmq
 import zmq.asyncio
 
-from culet.endpoints import bind
+from culet.endpoints import bind, keep_alive
 from culet_protocol.engine import REQUEST_NUMBER
 
 log = logging.getLogger(__name__)
@@ -16,9 +16,7 @@ log = logging.getLogger(__name__)
 FRAMES_HIGH_WATER = 2
 """Frames that wait for one subscriber; further ones are dropped until it takes some."""
 PEERS = 64
-"""Gateways that are told things unasked; the one heard from longest ago is forgotten first."""
-HEARTBEAT_MS = 2000
-"""Between ZeroMQ's own probes on tcp, which find peers that vanished without a word."""
+"""Gateways that are told things unasked."""
 JSON_BYTES = 2**20
 
 
@@ -41,32 +39,39 @@ def bind_frames(context: zmq.asyncio.Context, endpoints: Sequence[str]) -> zmq.a
 
 def _bind(socket: zmq.asyncio.Socket, endpoints: Sequence[str], option: str) -> zmq.asyncio.Socket:
     socket.setsockopt(zmq.LINGER, 0)
-    if any(endpoint.startswith("tcp:") for endpoint in endpoints):
-        socket.setsockopt(zmq.HEARTBEAT_IVL, HEARTBEAT_MS)
-        socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 2 * HEARTBEAT_MS)
-        socket.setsockopt(zmq.HEARTBEAT_TTL, 3 * HEARTBEAT_MS)
+    keep_alive(socket)  # and not ZeroMQ's heartbeats, which can end a process: see gateway.link
     for endpoint in endpoints:
         bind(socket, endpoint, option)
     return socket
 
 
 class Peers:
-    """Who is on the other side of the ROUTER, the one heard from last at the end."""
+    """Who is on the other side of the ROUTER: those who asked something, and those who only connected."""
 
     def __init__(self, socket: zmq.asyncio.Socket) -> None:
         self._socket = socket
-        self._peers: dict[bytes, None] = {}
+        self._asking: dict[bytes, None] = {}
+        self._connected: dict[bytes, None] = {}
 
-    def heard_from(self, peer: bytes) -> None:
-        """Remember that it exists."""
-        self._peers.pop(peer, None)
-        self._peers[peer] = None
-        while len(self._peers) > PEERS:
-            del self._peers[next(iter(self._peers))]
+    def __bool__(self) -> bool:
+        return bool(self._asking or self._connected)
+
+    def heard_from(self, peer: bytes, *, asks: bool) -> None:
+        """Remember that it exists. Of each kind PEERS are told things unasked, so that whoever only connects can never
+        push out a gateway that works; the one heard from longest ago is forgotten first."""
+        if asks:
+            self._connected.pop(peer, None)
+        elif peer in self._asking:
+            return
+        kind = self._asking if asks else self._connected
+        kind.pop(peer, None)
+        kind[peer] = None
+        while len(kind) > PEERS:
+            del kind[next(iter(kind))]
 
     async def tell(self, message: bytes) -> None:
         """Send to every peer what nobody asked for."""
-        for peer in list(self._peers):
+        for peer in [*self._asking, *self._connected]:
             await self.send(peer, [REQUEST_NUMBER.pack(0), message])
 
     async def send(self, peer: bytes, parts: list[bytes]) -> None:
@@ -76,4 +81,5 @@ class Peers:
         except zmq.Again:
             log.warning("a peer takes no messages: dropped one of %d bytes", sum(map(len, parts)))
         except zmq.ZMQError:
-            self._peers.pop(peer, None)
+            self._asking.pop(peer, None)
+            self._connected.pop(peer, None)

@@ -1,4 +1,10 @@
-"""The gateway's side of ZeroMQ: requests to the engine and their replies, what it tells unasked, and frames."""
+"""The gateway's side of ZeroMQ: requests to the engine and their replies, what it tells unasked, and frames.
+
+No socket here has ZeroMQ's heartbeats. libzmq 4.3.5 ends the whole process ("Assertion failed: _input_stopped") where a
+heartbeat runs out while input stands still at a high-water mark, that is, while this process's loop is held up and
+messages keep coming. The engine's own heartbeats tell whether it lives, and the kernel's keep-alive whether its machine
+does.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +17,10 @@ from typing import Any
 
 import zmq
 import zmq.asyncio
+import zmq.utils.monitor
 from pydantic import ValidationError
 
+from culet.endpoints import keep_alive
 from culet.errors import BusyError, CuletError, EngineUnavailableError, InputError, NotFoundError, TooLargeError
 from culet.gateway.settings import GatewaySettings
 from culet_protocol.engine import (
@@ -31,8 +39,11 @@ log = logging.getLogger(__name__)
 
 FRAMES_WAITING = 16
 """Frames of all sessions in the pipe from the engine. It is emptied at once, into one slot a session."""
-TCP_HEARTBEAT_MS = 1000
-"""Between machines a vanished peer is noticed after three of these."""
+RECONNECT_MS = 50
+"""Between tries to connect to an engine that is being started again."""
+REOPEN_SECONDS = 5.0
+"""An engine that was silent for so long is connected to anew: it may have forgotten this gateway, and a gateway that is
+not greeted asks nothing."""
 
 _ERROR_OF_STATUS: dict[int, type[CuletError]] = {404: NotFoundError, 429: BusyError, 503: EngineUnavailableError}
 
@@ -62,28 +73,23 @@ class EngineLink:
         self._numbers = 0
         self._pending: dict[int, asyncio.Future[tuple[Reply, bytes]]] = {}
         self._greeting: asyncio.Task[None] | None = None
+        self._context: zmq.asyncio.Context
         self._control: zmq.asyncio.Socket | None = None
         self._frames: zmq.asyncio.Socket | None = None
 
     async def run(self) -> None:
         """Serve the sockets until cancelled."""
-        context = zmq.asyncio.Context()
-        control, frames = context.socket(zmq.DEALER), context.socket(zmq.SUB)
-        for socket in (control, frames):
-            socket.setsockopt(zmq.HEARTBEAT_IVL, TCP_HEARTBEAT_MS)
-            socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 3 * TCP_HEARTBEAT_MS)
-        # The probe makes this peer known to the engine. It is sent when a pipe is made; by IMMEDIATE that is at every
-        # connection, and nothing that was meant for an engine before waits in it.
-        control.setsockopt(zmq.PROBE_ROUTER, 1)
-        control.setsockopt(zmq.IMMEDIATE, 1)
-        frames.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
-        control.connect(self._settings.control)
-        frames.connect(self._settings.frames)
-        self._control, self._frames = control, frames
+        self._context = zmq.asyncio.Context()
         try:
+            frames = self._context.socket(zmq.SUB)
+            keep_alive(frames)
+            frames.setsockopt(zmq.RECONNECT_IVL, RECONNECT_MS)
+            frames.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
+            frames.connect(self._settings.frames)
+            self._frames = frames
             async with asyncio.TaskGroup() as tasks:
-                tasks.create_task(self._read_control(control))
                 tasks.create_task(self._read_frames(frames))
+                tasks.create_task(self._keep_control())
                 tasks.create_task(self._watch())
         finally:
             self._control = self._frames = None
@@ -91,7 +97,50 @@ class EngineLink:
             self._fail_pending("the gateway is stopping")
             if self._greeting:
                 self._greeting.cancel()
-            context.destroy(linger=0)
+            self._context.destroy(linger=0)
+
+    async def _keep_control(self) -> None:
+        """A control socket, and another one whenever the engine was silent for long."""
+        while True:
+            control = self._context.socket(zmq.DEALER)
+            control.setsockopt(zmq.LINGER, 0)
+            keep_alive(control)
+            control.setsockopt(zmq.RECONNECT_IVL, RECONNECT_MS)
+            # The probe makes this peer known to the engine. It is sent when a pipe is made; by IMMEDIATE that is at
+            # every connection, and nothing that was meant for an engine before waits in it.
+            control.setsockopt(zmq.PROBE_ROUTER, 1)
+            control.setsockopt(zmq.IMMEDIATE, 1)
+            monitor: zmq.asyncio.Socket = control.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+            control.connect(self._settings.control)
+            self._control, self._last_heard = control, asyncio.get_running_loop().time()
+            readers = [
+                asyncio.create_task(self._read_control(control)),
+                asyncio.create_task(self._notice_disconnections(monitor)),
+                asyncio.create_task(self._silence(REOPEN_SECONDS)),
+            ]
+            try:
+                done, _ = await asyncio.wait(readers, return_when=asyncio.FIRST_COMPLETED)
+                for reader in done:
+                    reader.result()
+            finally:
+                self._control = None
+                for reader in readers:
+                    reader.cancel()
+                await asyncio.gather(*readers, return_exceptions=True)
+                control.disable_monitor()
+                control.close(linger=0)
+
+    async def _silence(self, seconds: float) -> None:
+        """Return when nothing was heard from the engine for so long."""
+        loop = asyncio.get_running_loop()
+        while (left := self._last_heard + seconds - loop.time()) > 0:  # noqa: ASYNC110 - until a time that moves
+            await asyncio.sleep(left)
+
+    async def _notice_disconnections(self, monitor: zmq.asyncio.Socket) -> None:
+        """A process that ends closes its connections: that is known before its silence is."""
+        while True:
+            await zmq.utils.monitor.recv_monitor_message(monitor)
+            self.lose("the connection to the render process broke")
 
     async def request(
         self, message: Message, payload: bytes | None = None, *, patient: bool = False
