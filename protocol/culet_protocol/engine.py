@@ -83,7 +83,7 @@ class Render(Message):
 
 
 class PutMesh(Message):
-    """Parse the mesh in the bytes and keep it under an id; the reply describes it."""
+    """Parse the mesh in the bytes and keep it under an id; the reply is a DescribedMesh."""
 
     type: Literal["put_mesh"] = "put_mesh"
     file_type: MeshType
@@ -91,11 +91,39 @@ class PutMesh(Message):
 
 
 class PutSky(Message):
-    """Read the panorama in the bytes and keep it under an id; the reply describes it."""
+    """Read the panorama in the bytes and keep it under an id; the reply is a DescribedSky."""
 
     type: Literal["put_sky"] = "put_sky"
     file_type: SkyType
     sky: str
+
+
+class Described(Message):
+    """What the engine says of a file that it has read, a mesh or a sky."""
+
+    findings: tuple[str, ...]
+    """What was found in the file, repaired or left out, a sentence each, for whoever made the file."""
+
+
+class DescribedMesh(Described):
+    """A mesh in figures."""
+
+    vertices: int
+    triangles: int
+    facets: int
+    convex: bool
+    volume: float
+    """In cubes of the stone's circumradius."""
+
+
+class DescribedSky(Described):
+    """A sky in figures."""
+
+    width: int
+    """Pixels."""
+    height: int
+    """Pixels."""
+    largest_radiance: float
 
 
 class Cancel(Message):

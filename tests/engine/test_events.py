@@ -10,11 +10,15 @@ from culet.engine.assets import Assets
 from culet.engine.session import Session
 from culet.engine.snapshot import Snapshot
 from culet.errors import InputError, SceneError
+from culet.rendering.panoramas import SkyPicture
 from culet.scene import Scene
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent
 
-ASSETS = Assets({}, {"sunrise": np.full((4, 8, 3), 0.5, np.float32), "sunset": np.full((4, 8, 3), 0.25, np.float32)})
+SKIES = {
+    name: SkyPicture(np.full((4, 8, 3), grey, np.float32)) for name, grey in {"sunrise": 0.5, "sunset": 0.25}.items()
+}
+ASSETS = Assets({}, SKIES)
 
 
 def session(**scene: Any) -> Session:  # noqa: ANN401
@@ -142,7 +146,7 @@ def test_a_switched_sky_survives_in_another_engine() -> None:
 
 def test_a_patched_sky_brings_its_panorama_and_another_edit_keeps_it() -> None:
     subject = session(environment={"kind": "image", "image": "sunrise"})
-    sunrise, sunset = ASSETS.skies["sunrise"], ASSETS.skies["sunset"]
+    sunrise, sunset = ASSETS.skies["sunrise"].pixels, ASSETS.skies["sunset"].pixels
     assert subject.shown.panorama is sunrise
     after(subject, messages.PatchScene(patch={"environment": {"image": "sunset"}}))
     assert subject.shown.panorama is sunset

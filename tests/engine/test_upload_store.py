@@ -75,10 +75,10 @@ def png(width: int, height: int, colour: tuple[int, int, int]) -> bytes:
 async def test_a_sky_becomes_linear_radiance_and_is_described() -> None:
     store = UploadStore(SKY, Limits())
     told = await store.put("dusk", "png", png(8, 4, (255, 188, 0)))
-    assert told == {"sky": "dusk", "width": 8, "height": 4, "largest_radiance": 1.0, "findings": []}
-    assert store["dusk"].shape == (4, 8, 3)
+    assert told == {"width": 8, "height": 4, "largest_radiance": 1.0, "findings": []}
+    assert store["dusk"].pixels.shape == (4, 8, 3)
     # IEC 61966-2-1: 188 of 255 is ((188 / 255 + 0.055) / 1.055)^2.4 = 0.5029.
-    assert store["dusk"][0, 0] == pytest.approx([1, 0.5029, 0], abs=1e-4)
+    assert store["dusk"].pixels[0, 0] == pytest.approx([1, 0.5029, 0], abs=1e-4)
 
 
 async def test_a_sky_of_another_shape_or_without_light_is_taken_and_said_so() -> None:

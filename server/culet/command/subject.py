@@ -65,7 +65,7 @@ def _mesh(file: Path) -> Stone:
 
 def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
-    from culet.rendering.panoramas import findings, read_panorama
+    from culet.rendering.panoramas import read_sky
     from culet.scene.model import ImageEnvironment
 
     if file is None:
@@ -75,10 +75,10 @@ def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}", "sky") from error
     with _naming(file):
-        panorama = read_panorama(data, file.suffix.lower().lstrip("."))
-    _report(file, findings(panorama))
+        picture = read_sky(data, file.suffix.lower().lstrip("."))
+    _report(file, picture.findings)
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
-    return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), panorama
+    return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), picture.pixels
 
 
 def _report(file: Path, findings: Iterable[str]) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
-from culet.rendering.panoramas import Panorama, panorama_of
+from culet.rendering.panoramas import Panorama, SkyPicture, panorama_of
 from culet.scene import Environment, StoneSettings
 from culet.scene.model import ImageEnvironment
 
@@ -17,7 +17,7 @@ class Assets:
     """By the ids of the uploads."""
 
     meshes: Mapping[str, Stone]
-    skies: Mapping[str, Panorama]
+    skies: Mapping[str, SkyPicture]
 
     def stone(self, settings: StoneSettings) -> Stone:
         """The stone's shape, which may take a while to make; SceneError for an unknown id, MeshError for no shape."""

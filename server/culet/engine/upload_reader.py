@@ -16,14 +16,14 @@ MEMORY = 4 * 2**30
 
 
 def read(kind: str, data: bytes, file_type: str, max_triangles: int) -> object:
-    """The Stone of a mesh, the Panorama of a sky; InputError."""
+    """The Stone of a mesh, the SkyPicture of a sky; InputError."""
     if kind == "mesh":
         from culet.geometry.mesh import stone_from_mesh
 
         return stone_from_mesh(data, file_type, max_triangles=max_triangles)
-    from culet.rendering.panoramas import read_panorama
+    from culet.rendering.panoramas import read_sky
 
-    return read_panorama(data, file_type)
+    return read_sky(data, file_type)
 
 
 def main() -> None:

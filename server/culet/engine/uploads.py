@@ -9,17 +9,27 @@ import sys
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from culet.engine.limits import Limits
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.stone import Stone
-from culet.rendering.panoramas import Panorama, findings
+from culet.rendering.panoramas import SkyPicture
+from culet_protocol.engine import Described, DescribedMesh, DescribedSky
 
 WAITING = 8
 """Uploads of a kind that may wait to be read: each holds its bytes in memory."""
 
-T = TypeVar("T")
+
+class Read(Protocol):
+    """What was read of a file."""
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """What was found in the file, repaired or left out, a sentence each."""
+
+
+T = TypeVar("T", bound=Read)
 
 
 @dataclass(frozen=True)
@@ -30,7 +40,7 @@ class Kind(Generic[T]):
     """As upload_reader knows it."""
     error: type[InputError]
     """For a file that cannot be read at all."""
-    describe: Callable[[T], dict[str, Any]]
+    describe: Callable[[T], Described]
     """What an uploader is told."""
 
 
@@ -74,7 +84,7 @@ class UploadStore(Mapping[str, T]):
         self._kept.move_to_end(name)
         while len(self._kept) > self._limits.max_uploads or self._over_memory():
             self._kept.popitem(last=False)
-        return {kind: name, **self._kind.describe(read.content)}
+        return self._kind.describe(read.content).model_dump(mode="json")
 
     def _over_memory(self) -> bool:
         return len(self._kept) > 1 and sum(read.size for read in self._kept.values()) > self._limits.max_kept_bytes
@@ -113,27 +123,24 @@ class _Read(Generic[T]):
     """Bytes, as pickled: what it takes in memory, nearly."""
 
 
-def described_mesh(stone: Stone) -> dict[str, Any]:
+def described_mesh(stone: Stone) -> DescribedMesh:
     """A mesh in figures, and what was found in it."""
-    return {
-        "vertices": len(stone.vertices),
-        "triangles": len(stone.triangles),
-        "facets": len(stone.planes),
-        "convex": bool(stone.convex),
-        "volume": float(stone.mass.volume),
-        "findings": list(stone.findings),
-    }
+    return DescribedMesh(
+        vertices=len(stone.vertices),
+        triangles=len(stone.triangles),
+        facets=len(stone.planes),
+        convex=bool(stone.convex),
+        volume=float(stone.mass.volume),
+        findings=stone.findings,
+    )
 
 
-def described_sky(panorama: Panorama) -> dict[str, Any]:
+def described_sky(picture: SkyPicture) -> DescribedSky:
     """A sky in figures, and what was found in it."""
-    height, width, _ = panorama.shape
-    return {
-        "width": width,
-        "height": height,
-        "largest_radiance": float(panorama.max()),
-        "findings": findings(panorama),
-    }
+    height, width, _ = picture.pixels.shape
+    return DescribedSky(
+        width=width, height=height, largest_radiance=float(picture.pixels.max()), findings=picture.findings
+    )
 
 
 MESH = Kind("mesh", MeshError, described_mesh)

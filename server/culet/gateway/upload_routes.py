@@ -11,6 +11,7 @@ from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.uploads import MESH, SKY, Kind
 from culet.scene.model import Model
+from culet_protocol.engine import DescribedMesh, DescribedSky
 
 router = APIRouter(tags=["uploads"])
 
@@ -34,28 +35,37 @@ _FORM: dict[str, Any] = {
 }
 
 
-class UploadAnswer(Model):
-    """An accepted upload; `stones[0].mesh` or `environment.image` of a scene takes the id."""
+class MeshAnswer(Model):
+    """An accepted mesh; `stones[0].mesh` of a scene takes the id."""
 
     id: str
-    description: dict[str, Any]
+    description: DescribedMesh
+
+
+class SkyAnswer(Model):
+    """An accepted sky; `environment.image` of a scene takes the id."""
+
+    id: str
+    description: DescribedSky
 
 
 @router.post(MESHES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
-async def upload_mesh(request: Request, gateway: ThisGateway) -> UploadAnswer:
+async def upload_mesh(request: Request, gateway: ThisGateway) -> MeshAnswer:
     """Upload a mesh as the form field `file`: .obj, .off, .stl, .ply or .glb. The answer says what was found in it."""
-    return await _taken(MESH, request, gateway)
+    name, described = await _taken(MESH, request, gateway)
+    return MeshAnswer(id=name, description=DescribedMesh.model_validate(described))
 
 
 @router.post(SKIES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
-async def upload_sky(request: Request, gateway: ThisGateway) -> UploadAnswer:
-    """Upload an equirectangular picture of a sky as the form field `file`: .exr or .hdr (linear) or .png (sRGB)."""
-    return await _taken(SKY, request, gateway)
+async def upload_sky(request: Request, gateway: ThisGateway) -> SkyAnswer:
+    """Upload an equirectangular picture of a sky as the form field `file`: .exr or .hdr (linear) or .png (sRGB). The
+    answer says what was found in it."""
+    name, described = await _taken(SKY, request, gateway)
+    return SkyAnswer(id=name, description=DescribedSky.model_validate(described))
 
 
-async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> UploadAnswer:
+async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> tuple[str, dict[str, Any]]:
     limit = gateway.settings.max_upload_bytes
     body = await read_limited(request.stream(), limit)
     file = uploaded_file(body, request.headers.get("content-type"), limit)
-    name, description = await gateway.uploads.put(kind, file)
-    return UploadAnswer(id=name, description=description)
+    return await gateway.uploads.put(kind, file)

@@ -10,6 +10,7 @@ import io
 import re
 import tempfile
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -79,7 +80,7 @@ def _studio(name: str) -> Panorama:
     return STUDIO[name]()
 
 
-def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, Panorama]) -> Panorama:
+def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, SkyPicture]) -> Panorama:
     """The scene's panorama, or SceneError if there is none of that name."""
     if environment.image in STUDIO:
         return _studio(environment.image)
@@ -88,10 +89,19 @@ def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, Panorama]) 
             f"environment.image: expected {', '.join(STUDIO)} or the id of an upload, got {environment.image!r}",
             "environment.image",
         )
-    return uploads[environment.image]
+    return uploads[environment.image].pixels
 
 
-def read_panorama(data: bytes, file_type: str) -> Panorama:
+@dataclass(frozen=True, eq=False)
+class SkyPicture:
+    """What a file of a sky held."""
+
+    pixels: Panorama
+    findings: tuple[str, ...] = ()
+    """What was found in the file and what was done about it, a sentence each."""
+
+
+def read_sky(data: bytes, file_type: str) -> SkyPicture:
     """From an equirectangular .exr or .hdr (linear) or .png (sRGB) file; InputError says what is wrong with it."""
     readers = {"exr": _read_exr, "hdr": _read_hdr, "png": _read_png}
     if file_type not in readers:
@@ -104,11 +114,11 @@ def read_panorama(data: bytes, file_type: str) -> Panorama:
         raise InputError(f"expected a readable .{file_type} picture, got a damaged or another file", "file") from error
     if not np.isfinite(pixels).all() or (pixels < 0).any():
         raise InputError("expected a sky of finite radiance, not negative; got NaN, infinity or less than 0", "file")
-    return np.ascontiguousarray(pixels, np.float32)
+    panorama = np.ascontiguousarray(pixels, np.float32)
+    return SkyPicture(panorama, tuple(_findings(panorama)))
 
 
-def findings(panorama: Panorama) -> list[str]:
-    """What whoever made a panorama may not have meant."""
+def _findings(panorama: Panorama) -> list[str]:
     height, width, _ = panorama.shape
     found = []
     if width != 2 * height:
