@@ -170,6 +170,29 @@ async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gate
                 await serving
 
 
+@contextlib.asynccontextmanager
+async def gateway_alone(**limits: Any) -> AsyncIterator[Gateway]:  # noqa: ANN401
+    """A web server with these settings that has no engine."""
+    settings = GatewaySettings(control="ipc:///nowhere/control", frames="ipc:///nowhere/frames", port=0, **limits)
+    with Listener(settings) as listener:
+        serving = asyncio.create_task(listener.run())
+        try:
+            async with httpx.AsyncClient(base_url=listener.url, timeout=PATIENCE) as http:
+
+                async def answers() -> bool:
+                    try:
+                        return (await http.get("/healthz")).is_success
+                    except httpx.TransportError:
+                        return False
+
+                await eventually(answers)
+                yield Gateway(listener.url, http, listener.gateway)
+        finally:
+            listener.stop()
+            async with asyncio.timeout(PATIENCE):
+                await serving
+
+
 async def eventually(condition: Callable[[], Any]) -> None:
     """Until an awaitable condition is true."""
     async with asyncio.timeout(PATIENCE):

@@ -15,6 +15,7 @@ import uvicorn
 from culet.errors import InputError
 from culet.gateway.app import create_app
 from culet.gateway.client_address import read_proxies, trusted_hosts
+from culet.gateway.connections import Guard, GuardedConfig
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
 from culet.settings import MEBIBYTE
@@ -23,6 +24,9 @@ GRACEFUL_SHUTDOWN_SECONDS = 3
 """For answers under way at SIGTERM; containers are killed after 10 s."""
 MAX_WEBSOCKET_MESSAGE = MEBIBYTE
 """uvicorn closes the socket above this; below it, and above the control limit, the viewer gets a notice."""
+ACCEPTED_AT_ONCE = 64
+"""Connections that are accepted before those that make room for them are closed."""
+WAITING_TO_BE_ACCEPTED = 1024
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -31,9 +35,10 @@ class Listener:
 
     def __init__(self, settings: GatewaySettings) -> None:
         host, port = settings.host, settings.port
-        proxies = trusted_hosts(read_proxies(settings.trusted_proxy))
+        proxies = read_proxies(settings.trusted_proxy)
         family = socket.AF_INET6 if ":" in host else socket.AF_INET
-        self._socket = socket.socket(family, socket.SOCK_STREAM)
+        # By IPPROTO_TCP asyncio knows that TCP_NODELAY can be set: else an answer's head and body wait for each other.
+        self._socket = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind((host, port))
@@ -47,14 +52,16 @@ class Listener:
         app = create_app(settings)
         self.gateway: Gateway = app.state.gateway
         self._server = _Server(
-            uvicorn.Config(
+            GuardedConfig(
                 app,
+                Guard(settings, proxies),
                 lifespan="on",
                 log_level="warning",
-                ws="websockets-sansio",
                 ws_max_size=MAX_WEBSOCKET_MESSAGE,
                 ws_per_message_deflate=False,  # frames are compressed already
-                forwarded_allow_ips=proxies,
+                forwarded_allow_ips=trusted_hosts(proxies),
+                server_header=False,
+                backlog=ACCEPTED_AT_ONCE,
                 timeout_graceful_shutdown=GRACEFUL_SHUTDOWN_SECONDS,
             )
         )
@@ -64,11 +71,12 @@ class Listener:
         loop = asyncio.get_running_loop()
         for number in STOP_SIGNALS:
             loop.add_signal_handler(number, self.stop)
-        announcement = asyncio.create_task(self._announce())
+        companions = [asyncio.create_task(self._announce()), asyncio.create_task(self._server.config.guard.run())]
         try:
             await self._server.serve(sockets=[self._socket])
         finally:
-            announcement.cancel()
+            for task in companions:
+                task.cancel()
             for number in STOP_SIGNALS:
                 loop.remove_signal_handler(number)
 
@@ -91,6 +99,14 @@ class Listener:
 
 class _Server(uvicorn.Server):
     """uvicorn raises a caught signal again when it has stopped, which would end the process before its engine."""
+
+    config: GuardedConfig
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen; asyncio takes one number for what it accepts at once and for what may wait to be accepted."""
+        await super().startup(sockets)
+        for listening in sockets or ():
+            listening.listen(WAITING_TO_BE_ACCEPTED)
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:

@@ -29,6 +29,18 @@ class GatewaySettings(Settings):
         description="Address or network of a proxy, such as 172.16.0.0/12, whose X-Forwarded-For says which client a "
         "request comes from; repeatable.",
     )
+    max_connections: int = Field(
+        1000,
+        ge=16,
+        description="Connections that may be open at once; fewer if the limit of open files leaves room for fewer.",
+    )
+    max_connections_per_address: int = Field(
+        256, ge=8, description="Of those, from one address (behind a trusted proxy: requests at once and streams)."
+    )
+    head_seconds: float = Field(10, gt=0, description="Time for the head of a request to arrive.")
+    min_body_rate: float = Field(
+        1024, ge=0, description="Bytes a second that a request's body, or the reading of an answer, must make."
+    )
     session_idle_seconds: float = Field(
         900, gt=0, description="A session that nobody watched or asked about for so long is forgotten."
     )

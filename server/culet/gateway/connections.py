@@ -1,0 +1,302 @@
+"""Connections: how many there may be, of all and of each address, and what each owes its server.
+
+A head has so many seconds, a body and the reading of an answer must make progress. Where there is no room for one more,
+the connection that has kept the server waiting longest goes, of the address that holds most: what half-sent requests
+hold is always there for the next visitor. Requests that are being answered, and streams, are never ended for that.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import resource
+from collections import Counter
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from enum import Enum, auto
+from ipaddress import ip_address
+from typing import Any
+
+import h11
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+from culet.gateway.client_address import Network, client_at
+from culet.gateway.problems import problem
+from culet.gateway.settings import GatewaySettings
+
+log = logging.getLogger(__name__)
+
+LOOK_SECONDS = 0.5
+"""Between looks at what connections owe."""
+PROGRESS_SECONDS = 10.0
+"""A body, or the reading of an answer, must have made its progress within each span of so long."""
+LINGER_SECONDS = 5.0
+"""After an answer that did not wait for the whole body: for the rest of the body, so that the answer is read."""
+RESERVED_FILES = 288
+"""File descriptors that are not for connections: ZeroMQ's, the page's files, logs, and connections just accepted."""
+FEWEST_CONNECTIONS = 16
+
+
+class Phase(Enum):
+    """What a connection is waiting for."""
+
+    HEAD = auto()
+    """For a request: nothing has come, or a part of its head."""
+    BODY = auto()
+    """For the rest of a request's body."""
+    LINGER = auto()
+    """For the rest of a body whose request is answered already."""
+    ANSWER = auto()
+    """For the application, or for the client to read the answer."""
+    STREAM = auto()
+    """For nothing: it is a WebSocket, which looks after itself."""
+
+
+WAITING = (Phase.HEAD, Phase.BODY, Phase.LINGER)
+"""The server waits for the client."""
+
+
+@dataclass(eq=False)
+class Connection:
+    """One connection, as the guard knows it."""
+
+    protocol: GuardedHttp
+    address: str | None
+    """The client; None for a trusted proxy, whose connections are many clients'."""
+    since: float
+    """When its phase began."""
+    phase: Phase = Phase.HEAD
+    looked: float = 0.0
+    """When its progress was looked at last."""
+    received: int = 0
+    """Bytes since then."""
+    unread: int = 0
+    """Bytes of the answer that the client had not taken then."""
+    partial: bool = False
+    """Whether something of a head has come."""
+
+    def enter(self, phase: Phase, now: float) -> None:
+        """The phase that it is in now."""
+        if phase is not self.phase:
+            self.phase = phase
+            self.since = self.looked = now
+            self.received = self.unread = 0
+
+
+class Guard:
+    """All connections of one server."""
+
+    def __init__(self, settings: GatewaySettings, proxies: Collection[Network]) -> None:
+        self.head_seconds = settings.head_seconds
+        self.min_bytes = settings.min_body_rate * PROGRESS_SECONDS
+        self.limit = connection_limit(settings.max_connections)
+        self.limit_of_address = settings.max_connections_per_address
+        self.refused = 0
+        """Connections that were ended for others or for owing too long."""
+        self._proxies = proxies
+        self._connections: dict[asyncio.BaseTransport, Connection] = {}
+        self._of_address: Counter[str | None] = Counter()
+
+    def __len__(self) -> int:
+        return len(self._connections)
+
+    def admit(self, protocol: GuardedHttp, host: str | None, now: float) -> Connection | None:
+        """A new connection, or None if there is no room for it, not even by ending others."""
+        address = None if self._is_proxy(host) else client_at(host)
+        if address is not None and self._of_address[address] >= self.limit_of_address:
+            if not self._make_room(address):
+                return None
+        elif len(self) >= self.limit and not self._make_room():
+            return None
+        connection = Connection(protocol, address, now, looked=now)
+        self._connections[protocol.transport] = connection
+        self._of_address[address] += 1
+        return connection
+
+    def forget(self, transport: asyncio.BaseTransport) -> None:
+        """A connection is gone."""
+        connection = self._connections.pop(transport, None)
+        if connection is not None:
+            self._of_address[connection.address] -= 1
+            if not self._of_address[connection.address]:
+                del self._of_address[connection.address]
+
+    async def run(self) -> None:
+        """Look after the connections until cancelled."""
+        loop = asyncio.get_running_loop()
+        while True:
+            await asyncio.sleep(LOOK_SECONDS)
+            now = loop.time()
+            for connection in list(self._connections.values()):
+                self._look(connection, now)
+
+    def _look(self, connection: Connection, now: float) -> None:
+        protocol, waited = connection.protocol, now - connection.since
+        if connection.phase is Phase.ANSWER:  # nothing tells when the client has read it
+            protocol.tell()
+        match connection.phase:
+            case Phase.HEAD if waited > self.head_seconds:
+                if connection.partial:
+                    self._end(connection, f"expected a request's head within {self.head_seconds:g} s")
+                else:
+                    self._end(connection)
+            case Phase.LINGER if waited > LINGER_SECONDS:
+                self._end(connection)
+            case Phase.BODY if protocol.flow.read_paused:  # the client may not send
+                connection.looked, connection.received = now, 0
+            case Phase.BODY if now - connection.looked > PROGRESS_SECONDS:
+                if connection.received < self.min_bytes:
+                    rate = self.min_bytes / PROGRESS_SECONDS
+                    self._end(connection, f"expected at least {rate:g} bytes of the body a second")
+                connection.looked, connection.received = now, 0
+            case Phase.ANSWER if now - connection.looked > PROGRESS_SECONDS:
+                unread = protocol.transport.get_write_buffer_size()
+                if connection.unread and unread > connection.unread - self.min_bytes:
+                    self._end(connection)
+                connection.looked, connection.unread = now, unread
+            case _:
+                pass
+
+    def _make_room(self, address: str | None = None) -> bool:
+        """End the connection that has kept the server waiting longest, of an address or else of the one with most."""
+        waiting = [each for each in self._connections.values() if each.phase in WAITING]
+        if address is not None:
+            waiting = [each for each in waiting if each.address == address]
+        else:
+            waiting = self._largest_group(waiting)
+        if not waiting:
+            return False
+        self._end(min(waiting, key=lambda each: each.since))
+        return True
+
+    def _largest_group(self, connections: Iterable[Connection]) -> list[Connection]:
+        groups: dict[str | None, list[Connection]] = {}
+        for connection in connections:
+            groups.setdefault(connection.address, []).append(connection)
+        return max(groups.values(), key=len, default=[])
+
+    def _end(self, connection: Connection, why: str | None = None) -> None:
+        self.refused += 1
+        log.info("ended a connection of %s: %s", connection.address or "a proxy", why or "others need its place")
+        self.forget(connection.protocol.transport)
+        if why is None:
+            connection.protocol.transport.abort()
+        else:
+            connection.protocol.refuse(408, "request timeout", why)
+
+    def _is_proxy(self, host: str | None) -> bool:
+        try:
+            address = ip_address((host or "").partition("%")[0])
+        except ValueError:
+            return False
+        mapped = getattr(address, "ipv4_mapped", None)
+        return any((mapped or address) in network for network in self._proxies)
+
+
+def connection_limit(wanted: int) -> int:
+    """How many connections there may be: those wanted, as far as the limit of open files, raised if need be, goes."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    needed = wanted + RESERVED_FILES
+    if soft != resource.RLIM_INFINITY and soft < needed:
+        soft = needed if hard == resource.RLIM_INFINITY else min(needed, hard)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+        if soft < needed:
+            log.warning("the limit of open files, %d, leaves room for %d connections", soft, soft - RESERVED_FILES)
+            return max(FEWEST_CONNECTIONS, soft - RESERVED_FILES)
+    return wanted
+
+
+class GuardedConfig(uvicorn.Config):
+    """uvicorn's configuration with the guard, which its protocols are made with."""
+
+    def __init__(self, app: Any, guard: Guard, **options: Any) -> None:  # noqa: ANN401 - as uvicorn's own
+        super().__init__(app, http=GuardedHttp, ws=GuardedStream, **options)
+        self.guard = guard
+
+
+class GuardedHttp(H11Protocol):
+    """uvicorn's HTTP/1.1, which tells the guard what it waits for."""
+
+    config: GuardedConfig
+    cycle: RequestResponseCycle | None  # type: ignore[assignment]  # there is none before the first request
+    connection: Connection | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn's
+        """Let it in, or close it at once."""
+        super().connection_made(transport)
+        self.connection = self.config.guard.admit(self, self.client[0] if self.client else None, self.loop.time())
+        if self.connection is None:
+            self.refuse(503, "at the limit", "this server has as many connections as it takes; try again later")
+
+    def data_received(self, data: bytes) -> None:
+        """Bytes of a request."""
+        if self.connection is None:
+            return
+        self.connection.received += len(data)
+        if self.connection.phase is Phase.HEAD and not self.connection.partial:
+            self.connection.partial, self.connection.since = True, self.loop.time()
+        super().data_received(data)
+        self.tell()
+
+    def on_response_complete(self) -> None:
+        """The answer is with the transport."""
+        super().on_response_complete()
+        self.tell()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """It is gone."""
+        self.config.guard.forget(self.transport)
+        super().connection_lost(exc)
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        """It becomes a stream."""
+        if self.connection is not None:
+            self.connection.enter(Phase.STREAM, self.loop.time())
+        super().handle_websocket_upgrade(event)
+
+    def send_400_response(self, msg: str) -> None:
+        """For what is not HTTP."""
+        self.refuse(400, "bad request", "expected an HTTP/1.1 request")
+
+    def refuse(self, status: int, title: str, detail: str) -> None:
+        """Answer by a problem document, unless an answer has begun, and close."""
+        if self.cycle is not None and not self.cycle.response_complete:
+            self.cycle.disconnected = True
+            self.cycle.message_event.set()
+        if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
+            answer = problem(status, title, detail)
+            headers = [*answer.raw_headers, (b"connection", b"close")]
+            for event in (h11.Response(status_code=status, headers=headers), h11.Data(data=bytes(answer.body))):
+                self.transport.write(self.conn.send(event) or b"")
+            self.transport.write(self.conn.send(h11.EndOfMessage()) or b"")
+        self.transport.close()
+        self.loop.call_later(LINGER_SECONDS, self.transport.abort)  # if the client does not read even that
+
+    def tell(self) -> None:
+        """Tell the guard in which phase the connection is."""
+        if self.connection is None or self.connection.phase is Phase.STREAM:
+            return
+        answered = self.cycle is None or self.cycle.response_complete
+        their_state = self.conn.their_state
+        if their_state is h11.SEND_BODY:
+            phase = Phase.LINGER if answered else Phase.BODY
+        elif their_state is h11.IDLE and answered and not self.transport.get_write_buffer_size():
+            phase = Phase.HEAD
+            if self.connection.phase is not Phase.HEAD:
+                self.connection.partial = bool(self.conn.trailing_data[0])
+        else:
+            phase = Phase.ANSWER
+        self.connection.enter(phase, self.loop.time())
+
+
+class GuardedStream(WebSocketsSansIOProtocol):
+    """uvicorn's WebSocket, which the guard counts too."""
+
+    config: GuardedConfig
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """It is gone."""
+        self.config.guard.forget(self.transport)
+        super().connection_lost(exc)

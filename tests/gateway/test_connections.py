@@ -1,0 +1,177 @@
+"""What connections owe, and who makes room when there are too many, on real sockets."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import resource
+import socket
+from collections.abc import AsyncIterator, Iterator
+
+import httpx
+import pytest
+
+from culet.errors import NotFoundError
+from culet.gateway import connections
+from culet.gateway.connections import RESERVED_FILES, connection_limit
+from culet.gateway.sessions import Sessions
+from gateway.running import PATIENCE, Gateway, eventually, gateway_alone
+
+HALF_AN_UPGRADE = b"GET /api/sessions/x/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
+HALF_A_HEAD = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nX: "
+HALF_A_BODY = b"POST /api/sessions HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99\r\n\r\n{"
+
+
+class Peer:
+    """A client that says what it likes."""
+
+    def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self.reader, self.writer = reader, writer
+
+    async def rest(self) -> bytes:
+        """All that comes until the server closes."""
+        async with asyncio.timeout(PATIENCE):
+            try:
+                return await self.reader.read()
+            except ConnectionResetError:
+                return b""
+
+    @property
+    def open(self) -> bool:
+        return not self.reader.at_eof() and self.reader.exception() is None
+
+
+@contextlib.asynccontextmanager
+async def peers(gateway: Gateway, said: bytes, count: int = 1) -> AsyncIterator[list[Peer]]:
+    """Connections on which that was said."""
+    url = httpx.URL(gateway.url)
+    made: list[Peer] = []
+    try:
+        for _ in range(count):
+            made.append(Peer(*await asyncio.open_connection(url.host, url.port)))
+            made[-1].writer.write(said)
+        yield made
+    finally:
+        for peer in made:
+            peer.writer.close()
+
+
+@pytest.fixture
+def quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Times that a test can wait for."""
+    monkeypatch.setattr(connections, "LOOK_SECONDS", 0.02)
+    monkeypatch.setattr(connections, "PROGRESS_SECONDS", 0.2)
+    monkeypatch.setattr(connections, "LINGER_SECONDS", 0.2)
+
+
+@pytest.mark.usefixtures("quick_looks")
+@pytest.mark.parametrize(
+    ("said", "answer"),
+    [
+        (b"", b""),
+        (HALF_A_HEAD, b"HTTP/1.1 408 "),
+        (HALF_AN_UPGRADE, b"HTTP/1.1 408 "),
+        (HALF_A_BODY, b"HTTP/1.1 408 "),
+    ],
+    ids=["nothing", "half a head", "half an upgrade", "half a body"],
+)  # fmt: skip
+async def test_what_is_not_sent_in_time_is_not_waited_for(said: bytes, answer: bytes) -> None:
+    async with gateway_alone(head_seconds=0.2) as gateway, peers(gateway, said) as (peer,):
+        assert (await peer.rest()).startswith(answer)
+
+
+@pytest.mark.usefixtures("quick_looks")
+async def test_a_slow_body_that_makes_progress_is_waited_for() -> None:
+    body = b'{"preset": "no such"}'
+    typed = HALF_A_BODY.replace(b"\r\n\r\n{", b"\r\nContent-Type: application/json\r\n\r\n")
+    head = typed.replace(b"99", str(len(body)).encode()) + body[:1]
+    async with gateway_alone(head_seconds=0.2, min_body_rate=1) as gateway, peers(gateway, head) as (peer,):
+        for byte in body[1:]:
+            await asyncio.sleep(0.05)
+            peer.writer.write(bytes([byte]))
+        async with asyncio.timeout(PATIENCE):
+            assert b" 404 " in await peer.reader.readline()
+
+
+@pytest.mark.usefixtures("quick_looks")
+async def test_the_rest_of_a_body_that_was_refused_is_read_only_for_a_while() -> None:
+    head = HALF_A_BODY.replace(b"99", b"99999999")
+    async with gateway_alone() as gateway, peers(gateway, head) as (peer,):
+        assert (await peer.rest()).startswith(b"HTTP/1.1 413 ")
+
+
+async def test_half_sent_requests_leave_room_for_the_next_visitor_from_the_same_address() -> None:
+    async with (
+        gateway_alone(max_connections_per_address=16) as gateway,
+        peers(gateway, HALF_A_HEAD, 20) as heads,
+        peers(gateway, HALF_A_BODY, 20) as bodies,
+    ):
+        async with httpx.AsyncClient(base_url=gateway.url, timeout=PATIENCE) as visitor:
+            assert (await visitor.get("/healthz")).status_code == 200
+
+        async def few() -> bool:
+            return sum(peer.open for peer in heads + bodies) <= 16
+
+        await eventually(few)
+        assert not any(peer.open for peer in heads), "the oldest go first"
+
+
+async def test_what_is_being_answered_is_not_ended_for_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    finished, begun = asyncio.Event(), 0
+
+    async def work(*_: object) -> None:
+        nonlocal begun
+        begun += 1
+        await finished.wait()
+        raise NotFoundError("nothing")
+
+    monkeypatch.setattr(Sessions, "get", lambda *_: None)
+    monkeypatch.setattr(Sessions, "describe", work)
+    request = b"GET /api/sessions/x HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
+    async with (
+        gateway_alone(max_connections_per_address=8) as gateway,
+        peers(gateway, HALF_A_HEAD, 3),
+        peers(gateway, request, 8) as waiting,
+    ):
+
+        async def all_begun() -> bool:
+            return begun == 8
+
+        await eventually(all_begun)
+        async with peers(gateway, request) as (late,):
+            assert (await late.rest()).startswith(b"HTTP/1.1 503 ")
+        finished.set()
+        assert [(await peer.rest())[:13] for peer in waiting] == [b"HTTP/1.1 404 "] * 8
+
+
+@contextlib.contextmanager
+def open_files(soft: int) -> Iterator[None]:
+    """With another limit."""
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+def test_connections_never_take_the_last_open_file() -> None:
+    hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    with open_files(512):
+        assert connection_limit(1000) == min(1000, hard - RESERVED_FILES)
+        assert resource.getrlimit(resource.RLIMIT_NOFILE)[0] >= connection_limit(1000) + RESERVED_FILES
+
+
+async def test_an_answer_is_sent_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without TCP_NODELAY the body waits for the acknowledgement of the head."""
+    made: list[int] = []
+    real = connections.GuardedHttp.connection_made
+
+    def noted(self: connections.GuardedHttp, transport: asyncio.Transport) -> None:
+        made.append(transport.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+        real(self, transport)
+
+    monkeypatch.setattr(connections.GuardedHttp, "connection_made", noted)
+    async with gateway_alone():
+        assert made
+        assert all(made)
