@@ -13,18 +13,17 @@ WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
-.PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate bench study compose-test opencl browser node
+.PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate soak bench study compose-test opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(WEB_BUILD)
-	@echo "Ready. make serve | test | check | validate | bench | study | compose-test"
+	@echo "Ready. make serve | test | check | validate | soak | bench | study | compose-test"
 
 serve: opencl $(WEB_BUILD)
 	@exec $(BIN)/culet serve $(ARGS)
 
 test: $(DONE)/dev opencl browser $(WEB_BUILD)
-	$(BIN)/pytest -m "not validation" $(ARGS)
-	cd $(WEB) && npm test
+	.ci/test $(ARGS)
 
 # Each in its own target, so that `make -k check` finds all there is to find.
 check: check-python check-kernels check-protocol check-web
@@ -53,7 +52,11 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 
 # pytest ends with 5 if it has found no test.
 validate: $(DONE)/validation opencl
-	$(BIN)/pytest -m validation $(ARGS) || [ $$? -eq 5 ]
+	$(BIN)/pytest -m "validation and not soak" $(ARGS) || [ $$? -eq 5 ]
+
+# What is long by nature, and bounded: load, chaos, whole searches. Not part of .ci/run.
+soak: $(DONE)/dev opencl
+	$(BIN)/pytest -m soak $(ARGS)
 
 bench: opencl
 	$(BIN)/culet bench --against tests/benchmarks/baseline.jsonl $(ARGS)

@@ -1,4 +1,4 @@
-"""What tests of all parts share: the default stone; device and renderers, so that programs are compiled once."""
+"""What tests of all parts share: the default stone, device and renderers; and what a worker takes at once."""
 
 from __future__ import annotations
 
@@ -15,6 +15,23 @@ from culet.rendering.renderer import Renderer
 from culet.scene.model import StoneSettings
 
 RendererOf = Callable[[int, type[np.floating[Any]]], Renderer]
+
+LONG_FIRST = ("tests/e2e/", "tests/rendering/", "tests/study/", "tests/test_cli.py", "tests/engine/", "tests/gateway/")
+"""What takes long is handed out first, by what its name begins with, so that the workers end together."""
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """In a worker, what takes long comes first."""
+    if hasattr(config, "workerinput"):
+        items.sort(key=lambda item: next((n for n, name in enumerate(LONG_FIRST) if item.nodeid.startswith(name)), 99))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> object:  # noqa: ANN401 - xdist has no types
+    """For all of `pytest --numprocesses`."""
+    from work_units import ByFile
+
+    return ByFile(config, log)
 
 
 @pytest.fixture(scope="session")

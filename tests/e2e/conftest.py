@@ -1,7 +1,7 @@
-"""A real browser before the real server: for each module a Chromium and a `culet serve`, for each test new pages.
+"""A real browser before the real server: one Chromium and one `culet serve` for this folder, for each test new pages.
 
-Per module, and not once for all: the browser's event loop occupies the main thread while it is open, where the
-asynchronous tests of other folders need theirs.
+For the folder, and not for a whole run: the browser's event loop occupies the main thread while it is open, where the
+asynchronous tests of other folders need theirs. `tests/conftest.py` hands the folder to one worker as a whole.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs, urlsplit
 
 import pytest
 from playwright.sync_api import Browser, sync_playwright
@@ -56,14 +57,14 @@ def built_client() -> None:
     subprocess.run(["npm", "run", "build"], cwd=WEB, env=environment, check=True)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def server(built_client: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """`culet serve`, ready."""
     with Server(tmp_path_factory.mktemp("serve")) as running:
         yield running
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Chromium without a network: it can resolve no name, and reach nothing but this machine."""
     executable = os.environ.get("CULET_CHROMIUM") or shutil.which("chromium")
@@ -85,8 +86,11 @@ def view_of(browser: Browser, server: Server) -> Iterator[ViewOf]:
         return views[-1]
 
     yield new_view
+    sessions = {session for view in views for session in parse_qs(urlsplit(view.page.url).query).get("session", [])}
     for view in views:
         view.page.context.close()
+    for session in sessions:  # a server takes so many, and this one serves the whole folder
+        server.http.delete(f"/api/sessions/{session}")
     for view in views:
         assert view.complaints == []
         assert view.foreign == []

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
+
+import pytest
 
 from e2e.server import Server
 from e2e.view import View, difference
@@ -11,6 +14,13 @@ from e2e.view import View, difference
 SNAPSHOT_AGE = 2.0
 """Seconds of the fall that may be lost: the engine tells where a moving stone is once a second."""
 STOPPED = "The render process stopped"
+
+
+@pytest.fixture(scope="module")
+def server(built_client: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A `culet serve` of this module's own, since its engine is killed."""
+    with Server(tmp_path_factory.mktemp("serve")) as running:
+        yield running
 
 
 def kill_the_engine(view: View, server: Server) -> None:

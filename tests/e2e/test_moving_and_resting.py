@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import pytest
+
 from e2e.conftest import SMALL
 from e2e.server import Server
 from e2e.view import View
+
+pytestmark = pytest.mark.timed
 
 MOVING_STATUS = " \u00b7 ".join(
     (

@@ -161,6 +161,7 @@ async def test_without_its_engine_the_gateway_says_so(served: Served) -> None:
     assert served.engine() == engine, "an engine that only paused is not replaced"
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches(
     served: Served, number: signal.Signals
