@@ -31,7 +31,7 @@ def test_a_viewer_that_joins_has_the_latest_frame_at_once(sessions: Sessions) ->
 def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_is_down(sessions: Sessions) -> None:
     session = Session("ab" * 16, {"floor": {}})
     viewer = sessions.join(session)
-    notices = [viewer.next_notice() for _ in range(4)]
+    notices = [viewer.next_notice(0) for _ in range(4)]
     assert notices == [State(scene={"floor": {}}, falling=False), Viewers(count=1), Engine(status="down"), None]
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from culet.gateway.credit import IN_FLIGHT_SECONDS, WINDOW
-from culet.gateway.viewer import NOTICES_WAITING, SETTLING_SECONDS, Viewer
+from culet.gateway.credit import WINDOW
+from culet.gateway.viewer import NOTICES_WAITING, SETTLING_SECONDS, STATE_SECONDS, Standing, Viewer
 from culet_protocol.frame import Codec, Flags, Frame
-from culet_protocol.messages import Pong, State, Viewers
+from culet_protocol.messages import Engine, Pong, Problem, State, Viewers
 
 
 def offer(viewer: Viewer, sequence: int) -> bytes:
@@ -33,7 +33,7 @@ def test_frames_that_come_without_credit_are_skipped_and_the_last_is_never_lost(
     for sequence in range(WINDOW + 1, 20):
         last = offer(viewer, sequence)
         assert viewer.next_frame(0) is None
-    assert viewer.sleep_until() == IN_FLIGHT_SECONDS
+    assert viewer.next_frame(3600) is None, "credit does not come back with time"
     viewer.acknowledge(WINDOW, 0.1)
     assert viewer.next_frame(0.1) == last
 
@@ -43,7 +43,6 @@ def test_a_hidden_viewer_gets_the_latest_when_it_is_shown() -> None:
     viewer.show(False, 0)
     message = offer(viewer, 1)
     assert viewer.next_frame(0) is None
-    assert viewer.sleep_until() is None
     viewer.show(True, 0)
     assert viewer.next_frame(0) == message
 
@@ -66,20 +65,66 @@ def test_after_a_restart_of_the_engine_the_same_number_is_another_frame() -> Non
     assert viewer.next_frame(0) == message
 
 
-def test_of_waiting_states_only_the_latest_is_told() -> None:
+def test_restarts_of_the_engine_put_no_more_frames_in_flight() -> None:
     viewer = Viewer(1, now=0)
-    viewer.tell(State(scene={"old": 1}, falling=False))
-    viewer.tell(Viewers(count=2))
-    viewer.tell(State(scene={"new": 1}, falling=True))
-    assert viewer.next_notice() == Viewers(count=2)
-    assert viewer.next_notice() == State(scene={"new": 1}, falling=True)
-    assert viewer.next_notice() is None
+    sent = 0
+    for _ in range(10):
+        viewer.restart()
+        for sequence in range(1, WINDOW + 1):
+            offer(viewer, sequence)
+            sent += viewer.next_frame(0) is not None
+    assert sent == WINDOW
+
+
+def test_of_what_only_the_latest_matters_of_only_the_latest_waits() -> None:
+    viewer = Viewer(1, now=0)
+    refused = Problem(code="malformed", message="the same")
+    for number in range(1000):
+        viewer.tell(State(scene={"version": number}, falling=False))
+        viewer.tell(Viewers(count=number))
+        viewer.tell(Engine(status="down" if number % 2 else "up"))
+        viewer.tell(refused)
+    told = [viewer.next_notice(0) for _ in range(5)]
+    assert told == [
+        State(scene={"version": 999}, falling=False),
+        Viewers(count=999),
+        Engine(status="down"),
+        refused,
+        None,
+    ]
+    assert viewer.standing is Standing.ATTENDING
+
+
+def test_states_are_told_at_a_rate_that_eyes_follow_and_the_last_is_told() -> None:
+    viewer = Viewer(1, now=0)
+    told: list[State] = []
+    for number in range(1001):  # 1 s of a thousand edits
+        viewer.tell(State(scene={"version": number}, falling=False))
+        notice = viewer.next_notice(number / 1000)
+        told += [notice] if isinstance(notice, State) else []
+    assert 1 / STATE_SECONDS - 1 <= len(told) <= 1 / STATE_SECONDS + 1
+    due = viewer.sleep_until()
+    if told[-1].scene != {"version": 1000}:
+        assert due is not None
+        assert viewer.next_notice(due) == State(scene={"version": 1000}, falling=False)
+    assert viewer.sleep_until() is None
+
+
+def test_a_state_that_has_to_wait_holds_up_nothing_else() -> None:
+    viewer = Viewer(1, now=0)
+    viewer.tell(State(scene={}, falling=False))
+    assert viewer.next_notice(0) == State(scene={}, falling=False)
+    viewer.tell(State(scene={}, falling=True))
+    viewer.tell(Pong(time=1))
+    assert viewer.next_notice(0) == Pong(time=1)
+    assert viewer.next_notice(0) is None
+    assert viewer.next_notice(STATE_SECONDS) == State(scene={}, falling=True)
 
 
 def test_a_viewer_that_leaves_its_notices_unread_is_noticed() -> None:
     viewer = Viewer(1, now=0)
     for number in range(NOTICES_WAITING):
         viewer.tell(Pong(time=number))
-    assert not viewer.overrun
+    before = viewer.standing
     viewer.tell(Pong(time=0))
-    assert viewer.overrun
+    assert (before, viewer.standing) == (Standing.ATTENDING, Standing.OVERRUN)

@@ -16,10 +16,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from culet import __version__
 from culet.gateway import catalogue, health, problems, session_routes, stills, upload_routes
 from culet.gateway.admission import Admission
+from culet.gateway.allowance import Allowance
+from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Counters, Gateway
+from culet.gateway.still_places import StillPlaces
 from culet.gateway.uploads import Uploads
 
 log = logging.getLogger(__name__)
@@ -64,6 +67,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         max_body_bytes=settings.max_body_bytes,
         own_limit=upload_routes.PATHS,
     )
+    app.add_middleware(Allowance, clients=app.state.gateway.clients)
     app.add_middleware(_CountAnswers, counters=app.state.gateway.counters)
     return app
 
@@ -93,7 +97,15 @@ def _log_failure(task: asyncio.Task[None]) -> None:
 def _gateway(settings: GatewaySettings) -> Gateway:
     link = EngineLink(settings)
     uploads = Uploads(link, settings.max_kept_upload_bytes)
-    return Gateway(settings, link, uploads, Sessions(settings, link, uploads), Counters())
+    return Gateway(
+        settings,
+        link,
+        uploads,
+        Sessions(settings, link, uploads),
+        ClientBuckets(settings.client_messages_per_second),
+        StillPlaces(settings.max_client_stills),
+        Counters(),
+    )
 
 
 class _CountAnswers:

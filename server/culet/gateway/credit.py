@@ -1,4 +1,9 @@
-"""How much of the stream a viewer can take: a window of frames in flight, and the rate that comes of it."""
+"""How much of the stream a viewer can take: a window of frames in flight, and the rate that comes of it.
+
+Credit comes back with an acknowledgement and in no other way. A WebSocket loses nothing: a frame that is not
+acknowledged still lies in the connection or before a page that is busy, and another one would lie behind it. With the
+connection goes the `Credit`.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +11,16 @@ from collections import deque
 
 WINDOW = 2
 """Frames in flight: one on its way while one is decoded and shown."""
-IN_FLIGHT_SECONDS = 2.0
-"""A frame not acknowledged for so long gives its credit back: a lost acknowledgement must not end the stream."""
 FULL_RATE = 60.0
 """Frames per second that a viewer who is never short of credit is said to take."""
 RATE_WINDOW_SECONDS = 1.0
 HEADROOM = 1.5
 """A viewer short of credit is offered so much more than it took, so that it can be seen to recover."""
+LEAST_RATE = 1.0
+"""Frames per second that are made for a viewer on the slowest link: the next that goes out is at most so old."""
+STALLED_SECONDS = 30.0
+"""Nothing is rendered for a viewer that has acknowledged nothing for so long. At 10 kB/s a frame of 960 x 540 takes
+6 s, a page that was stopped for ever."""
 
 
 class Credit:
@@ -25,8 +33,6 @@ class Credit:
 
     def available(self, now: float) -> bool:
         """Whether a frame may be sent. Asked only when there is one: `no` is remembered as being short of credit."""
-        while self._in_flight and now - self._in_flight[0][1] >= IN_FLIGHT_SECONDS:
-            self._in_flight.popleft()
         if len(self._in_flight) < WINDOW:
             return True
         self._last_short = now
@@ -43,18 +49,16 @@ class Credit:
                 pass
             self._acknowledged.append(now)
 
-    def clear(self) -> None:
-        """Forget what is in flight: its numbers start anew."""
-        self._in_flight.clear()
-
-    def returns_at(self) -> float | None:
-        """When the oldest frame in flight gives its credit back by itself."""
-        return self._in_flight[0][1] + IN_FLIGHT_SECONDS if self._in_flight else None
+    def stalled(self, now: float) -> bool:
+        """Whether the viewer owes an acknowledgement for longer than any link takes."""
+        return bool(self._in_flight) and now - self._in_flight[0][1] >= STALLED_SECONDS
 
     def rate(self, now: float) -> float:
         """Frames per second that this viewer can take."""
         while self._acknowledged and now - self._acknowledged[0] > RATE_WINDOW_SECONDS:
             self._acknowledged.popleft()
+        if self.stalled(now):
+            return 0.0
         if now - self._last_short > RATE_WINDOW_SECONDS:
             return FULL_RATE
-        return min(FULL_RATE, max(1.0, HEADROOM * len(self._acknowledged) / RATE_WINDOW_SECONDS))
+        return min(FULL_RATE, max(LEAST_RATE, HEADROOM * len(self._acknowledged) / RATE_WINDOW_SECONDS))

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Body, Query, Request, Response, WebSocket
 from pydantic import Field, model_validator
 
 from culet.gateway import stream as streaming
+from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers, check_numbers, finite
@@ -62,17 +63,20 @@ class FrameQuery(Model):
 
 @router.post("/api/sessions", status_code=201, responses=answers(404, 413, 422, 429, 503))
 async def create_session(
-    gateway: ThisGateway, response: Response, request: Annotated[SessionRequest | None, Body()] = None
+    http: Request,
+    gateway: ThisGateway,
+    response: Response,
+    request: Annotated[SessionRequest | None, Body()] = None,
 ) -> SessionAnswer:
     """Make a session."""
     request = request or SessionRequest()
     scene = request.scene or (preset(request.preset) if request.preset is not None else Scene())
-    session = await gateway.sessions.open(scene.model_dump(mode="json"))
+    session = await gateway.sessions.open(scene.model_dump(mode="json"), client_of(http.scope))
     response.headers["Location"] = f"/api/sessions/{session.id}"
     return _answer(session)
 
 
-@router.get("/api/sessions/{session_id}", responses=answers(404, 503))
+@router.get("/api/sessions/{session_id}", responses=answers(404, 429, 503))
 async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
     """A session as it is now."""
     session = gateway.sessions.get(session_id)
@@ -80,7 +84,7 @@ async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
     return _answer(session)
 
 
-@router.patch("/api/sessions/{session_id}", responses=answers(404, 413, 422, 503))
+@router.patch("/api/sessions/{session_id}", responses=answers(404, 413, 422, 429, 503))
 async def patch_session(
     session_id: str,
     patch: Annotated[dict[str, Any], Body(examples=[{"floor": {"kind": "matte"}}])],
@@ -93,12 +97,13 @@ async def patch_session(
     """
     finite(patch)
     session = gateway.sessions.get(session_id)
-    await gateway.sessions.apply(session, PatchScene(patch=patch))
+    async with session.room:
+        await gateway.sessions.apply(session, PatchScene(patch=patch))
     await gateway.sessions.describe(session)
     return _answer(session)
 
 
-@router.post("/api/sessions/{session_id}/events", responses=answers(404, 413, 422, 503))
+@router.post("/api/sessions/{session_id}/events", responses=answers(404, 413, 422, 429, 503))
 async def post_event(
     session_id: str,
     event: Annotated[SessionEvent, Body(discriminator="type", examples=[{"type": "toggle_fall"}])],
@@ -107,12 +112,13 @@ async def post_event(
     """Do to a session what a viewer can do by its stream: let the stone fall, push it, turn the camera, and so on."""
     check_numbers(event)
     session = gateway.sessions.get(session_id)
-    await gateway.sessions.apply(session, event)
+    async with session.room:
+        await gateway.sessions.apply(session, event)
     await gateway.sessions.describe(session)
     return _answer(session)
 
 
-@router.delete("/api/sessions/{session_id}", status_code=204, responses=answers(404, 503))
+@router.delete("/api/sessions/{session_id}", status_code=204, responses=answers(404, 429, 503))
 async def delete_session(session_id: str, gateway: ThisGateway) -> None:
     """Forget a session; its viewers are told."""
     await gateway.sessions.close(gateway.sessions.get(session_id))
@@ -147,8 +153,18 @@ async def _frame(
     http: Request, session_id: str, query: FrameQuery, gateway: Gateway, file_format: Literal["tga", "png"]
 ) -> Response:
     session = gateway.sessions.get(session_id)
-    message = Render(session=session.id, step=query.step, width=query.width, height=query.height, format=file_format)
-    result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
+    client = client_of(http.scope)
+    message = Render(
+        session=session.id,
+        step=query.step,
+        width=query.width,
+        height=query.height,
+        format=file_format,
+        client=client,
+    )
+    with gateway.stills.place(client):
+        result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
+    session.watched = True
     kind = "attachment" if file_format == "tga" else "inline"  # no browser shows a TGA
     disposition = f'{kind}; filename="culet-{result["step"]}.{file_format}"'
     return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})

@@ -8,9 +8,12 @@ import itertools
 import logging
 import secrets
 import time
+from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 from culet.errors import BusyError, CuletError, NotFoundError
+from culet.gateway.client_address import UNKNOWN
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
@@ -18,7 +21,7 @@ from culet.gateway.viewer import DEFAULT_SIZE, Viewer
 from culet_protocol import engine as to_engine
 from culet_protocol.engine import SessionProblem, SessionState
 from culet_protocol.frame import Frame
-from culet_protocol.messages import BALANCED, Engine, Message, Problem, SessionEvent, State, Viewers
+from culet_protocol.messages import BALANCED, Engine, Message, Notice, Problem, SessionEvent, State, Viewers
 
 log = logging.getLogger(__name__)
 
@@ -26,13 +29,25 @@ TICK_SECONDS = 0.25
 """Between looks at what viewers can take, and at sessions that nobody uses."""
 RATE_CHANGE = 0.2
 """A demand that changes by a smaller part is not worth a message."""
+DEMAND_SECONDS = 0.05
+"""Between two demands of a session: each size is another picture, and a window is not dragged faster than one sees."""
+UNTOLD = (-1.0, *DEFAULT_SIZE)
+"""A demand unlike any, for an engine that may not have heard the last one."""
+EVENTS_UNDER_WAY = 8
+"""Events of one session that the engine has not answered; more wait with who sent them."""
+RELOAD_SECONDS = 10.0
+"""A session that was watched so shortly ago makes no room for others: its page is being loaded anew."""
+UNUSED_SECONDS = 60.0
+"""A session that was left alone for so long makes room for another one of the client that opened it."""
 
 
 class Session:
     """One session; its truth is in the engine, this is the last that was heard of it."""
 
-    def __init__(self, session: str, scene: dict[str, Any]) -> None:
+    def __init__(self, session: str, scene: dict[str, Any], owner: str = UNKNOWN) -> None:
         self.id = session
+        self.owner = owner
+        """The client that opened it."""
         self.topic = bytes.fromhex(session)
         self.scene = scene
         self.falling = self.asleep = False
@@ -41,8 +56,18 @@ class Session:
         self.viewers: list[Viewer] = []
         self.latest: tuple[Frame, bytes] | None = None
         self.used = time.monotonic()
+        self.watched = False
+        """Whether anybody ever watched it, or had a picture of it."""
+        self.viewer_left = -float("inf")
+        self.viewers_told = 0
+        """How many of them the viewers were last told of."""
         self.subscribed = False
         self.demand: tuple[float, int, int] = (0.0, *DEFAULT_SIZE)
+        """What the engine was last told."""
+        self.demanding: asyncio.Task[None] | None = None
+        """Tells the engine, one demand after the other."""
+        self.room = asyncio.Semaphore(EVENTS_UNDER_WAY)
+        """Held for each event until the engine has answered."""
 
     def state(self) -> State:
         """The notice for viewers."""
@@ -54,7 +79,7 @@ class Session:
             pinned=self.pinned,
         )
 
-    def tell(self, notice: Message) -> None:
+    def tell(self, notice: Notice) -> None:
         """Tell every viewer."""
         for viewer in self.viewers:
             viewer.tell(notice)
@@ -100,18 +125,43 @@ class Sessions:
         found.used = time.monotonic()
         return found
 
-    async def open(self, scene: dict[str, Any]) -> Session:
-        """A new session in the engine; BusyError at the limit."""
-        if len(self._sessions) >= self._settings.max_sessions:
-            raise BusyError(f"there are {len(self._sessions)} sessions, which is the limit")
-        session = Session(secrets.token_hex(16), scene)
-        self._sessions[session.id] = session  # before the engine tells its state
+    async def open(self, scene: dict[str, Any], client: str = UNKNOWN) -> Session:
+        """A new session in the engine; BusyError at the client's limit, or that of all."""
+        session = Session(secrets.token_hex(16), scene, client)
+        self._sessions[session.id] = session  # before the engine tells its state, and before others count
         try:
+            await self._make_room(session)
             await self._uploads.request(to_engine.OpenSession(session=session.id, scene=scene))
         except BaseException:
             self._sessions.pop(session.id, None)
             raise
         return session
+
+    async def _make_room(self, new: Session) -> None:
+        """Close what others need less than the new session is needed, until all are within the limits; BusyError."""
+        while (held := self._of(new.owner)) and len(held) > self._settings.max_client_sessions:
+            unused = time.monotonic() - UNUSED_SECONDS
+            if not await self._close_one([one for one in held if one is not new and one.used < unused]):
+                raise BusyError(f"{new.owner} has {len(held) - 1} sessions open, which is the limit for one client")
+        while len(self._sessions) > self._settings.max_sessions:
+            owners = Counter(session.owner for session in self._sessions.values())
+            richest, most = owners.most_common(1)[0]
+            if most <= owners[new.owner] or not await self._close_one(self._of(richest)):
+                raise BusyError(f"there are {len(self._sessions) - 1} sessions, which is the limit")
+
+    def _of(self, client: str) -> list[Session]:
+        return [session for session in self._sessions.values() if session.owner == client]
+
+    async def _close_one(self, sessions: Sequence[Session]) -> bool:
+        """Close the session that is missed least, those never watched first; False if all are being watched."""
+        for session in sorted(sessions, key=lambda session: (session.watched, session.used)):
+            if session.viewers or time.monotonic() - session.viewer_left < RELOAD_SECONDS:
+                continue
+            if await self._watched_elsewhere(session) or session.viewers:
+                continue
+            await self.close(session, "others needed room; open a new session")
+            return True
+        return False
 
     async def close(self, session: Session, why: str = "the session was deleted") -> None:
         """Forget a session here and in the engine; its viewers are told."""
@@ -135,68 +185,109 @@ class Sessions:
         session.scene = described.get("scene", session.scene)
         return described
 
-    def join(self, session: Session) -> Viewer:
+    def join(self, session: Session, client: str = UNKNOWN) -> Viewer:
         """A new viewer, told who it is and what it sees; BusyError at the limit."""
-        if len(session.viewers) >= self._settings.max_viewers:
+        limit, strangers = self._settings.max_viewers, sum(one.client != session.owner for one in session.viewers)
+        kept = client != session.owner and strangers >= max(1, limit - 1)
+        if kept or len(session.viewers) >= limit:
             raise BusyError(f"{len(session.viewers)} viewers watch this session, which is the limit")
-        viewer = Viewer(next(self._viewer_numbers), time.monotonic())
+        viewer = Viewer(next(self._viewer_numbers), time.monotonic(), client)
         session.viewers.append(viewer)
+        session.watched = True
         viewer.tell(session.state())
-        session.tell(Viewers(count=len(session.viewers)))
+        viewer.tell(Viewers(count=len(session.viewers)))  # the others are told of many that come and go at once
         if not self._link.ready.is_set():
             viewer.tell(Engine(status="down"))
         if session.latest:
             viewer.offer(*session.latest)
         return viewer
 
-    async def leave(self, session: Session, viewer: Viewer) -> None:
+    def leave(self, session: Session, viewer: Viewer) -> None:
         """A viewer is gone."""
         session.viewers.remove(viewer)
-        session.used = time.monotonic()
-        session.tell(Viewers(count=len(session.viewers)))
-        await self.update_demand(session)
+        session.used = session.viewer_left = time.monotonic()
+        self.update_demand(session)
 
-    async def update_demand(self, session: Session) -> None:
-        """Tell the engine what the viewers can take, if that has changed, and listen to its frames or not."""
+    def update_demand(self, session: Session) -> None:
+        """Listen to the session's frames or not, and have the engine told what the viewers can take if it changed."""
         if session.id not in self._sessions or not self._link.ready.is_set():
             return
-        rate, width, height = session.wanted(time.monotonic())
-        if (rate > 0) != session.subscribed:
-            session.subscribed = rate > 0
-            (self._link.subscribe if session.subscribed else self._link.unsubscribe)(session.topic)
+        watched = session.wanted(time.monotonic())[0] > 0
+        if watched and not session.subscribed:
+            self._link.subscribe(session.topic)
+        elif session.subscribed and not watched:
+            self._link.unsubscribe(session.topic)
+        session.subscribed = watched
+        if session.demanding is None or session.demanding.done():
+            session.demanding = asyncio.create_task(self._tell_demand(session))
+
+    async def _tell_demand(self, session: Session) -> None:
+        """Until nothing has changed: while one demand is under way only the latest of those after it counts."""
+        while (demand := self._new_demand(session)) is not None:
+            session.demand = demand
+            rate, width, height = demand
+            try:
+                await self._link.request(
+                    to_engine.Demand(session=session.id, frames_per_second=rate, width=width, height=height)
+                )
+            except CuletError as error:
+                log.warning("demand of a session was refused: %s", error)
+                session.demand = UNTOLD
+                return  # the next tick tries again
+            await asyncio.sleep(DEMAND_SECONDS)
+
+    def _new_demand(self, session: Session) -> tuple[float, int, int] | None:
+        """What the engine should be told, if it is worth a message."""
+        if session.id not in self._sessions or not self._link.ready.is_set():
+            return None
+        demand = rate, *size = session.wanted(time.monotonic())
         told_rate, *told_size = session.demand
         close = (rate > 0) == (told_rate > 0) and abs(rate - told_rate) <= RATE_CHANGE * told_rate
-        if close and [width, height] == told_size:
-            return
-        session.demand = (rate, width, height)
-        try:
-            await self._link.request(
-                to_engine.Demand(session=session.id, frames_per_second=rate, width=width, height=height)
-            )
-        except CuletError as error:
-            log.warning("demand of a session was refused: %s", error)
+        return None if close and size == told_size else demand
 
     async def run(self) -> None:
         """Follow what viewers can take, and forget sessions that nobody uses, until cancelled."""
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._follow_viewers())
+            tasks.create_task(self._forget_unused())
+
+    async def _follow_viewers(self) -> None:
         while True:
             await asyncio.sleep(TICK_SECONDS)
-            now = time.monotonic()
-            for session in list(self._sessions.values()):
+            for session in self._sessions.values():
                 if session.viewers:
-                    session.used = now
-                    await self.update_demand(session)
-                elif now - session.used > self._settings.session_idle_seconds and self._link.ready.is_set():
+                    session.used = time.monotonic()
+                    self.update_demand(session)
+                if session.viewers_told != len(session.viewers):
+                    session.viewers_told = len(session.viewers)
+                    session.tell(Viewers(count=session.viewers_told))
+
+    async def _forget_unused(self) -> None:
+        while True:
+            await asyncio.sleep(TICK_SECONDS)
+            for session in list(self._sessions.values()):
+                limit = self._settings.session_idle_seconds
+                if not session.watched:
+                    limit = min(limit, self._settings.unwatched_session_seconds)
+                unused = not session.viewers and time.monotonic() - session.used > limit
+                if unused and self._link.ready.is_set():
                     with contextlib.suppress(CuletError):
                         await self._expire(session)
 
     async def _expire(self, session: Session) -> None:
-        """Close a session, unless somebody watches it straight from the engine."""
+        """Close a session, unless somebody watches it straight from the engine, or has come meanwhile."""
         session.used = time.monotonic()  # looked at again only after a while, should it stay
-        with contextlib.suppress(NotFoundError):
+        if not await self._watched_elsewhere(session) and not session.viewers:
+            await self.close(session, "nobody used the session")
+
+    async def _watched_elsewhere(self, session: Session) -> bool:
+        """Whether somebody watches the session straight from the engine."""
+        try:
             described, _ = await self._link.request(to_engine.GetSession(session=session.id))
-            if described["watched"]:
-                return
-        await self.close(session, "nobody used the session")
+        except NotFoundError:
+            return False
+        session.watched = session.watched or described["watched"]
+        return bool(described["watched"])
 
     async def _ask(self, session: Session, message: Message) -> dict[str, Any]:
         """A request about a session; one that the engine does not know, because it is new, is opened there first."""
@@ -258,4 +349,4 @@ class Sessions:
             to_engine.OpenSession(session=session.id, scene=session.scene, snapshot=session.snapshot)
         )
         session.demand = (0.0, *DEFAULT_SIZE)
-        await self.update_demand(session)
+        self.update_demand(session)

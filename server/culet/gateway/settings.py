@@ -44,7 +44,31 @@ class GatewaySettings(Settings):
     session_idle_seconds: float = Field(
         900, gt=0, description="A session that nobody watched or asked about for so long is forgotten."
     )
-    max_viewers: int = Field(32, ge=1, description="Viewers of one session.")
+    unwatched_session_seconds: float = Field(
+        60, gt=0, description="A session that nobody ever watched is forgotten when nobody asked about it for so long."
+    )
+    max_client_sessions: int = Field(
+        32,
+        ge=1,
+        description="Sessions that one client (an address, or the /64 of an IPv6 one) may have open. A client that has "
+        "fewer than others gets room by those of theirs that nobody watches.",
+    )
+    max_viewers: int = Field(
+        32, ge=1, description="Viewers of one session; one place is kept for the client that opened the session."
+    )
+    max_client_stills: int = Field(4, ge=1, description="Stills of one client that wait or are being rendered.")
+    viewer_messages_per_second: float = Field(
+        300,
+        gt=0,
+        description="Messages that one viewer may send, of up to 1 KiB each; more wait in its connection. "
+        "Twice as many may come at once.",
+    )
+    client_messages_per_second: float = Field(
+        1200,
+        gt=0,
+        description="The same for all viewers of one client together; a request to /api counts as 10, a new session "
+        "as 40, and too many of these get 429.",
+    )
     max_body_bytes: ByteSize = Field(
         ByteSize(MEBIBYTE), ge=1024, description="Size of a request's body that is not an upload."
     )

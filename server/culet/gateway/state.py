@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.still_places import StillPlaces
 from culet.gateway.uploads import Uploads
 
 
@@ -34,4 +36,7 @@ class Gateway:
     link: EngineLink
     uploads: Uploads
     sessions: Sessions
+    clients: ClientBuckets
+    """What each client may still ask for."""
+    stills: StillPlaces
     counters: Counters

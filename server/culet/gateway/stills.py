@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field
 
+from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
@@ -101,6 +102,8 @@ async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> 
 async def _picture(
     http: Request, gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format
 ) -> Response:
-    message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format)
-    _, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+    client = client_of(http.scope)
+    message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format, client=client)
+    with gateway.stills.place(client):
+        _, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
     return Response(data, media_type=MEDIA_TYPES[file_format])

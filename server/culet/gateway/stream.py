@@ -11,16 +11,19 @@ import contextlib
 import logging
 import time
 from collections.abc import Coroutine
+from typing import assert_never
 
 from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
 from culet.errors import BusyError, CuletError, InputError, NotFoundError
 from culet.gateway.admission import may_enter
+from culet.gateway.bucket import Bucket
+from culet.gateway.client_address import client_of
 from culet.gateway.problems import check_numbers
 from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
-from culet.gateway.viewer import Viewer
+from culet.gateway.viewer import Standing, Viewer
 from culet.scene.model import scene_error
 from culet_protocol import SUBPROTOCOL, VERSION
 from culet_protocol.close import CloseCode
@@ -32,6 +35,7 @@ from culet_protocol.messages import (
     Problem,
     Resize,
     SessionEvent,
+    ViewerEvent,
     Visibility,
     control_event,
 )
@@ -39,10 +43,11 @@ from culet_protocol.messages import (
 log = logging.getLogger(__name__)
 
 MAX_CONTROL_BYTES = 64 * 1024
-SEND_SECONDS = 5.0
-"""A viewer that lets nothing through for so long is gone. A send that was given up may leave half a frame: close."""
-EVENTS_UNDER_WAY = 32
-"""Events of one viewer that the engine has not answered; more wait in the socket."""
+SEND_SECONDS = 30.0
+"""For one message, the largest of which takes 17 s at 30 kB/s. A viewer that takes longer is gone: a send that was
+given up may leave half a frame, so the stream is closed."""
+BYTES_PER_COST = 1024
+"""So many bytes of a message cost as much as a message: both are what reading one takes, some 30 us."""
 
 
 async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> None:
@@ -59,7 +64,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
         return
     try:
         session = gateway.sessions.get(session_id)
-        viewer = gateway.sessions.join(session)
+        viewer = gateway.sessions.join(session, client_of(websocket.scope))
     except NotFoundError:
         await websocket.close(CloseCode.UNKNOWN_SESSION, "no such session; it may have expired")
         return
@@ -73,7 +78,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     except (WebSocketDisconnect, RuntimeError):  # starlette raises either for a send after the viewer left
         pass
     finally:
-        await gateway.sessions.leave(session, viewer)
+        gateway.sessions.leave(session, viewer)
 
 
 class _Stream:
@@ -84,7 +89,9 @@ class _Stream:
         self._gateway = gateway
         self._session = session
         self._viewer = viewer
-        self._room = asyncio.Semaphore(EVENTS_UNDER_WAY)
+        self._messages = Bucket(gateway.settings.viewer_messages_per_second)
+        """What the viewer may still say."""
+        self._client = gateway.clients.of(viewer.client, time.monotonic())
         self._under_way: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:
@@ -108,18 +115,22 @@ class _Stream:
                 raise result
 
     def _reason(self) -> tuple[int, str]:
-        if self._viewer.dismissed:
-            return CloseCode.UNKNOWN_SESSION, "the session has ended"
-        return CloseCode.TOO_SLOW, "this viewer does not read what it is sent"
+        match self._viewer.standing:
+            case Standing.DISMISSED:
+                return CloseCode.UNKNOWN_SESSION, "the session has ended"
+            case Standing.OVERRUN | Standing.ATTENDING:  # a send took too long
+                return CloseCode.TOO_SLOW, "this viewer does not read what it is sent"
+            case _:
+                assert_never(self._viewer.standing)
 
     async def _send(self) -> None:
         viewer = self._viewer
-        while not viewer.overrun:
+        while viewer.standing is not Standing.OVERRUN:
             viewer.wake.clear()
-            while (notice := viewer.next_notice()) is not None:
+            while (notice := viewer.next_notice(time.monotonic())) is not None:
                 if not await self._in_time(notice.model_dump_json()):
                     return
-            if viewer.dismissed:
+            if viewer.standing is Standing.DISMISSED:
                 return
             frame = viewer.next_frame(time.monotonic())
             if frame is not None:
@@ -146,14 +157,16 @@ class _Stream:
 
     async def _read(self) -> None:
         while True:
+            await self._rest()
             message = await self._websocket.receive()
             if message["type"] == "websocket.disconnect":
                 return
             text: str | None = message.get("text")
+            size = len(message["bytes"]) if text is None else len(text.encode())
+            self._pay(min(size, MAX_CONTROL_BYTES))
             if text is None:
                 self._refuse("binary_message", "control messages are JSON text; binary ones are for frames")
                 continue
-            size = len(text.encode())
             if size > MAX_CONTROL_BYTES:
                 self._refuse(
                     "too_large", f"expected a control message of at most {MAX_CONTROL_BYTES} bytes, got {size}"
@@ -169,20 +182,43 @@ class _Stream:
             except InputError as error:
                 self._refuse("unusable_input", str(error), error.field)
                 continue
-            match event:
-                case Ack(sequence=sequence):
-                    self._viewer.acknowledge(sequence, time.monotonic())
-                case Ping(time=sent):
-                    self._viewer.tell(Pong(time=sent))
-                case Resize(width=width, height=height):
-                    self._viewer.resize(width, height)
-                    self._start(self._gateway.sessions.update_demand(self._session))
-                case Visibility(visible=visible):
-                    self._viewer.show(visible, time.monotonic())
-                    self._start(self._gateway.sessions.update_demand(self._session))
-                case _:
-                    await self._room.acquire()
-                    self._start(self._apply(event))
+            if isinstance(event, SessionEvent):
+                await self._session.room.acquire()
+                self._start(self._apply(event))
+            else:
+                self._heed(event)
+
+    async def _rest(self) -> None:
+        """Leave what comes in the socket, whose other end then has to wait, until there is allowance for it."""
+        while (wait := self._overdrawn_for(time.monotonic())) > 0:  # noqa: ASYNC110 - time is what is waited for
+            await asyncio.sleep(wait)
+
+    def _overdrawn_for(self, now: float) -> float:
+        return max(self._messages.overdrawn_for(now), self._client.overdrawn_for(now))
+
+    def _pay(self, size: int) -> None:
+        """For a message of that many bytes, whatever it says: a refusal costs what reading it cost."""
+        now, cost = time.monotonic(), 1 + size / BYTES_PER_COST
+        self._messages.spend(cost, now)
+        self._client.spend(cost, now)
+
+    def _heed(self, event: ViewerEvent) -> None:
+        match event:
+            case Ack(sequence=sequence):
+                stalled = self._viewer.credit.stalled(time.monotonic())
+                self._viewer.acknowledge(sequence, time.monotonic())
+                if stalled:
+                    self._gateway.sessions.update_demand(self._session)
+            case Ping(time=sent):
+                self._viewer.tell(Pong(time=sent))
+            case Resize(width=width, height=height):
+                self._viewer.resize(width, height)
+                self._gateway.sessions.update_demand(self._session)
+            case Visibility(visible=visible):
+                self._viewer.show(visible, time.monotonic())
+                self._gateway.sessions.update_demand(self._session)
+            case _:
+                assert_never(event)
 
     def _start(self, work: Coroutine[None, None, None]) -> None:
         # Not awaited by the reader: events travel in order on the engine's socket without waiting for each other.
@@ -198,7 +234,7 @@ class _Stream:
         except CuletError as error:
             self._refuse(error.title.replace(" ", "_"), str(error))
         finally:
-            self._room.release()
+            self._session.room.release()
 
     def _refuse(self, code: str, message: str, field: str | None = None) -> None:
         self._viewer.tell(Problem(code=code, message=message, field=field))

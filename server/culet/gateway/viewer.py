@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
+from enum import Enum, auto
+from typing import assert_never
 
+from culet.gateway.client_address import UNKNOWN
 from culet.gateway.credit import Credit
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Message, State
+from culet_protocol.messages import Engine, Hello, Message, Notice, Pong, Problem, State, Viewers
 
 NOTICES_WAITING = 256
 """A viewer that has so many unread ones does not read at all."""
@@ -15,13 +17,26 @@ SETTLING_SECONDS = 0.25
 """A new viewer has so long to say its size before frames are rendered for the default one."""
 DEFAULT_SIZE = (960, 540)
 """Pixels, for viewers that never say."""
+STATE_SECONDS = 0.04
+"""Between two states, which hold the whole scene: a drag makes 60 or 120 a second, and sliders follow at 25."""
+
+
+class Standing(Enum):
+    """How a viewer's stream is. Of the two that end it the first counts."""
+
+    ATTENDING = auto()
+    OVERRUN = auto()
+    """More notices are waiting than a reading viewer would leave: the stream ends at once."""
+    DISMISSED = auto()
+    """The session is gone: the stream ends once the notices are out."""
 
 
 class Viewer:
     """The credit rule: wait for credit, then take the latest frame, then send. Nothing taken is ever dropped."""
 
-    def __init__(self, number: int, now: float) -> None:
+    def __init__(self, number: int, now: float, client: str = UNKNOWN) -> None:
         self.number = number
+        self.client = client
         self.visible = True
         self.size: tuple[int, int] | None = None
         self.watching_since = now
@@ -29,14 +44,14 @@ class Viewer:
         self.credit = Credit()
         self.wake = asyncio.Event()
         """Set when there may be something to send."""
-        self.overrun = False
-        """More notices are waiting than a reading viewer would leave."""
-        self.dismissed = False
-        """The session is gone: the stream ends once the notices are out."""
+        self.standing = Standing.ATTENDING
         self._joined_at = now
         self._latest: tuple[int, bytes] | None = None
         self._sent: int | None = None
-        self._notices: deque[Message] = deque()
+        self._notices: dict[object, Message] = {}
+        """By what makes a later one replace an earlier one, in the order in which they are told."""
+        self._numbers = 0
+        self._next_state_at = -float("inf")
 
     def watches(self, now: float) -> bool:
         """Whether frames are wanted: it can be seen, and it said its size or had the time to."""
@@ -55,7 +70,8 @@ class Viewer:
 
     def dismiss(self) -> None:
         """End the stream."""
-        self.dismissed = True
+        if self.standing is Standing.ATTENDING:
+            self.standing = Standing.DISMISSED
         self.wake.set()
 
     def acknowledge(self, sequence: int, now: float) -> None:
@@ -69,21 +85,38 @@ class Viewer:
         self.wake.set()
 
     def restart(self) -> None:
-        """Another engine counts its frames from 1 again."""
+        """Another engine may give a number of the one before to another frame. What is in flight stays so."""
         self._latest = self._sent = None
-        self.credit.clear()
 
-    def tell(self, notice: Message) -> None:
-        """Queue a notice; of states only the latest matters."""
-        if isinstance(notice, State):
-            self._notices = deque(waiting for waiting in self._notices if not isinstance(waiting, State))
-        self._notices.append(notice)
-        self.overrun = len(self._notices) > NOTICES_WAITING
+    def tell(self, notice: Notice) -> None:
+        """Queue a notice. Of those that say how something is, only the latest waits; of equal ones, only one."""
+        key: object
+        match notice:
+            case State() | Viewers() | Engine():
+                key = type(notice)
+            case Problem():
+                key = notice
+            case Pong() | Hello():
+                self._numbers += 1
+                key = self._numbers
+            case _:
+                assert_never(notice)
+        self._notices.pop(key, None)
+        self._notices[key] = notice
+        if len(self._notices) > NOTICES_WAITING and self.standing is Standing.ATTENDING:
+            self.standing = Standing.OVERRUN
         self.wake.set()
 
-    def next_notice(self) -> Message | None:
-        """The oldest notice, taken from the queue."""
-        return self._notices.popleft() if self._notices else None
+    def next_notice(self, now: float) -> Message | None:
+        """The oldest notice that may be told now, taken from the queue."""
+        for key, notice in self._notices.items():
+            if isinstance(notice, State):
+                if now < self._next_state_at and self.standing is Standing.ATTENDING:
+                    continue
+                self._next_state_at = now + STATE_SECONDS
+            del self._notices[key]
+            return notice
+        return None
 
     def next_frame(self, now: float) -> bytes | None:
         """The latest frame if it is new to the viewer and there is credit for it; that is then used."""
@@ -101,6 +134,5 @@ class Viewer:
         return self.credit.rate(now) if self.watches(now) else 0.0
 
     def sleep_until(self) -> float | None:
-        """When a credit returns by itself, if a frame waits for one."""
-        waiting = self._latest is not None and self.visible and self._latest[0] != self._sent
-        return self.credit.returns_at() if waiting else None
+        """When a notice may be told that has to wait until then; None if only `wake` brings something to send."""
+        return self._next_state_at if State in self._notices else None
