@@ -143,7 +143,7 @@ class EngineLink:
             self.lose("the connection to the render process broke")
 
     async def request(
-        self, message: Message, payload: bytes | None = None, *, patient: bool = False
+        self, message: Message, payload: bytes | bytearray | None = None, *, patient: bool = False
     ) -> tuple[dict[str, Any], bytes]:
         """The engine's result and bytes for a request. `patient` ones may take as long as the engine lives.
 
@@ -153,7 +153,7 @@ class EngineLink:
             raise EngineUnavailableError("the render process is not running; it should be back in a few seconds")
         self._numbers += 1
         number = self._numbers
-        parts = [REQUEST_NUMBER.pack(number), message.model_dump_json().encode()]
+        parts: list[bytes | bytearray] = [REQUEST_NUMBER.pack(number), message.model_dump_json().encode()]
         if payload is not None:
             parts.append(payload)
         answer: asyncio.Future[tuple[Reply, bytes]] = asyncio.get_running_loop().create_future()

@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 
-from culet.gateway.form import read_limited, uploaded_file
+from culet.gateway.form import read_form
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.uploads import MESH, SKY, Kind
@@ -65,7 +65,6 @@ async def upload_sky(request: Request, gateway: ThisGateway) -> SkyAnswer:
 
 
 async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> tuple[str, dict[str, Any]]:
-    limit = gateway.settings.max_upload_bytes
-    body = await read_limited(request.stream(), limit)
-    file = uploaded_file(body, request.headers.get("content-type"), limit)
+    content_type = request.headers.get("content-type")
+    file = await read_form(request.stream(), content_type, gateway.settings.max_upload_bytes)
     return await gateway.uploads.put(kind, file)

@@ -11,7 +11,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import Any, get_args
+from typing import Any, Self, get_args
 
 from culet.errors import BusyError, InputError
 from culet.gateway.form import UploadedFile
@@ -47,11 +47,15 @@ KIND_OF_FIELD = {"mesh": MESH, "image": SKY}
 class _Upload:
     kind: Kind
     file_type: str
-    data: bytes
+    data: bytes | bytearray
+    id: str
 
-    @property
-    def id(self) -> str:
-        return hashlib.sha256(self.file_type.encode() + b"\0" + self.data).hexdigest()[:32]
+    @classmethod
+    def of(cls, kind: Kind, file: UploadedFile) -> Self:
+        """The upload of a file, named by what is in it and what it is taken for; InputError for another ending."""
+        file_type = kind.file_type(file.name)
+        name = hashlib.sha256(file_type.encode() + b"\0" + file.digest).hexdigest()[:32]
+        return cls(kind, file_type, file.data, name)
 
     async def give(self, link: EngineLink) -> dict[str, Any]:
         """What the engine says about it."""
@@ -81,7 +85,7 @@ class Uploads:
 
         BusyError if there is no room for it besides what sessions use.
         """
-        upload = _Upload(kind, kind.file_type(file.name), file.data)
+        upload = _Upload.of(kind, file)
         used = self.used() - {upload.id}
         in_use = sum(len(kept.data) for name, kept in self._kept.items() if name in used)
         if in_use + len(file.data) > self._max_bytes:
