@@ -13,6 +13,9 @@ WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
+# Kernels compiled for tests are kept here, apart from the user's own.
+test check-kernels validate soak: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
+
 .PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate soak bench study compose-test opencl browser node
 .DELETE_ON_ERROR:
 

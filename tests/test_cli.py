@@ -1,4 +1,4 @@
-"""The command line as a user has it: a process, its output and its exit code."""
+"""The command line as a user has it: its output and its exit code, of processes where a process makes a difference."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from command_line import culet
+from command_line import Run, culet, invoke
 from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES
 from engine.peer import TETRAHEDRON, connected, running_engine
@@ -25,7 +25,7 @@ COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view",
 TINY = ("--width", "48", "--height", "27")
 
 
-def refused(run: subprocess.CompletedProcess[str]) -> str:
+def refused(run: Run) -> str:
     """The one line that says why not."""
     assert run.returncode == 1
     assert "Traceback" not in run.stderr
@@ -35,7 +35,7 @@ def refused(run: subprocess.CompletedProcess[str]) -> str:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_explains_itself(command: str) -> None:
-    run = culet(command, "--help")
+    run = invoke(command, "--help")
     assert run.returncode == 0
     assert f"culet {command}" in run.stdout
 
@@ -47,19 +47,19 @@ def test_the_version_is_told() -> None:
 
 @pytest.mark.parametrize("command", ["render", "simulate"])
 def test_the_help_of_a_command_names_the_presets(command: str) -> None:
-    words = re.findall(r"[\w-]+", culet(command, "--help").stdout)
+    words = re.findall(r"[\w-]+", invoke(command, "--help").stdout)
     assert [name for name in PRESETS if name not in words] == []
 
 
 def test_without_a_command_all_are_listed() -> None:
-    shown = culet("--help").stdout
+    shown = invoke("--help").stdout
     assert all(command in shown for command in COMMANDS)
 
 
 @pytest.mark.parametrize(("ending", "format_"), [("tga", "TGA"), ("png", "PNG"), ("jpg", "JPEG")])
 def test_a_rendered_picture_can_be_opened(tmp_path: Path, ending: str, format_: str) -> None:
     out = tmp_path / f"gem.{ending}"
-    run = culet("render", "-o", out, *TINY)
+    run = invoke("render", "-o", out, *TINY)
     assert run.returncode == 0, run.stderr
     with Image.open(out) as picture:
         assert (picture.format, picture.size) == (format_, (48, 27))
@@ -69,23 +69,23 @@ def test_a_rendered_picture_can_be_opened(tmp_path: Path, ending: str, format_: 
 def test_a_linear_picture_holds_radiance_not_pixels(tmp_path: Path) -> None:
     out = tmp_path / "gem.npy"
     scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "constant", "radiance": [0.25, 2, 8]}}
-    run = culet("render", "-", "-o", out, *TINY, stdin=json.dumps(scene))
+    run = invoke("render", "-", "-o", out, *TINY, stdin=json.dumps(scene))
     assert run.returncode == 0, run.stderr
     assert np.load(out).reshape(-1, 3) == pytest.approx(np.tile([0.25, 2, 8], (48 * 27, 1)))
 
 
 def test_more_samples_are_taken_when_asked_for(tmp_path: Path) -> None:
-    run = culet("render", "-o", tmp_path / "gem.png", "--samples", "3", "--preset", "matte", *TINY)
+    run = invoke("render", "-o", tmp_path / "gem.png", "--samples", "3", "--preset", "matte", *TINY)
     assert "3 samples per pixel, mean radiance too low by at most 0." in run.stdout
-    run = culet("render", "-o", tmp_path / "gem.png", "--samples", "1", *TINY)
+    run = invoke("render", "-o", tmp_path / "gem.png", "--samples", "1", *TINY)
     assert "1 sample per pixel, " in run.stdout
 
 
 def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
     mesh = tmp_path / "gem.off"
     mesh.write_bytes(TETRAHEDRON)
-    assert culet("render", "-o", tmp_path / "cut.npy", *TINY).returncode == 0
-    run = culet("render", "-o", tmp_path / "mesh.npy", "--mesh", mesh, *TINY)
+    assert invoke("render", "-o", tmp_path / "cut.npy", *TINY).returncode == 0
+    run = invoke("render", "-o", tmp_path / "mesh.npy", "--mesh", mesh, *TINY)
     assert run.returncode == 0, run.stderr
     assert not np.array_equal(np.load(tmp_path / "cut.npy"), np.load(tmp_path / "mesh.npy"))
 
@@ -116,21 +116,26 @@ def test_bad_input_is_one_line_and_exit_code_1(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: str, said: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert said in refused(culet("render", *TINY, *arguments, stdin=stdin))
+    assert said in refused(invoke("render", *TINY, *arguments, stdin=stdin))
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("arguments", [["render", "--width", "0"], ["render", "--widht", "9"], ["view"], ["dance"]])
 def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
-    assert culet(*arguments).returncode == 2
+    assert invoke(*arguments).returncode == 2
+
+
+def test_a_process_ends_as_its_command_does() -> None:
+    assert "nowhere.json: cannot be read" in refused(culet("render", "nowhere.json"))
+    assert culet("dance").returncode == 2
 
 
 def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_path: Path) -> None:
     out = tmp_path / "bench.jsonl"
     for _ in range(2):
-        run = culet("bench", *TINY, "--repeats", "1", "-o", out)
+        run = invoke("bench", *TINY, "--repeats", "1", "-o", out)
         assert run.returncode == 0, run.stderr
-    shown = culet("bench", *TINY, "--repeats", "2", "--features", "--against", out).stdout
+    shown = invoke("bench", *TINY, "--repeats", "2", "--features", "--against", out).stdout
     assert len(re.findall(r"1\.000 +1\.000 +1\.000 *$", shown, re.MULTILINE)) == len(CASES), "the same work, as exact"
     rows = {line.strip().split("  ")[0]: line.split() for line in reversed(shown.splitlines())}  # ratios come last
     lines = [json.loads(line) for line in out.read_text().splitlines()]
@@ -150,7 +155,7 @@ def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:
     out, sky = tmp_path / "gem.npy", tmp_path / "sky.png"
     Image.new("RGB", (16, 8), (255, 0, 255)).save(sky)
     scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "image", "image": "aset", "scale": 2}}
-    run = culet("render", "-", "-o", out, *TINY, "--sky", sky, stdin=json.dumps(scene))
+    run = invoke("render", "-", "-o", out, *TINY, "--sky", sky, stdin=json.dumps(scene))
     assert run.returncode == 0, run.stderr
     assert np.load(out).mean((0, 1)) == pytest.approx([2, 0, 2], abs=1e-6)  # measured 0; the scale is the scene's
 
@@ -158,13 +163,13 @@ def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:
 def test_a_sky_of_odd_proportions_is_used_and_said_so(tmp_path: Path) -> None:
     sky = tmp_path / "sky.png"
     Image.new("RGB", (16, 9), (255, 0, 255)).save(sky)
-    run = culet("render", "-o", tmp_path / "gem.png", *TINY, "--sky", sky)
+    run = invoke("render", "-o", tmp_path / "gem.png", *TINY, "--sky", sky)
     assert run.returncode == 0, run.stderr
     assert run.stderr.startswith(f"{sky}: 16 x 9 pixels are stretched over all directions")
 
 
 def test_a_benchmark_that_could_not_be_kept_is_not_begun(tmp_path: Path) -> None:
-    assert "cannot write" in refused(culet("bench", "-o", tmp_path / "missing" / "bench.jsonl"))
+    assert "cannot write" in refused(invoke("bench", "-o", tmp_path / "missing" / "bench.jsonl"))
 
 
 def test_a_path_is_written_step_by_step(tmp_path: Path) -> None:
@@ -189,12 +194,12 @@ def test_a_path_that_could_not_be_kept_is_not_simulated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, option: str, place: str, said: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert refused(culet("simulate", option, place)) == f"culet: {said}"
+    assert refused(invoke("simulate", option, place)) == f"culet: {said}"
     assert list(tmp_path.iterdir()) == []
 
 
 def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:
-    run = culet("simulate", "-", "-o", tmp_path / "path.csv", stdin='{"stones": []}')
+    run = invoke("simulate", "-", "-o", tmp_path / "path.csv", stdin='{"stones": []}')
     assert "needs a stone" in refused(run)
 
 
@@ -211,9 +216,9 @@ async def test_frames_of_a_session_are_taken_without_a_gateway(tmp_path: Path) -
 
 def test_a_session_that_nobody_publishes_is_given_up(tmp_path: Path) -> None:
     endpoint = f"ipc://{tmp_path}/nobody"
-    run = culet("view", endpoint, "--session", "0" * 32, "--timeout", "0.2", "-o", tmp_path / "out")
+    run = invoke("view", endpoint, "--session", "0" * 32, "--timeout", "0.2", "-o", tmp_path / "out")
     assert "no frame of session" in refused(run)
-    assert "32 hexadecimal digits" in refused(culet("view", endpoint, "--session", "x", "-o", tmp_path / "out"))
+    assert "32 hexadecimal digits" in refused(invoke("view", endpoint, "--session", "x", "-o", tmp_path / "out"))
 
 
 def test_an_endpoint_that_cannot_be_bound_is_said_so(tmp_path: Path) -> None:
@@ -223,7 +228,7 @@ def test_an_endpoint_that_cannot_be_bound_is_said_so(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_a_page_is_refused_at_once(tmp_path: Path) -> None:
-    assert f"there is no {tmp_path / 'index.html'}" in refused(culet("serve", "--port", "0", "--web", tmp_path))
+    assert f"there is no {tmp_path / 'index.html'}" in refused(invoke("serve", "--port", "0", "--web", tmp_path))
 
 
 def test_serve_runs_and_ends_with_its_engine(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from command_line import culet
+from command_line import invoke
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
@@ -155,7 +155,7 @@ def test_a_run_in_which_nothing_moved_is_told_like_any_other() -> None:
 
 
 def test_a_file_that_cannot_be_written_is_refused_before_anything_is_measured(tmp_path: Path) -> None:
-    run = culet("study", "governor", "-o", tmp_path / "missing" / "out.json")
+    run = invoke("study", "governor", "-o", tmp_path / "missing" / "out.json")
     assert run.returncode == 1
     (line,) = run.stderr.splitlines()
     assert "cannot write" in line

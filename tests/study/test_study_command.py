@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from command_line import culet
+from command_line import culet, invoke
 from study.reports import report
 
 
 @pytest.mark.parametrize("command", ["rendering", "simulation", "streaming", "diff", "headline", "compare-bench"])
 def test_every_study_explains_itself(command: str) -> None:
-    run = culet("study", command, "--help")
+    run = invoke("study", command, "--help")
     assert run.returncode == 0
     assert f"culet study {command}" in run.stdout
 
@@ -20,7 +20,7 @@ def test_every_study_explains_itself(command: str) -> None:
 def test_two_reports_are_compared(tmp_path: Path) -> None:
     for name, seconds in (("a.json", 0.5), ("b.json", 1.0)):
         (tmp_path / name).write_text(report(seconds).json_text())
-    run = culet("study", "diff", tmp_path / "a.json", tmp_path / "b.json")
+    run = invoke("study", "diff", tmp_path / "a.json", tmp_path / "b.json")
     assert run.returncode == 0, run.stderr
     assert "2.000  frame_seconds" in run.stdout
     assert "1.000  rmse_model" in run.stdout
@@ -28,12 +28,12 @@ def test_two_reports_are_compared(tmp_path: Path) -> None:
 
 def test_a_report_in_short(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text(report().json_text())
-    assert "| a frame | 1.23 ms |" in culet("study", "headline", tmp_path / "a.json").stdout
+    assert "| a frame | 1.23 ms |" in invoke("study", "headline", tmp_path / "a.json").stdout
 
 
 def test_a_scene_without_a_stone_has_nothing_to_study(tmp_path: Path) -> None:
     (tmp_path / "empty.json").write_text('{"stones": []}')
-    run = culet("study", "rendering", tmp_path / "empty.json", "-o", tmp_path / "report")
+    run = invoke("study", "rendering", tmp_path / "empty.json", "-o", tmp_path / "report")
     assert run.returncode == 1
     assert run.stderr.splitlines() == ["culet: stones: a study needs a stone; the scene has none"]
     assert not (tmp_path / "report").exists()
