@@ -14,7 +14,7 @@ from culet_client.errors import ClientError
 if TYPE_CHECKING:
     from rich.console import Console
 
-REPORT_COLUMNS = 120
+REPORT_COLUMNS = 132
 
 
 @contextlib.contextmanager
