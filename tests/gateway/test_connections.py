@@ -100,6 +100,20 @@ async def test_the_rest_of_a_body_that_was_refused_is_read_only_for_a_while() ->
         assert (await peer.rest()).startswith(b"HTTP/1.1 413 ")
 
 
+@pytest.mark.parametrize("connection", ["close", "keep-alive"])
+async def test_a_refusal_is_read_by_who_is_still_sending(connection: str) -> None:
+    """What is sent to a closed socket is answered by a reset, which takes the refusal with it."""
+    head = (
+        f"POST /api/meshes HTTP/1.1\r\nHost: localhost\r\nConnection: {connection}\r\nContent-Length: 9000000\r\n\r\n"
+    )
+    async with gateway_alone() as gateway, peers(gateway, head.encode()) as (peer,):
+        for _ in range(9):
+            peer.writer.write(bytes(1_000_000))
+            await peer.writer.drain()
+        async with asyncio.timeout(PATIENCE):
+            assert b" 422 " in await peer.reader.readline()
+
+
 async def test_half_sent_requests_leave_room_for_the_next_visitor_from_the_same_address() -> None:
     async with (
         gateway_alone(max_connections_per_address=16) as gateway,

@@ -225,14 +225,14 @@ class GuardedHttp(H11Protocol):
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn's
         """Let it in, or close it at once."""
-        super().connection_made(transport)
+        super().connection_made(_LingeringTransport(transport, self))
         self.connection = self.config.guard.admit(self, self.client[0] if self.client else None, self.loop.time())
         if self.connection is None:
             self.refuse(503, "at the limit", "this server has as many connections as it takes; try again later")
 
     def data_received(self, data: bytes) -> None:
         """Bytes of a request."""
-        if self.connection is None:
+        if self.connection is None or self.transport.is_closing():
             return
         self.connection.received += len(data)
         if self.connection.phase is Phase.HEAD and not self.connection.partial:
@@ -274,6 +274,10 @@ class GuardedHttp(H11Protocol):
         self.transport.close()
         self.loop.call_later(LINGER_SECONDS, self.transport.abort)  # if the client does not read even that
 
+    def is_sending(self) -> bool:
+        """Whether the client is in the middle of a body."""
+        return self.conn.their_state is h11.SEND_BODY and not self.conn.they_are_waiting_for_100_continue
+
     def tell(self) -> None:
         """Tell the guard in which phase the connection is."""
         if self.connection is None or self.connection.phase is Phase.STREAM:
@@ -289,6 +293,68 @@ class GuardedHttp(H11Protocol):
         else:
             phase = Phase.ANSWER
         self.connection.enter(phase, self.loop.time())
+
+
+class _LingeringTransport(asyncio.Transport):
+    """A transport that closes only its own direction while the client sends a body that nobody waits for any more.
+
+    What comes for a closed socket is answered by a reset, and with that the client loses the answer too.
+    """
+
+    def __init__(self, transport: asyncio.Transport, protocol: GuardedHttp) -> None:
+        super().__init__()
+        self._transport = transport
+        self._protocol = protocol
+        self._lingering = False
+
+    def close(self) -> None:
+        if self._lingering or self._transport.is_closing() or not self._protocol.is_sending():
+            self._transport.close()
+            return
+        self._lingering = True
+        self._transport.resume_reading()
+        self._transport.write_eof()
+        asyncio.get_running_loop().call_later(LINGER_SECONDS, self._transport.abort)
+
+    def is_closing(self) -> bool:
+        return self._lingering or self._transport.is_closing()
+
+    def abort(self) -> None:
+        self._transport.abort()
+
+    def write(self, data: bytes | bytearray | memoryview[Any]) -> None:
+        if not self._lingering:
+            self._transport.write(data)
+
+    def write_eof(self) -> None:
+        self._transport.write_eof()
+
+    def can_write_eof(self) -> bool:
+        return self._transport.can_write_eof()
+
+    def pause_reading(self) -> None:
+        self._transport.pause_reading()
+
+    def resume_reading(self) -> None:
+        self._transport.resume_reading()
+
+    def is_reading(self) -> bool:
+        return self._transport.is_reading()
+
+    def get_write_buffer_size(self) -> int:
+        return self._transport.get_write_buffer_size()
+
+    def set_write_buffer_limits(self, high: int | None = None, low: int | None = None) -> None:
+        self._transport.set_write_buffer_limits(high, low)
+
+    def get_extra_info(self, name: str, default: Any = None) -> Any:  # noqa: ANN401 - as the transport's
+        return self._transport.get_extra_info(name, default)
+
+    def set_protocol(self, protocol: asyncio.BaseProtocol) -> None:
+        self._transport.set_protocol(protocol)
+
+    def get_protocol(self) -> asyncio.BaseProtocol:
+        return self._transport.get_protocol()
 
 
 class GuardedStream(WebSocketsSansIOProtocol):
