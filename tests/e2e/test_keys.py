@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
-from e2e.view import View, difference
+from e2e.view import View, assert_same, difference
 
 STEP = 0.5
 CTRL, META, ALT = 2, 4, 1
@@ -196,7 +196,7 @@ def test_switches_go_there_and_back(view: View, server: Server, key: str, part: 
         assert server.session(view.session)["scene"][part]["kind"] == kind
         assert view.scene[part]["kind"] == kind
         assert difference(before.pixels, after.pixels) > SEEN
-    np.testing.assert_array_equal(view.look().pixels, start.pixels)
+    assert_same(view.look().pixels, start.pixels)
 
 
 def test_walls_and_floor_become_mirrors_together(view: View) -> None:
@@ -214,7 +214,7 @@ def test_f_brings_the_camera_back(view: View, server: Server) -> None:
     before, after = view.change_by("f")
     assert server.session(view.session)["scene"]["camera"] == camera
     assert difference(before.pixels, after.pixels) > SEEN
-    np.testing.assert_array_equal(after.pixels, start.pixels)
+    assert_same(after.pixels, start.pixels)
 
 
 def test_p_starts_and_pauses_the_fall_and_r_puts_the_stone_back(view: View, server: Server) -> None:
@@ -232,4 +232,4 @@ def test_p_starts_and_pauses_the_fall_and_r_puts_the_stone_back(view: View, serv
     view.until("time => culet.lastFrame.simulationTime > time", paused.frame["simulationTime"])
     view.page.keyboard.press("r")
     view.until("() => !culet.state.falling && culet.lastFrame.simulationTime === 0")
-    np.testing.assert_array_equal(view.at_rest(after=paused.frame["step"]).pixels, start.pixels)
+    assert_same(view.at_rest(after=paused.frame["step"]).pixels, start.pixels)

@@ -8,7 +8,7 @@ import numpy as np
 
 from e2e.conftest import ViewOf
 from e2e.server import Server
-from e2e.view import View
+from e2e.view import View, assert_same
 
 HIDE = """hidden => {
   Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
@@ -35,7 +35,7 @@ def test_two_pages_at_one_address_see_the_same_and_each_others_edits(
     assert server.metrics()["viewers"] == 2
 
     start = view.at_rest()
-    np.testing.assert_array_equal(guest.at_rest().pixels, start.pixels)
+    assert_same(guest.at_rest().pixels, start.pixels)
     for editor, onlooker, key, part, kind in (
         (guest, view, "w", "walls", "matte"),
         (view, guest, "m", "floor", "mirror"),
@@ -43,7 +43,7 @@ def test_two_pages_at_one_address_see_the_same_and_each_others_edits(
         before = onlooker.look().frame["step"]
         _, after = editor.change_by(key)
         onlooker.until("([part, kind]) => culet.state.scene[part].kind === kind", [part, kind])
-        np.testing.assert_array_equal(onlooker.at_rest(after=before).pixels, after.pixels)
+        assert_same(onlooker.at_rest(after=before).pixels, after.pixels)
         assert onlooker.scene == editor.scene
         assert np.abs(after.pixels - start.pixels).mean() > 1
 
@@ -104,4 +104,4 @@ def test_a_page_that_is_seen_gets_its_frames_while_another_is_hidden(view_of: Vi
     guest.until("() => culet.state.scene.floor.kind === 'mirror'")  # notices still come
     assert guest.look().frame["step"] == hidden_at
     guest.page.evaluate(HIDE, False)
-    np.testing.assert_array_equal(guest.at_rest(after=hidden_at).pixels, view.look().pixels)
+    assert_same(guest.at_rest(after=hidden_at).pixels, view.look().pixels)

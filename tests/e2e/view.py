@@ -18,6 +18,7 @@ from playwright.sync_api import ConsoleMessage, Page, Request, WebSocket
 
 from culet_protocol.frame import Flags
 from e2e.server import PATIENCE, Server
+from pictures import compared
 
 Pixels = NDArray[np.int16]
 """(height, width, 3), 0 to 255; signed, so that differences are."""
@@ -189,3 +190,9 @@ def difference(a: Pixels, b: Pixels) -> float:
     """Mean absolute difference of two pictures of the same size, 0 to 255."""
     assert a.shape == b.shape
     return float(np.abs(a - b).mean())
+
+
+def assert_same(picture: Pixels, reference: Pixels) -> None:
+    """Every pixel."""
+    with compared(picture, reference):
+        np.testing.assert_array_equal(picture, reference)

@@ -17,6 +17,7 @@ from conftest import RendererOf
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
+from pictures import compared
 from rendering.views import BARE, radiance, take
 
 
@@ -64,7 +65,8 @@ def test_every_width_of_packet_gives_the_same_picture_in_double_precision(
 ) -> None:
     """The same operations on the same numbers; only the order in which a pixel's light is summed differs."""
     wide, narrow = (radiance(general(renderer_of(n, np.float64), case)) for n in (16, lanes))
-    assert narrow == pytest.approx(wide, abs=4e-15)  # measured 8.9e-16
+    with compared(narrow, wide):
+        assert narrow == pytest.approx(wide, abs=4e-15)  # measured 8.9e-16
 
 
 @CASE
@@ -75,8 +77,9 @@ def test_every_width_of_packet_gives_the_same_picture_in_single_precision(
     """The compiler may round one width otherwise than another: it decided 2 pixels of 14,400 differently."""
     wide, narrow = (radiance(general(renderer_of(n, np.float32), case)) for n in (16, lanes))
     difference = abs(narrow - wide).max(axis=-1)
-    assert (difference > 1e-6).sum() <= 6
-    assert np.median(difference) < 1e-7  # measured 1.5e-8
+    with compared(narrow, wide):
+        assert (difference > 1e-6).sum() <= 6
+        assert np.median(difference) < 1e-7  # measured 1.5e-8
 
 
 @CASE
@@ -86,10 +89,11 @@ def test_single_precision_agrees_with_double_but_where_rounding_decides(
     single, double = (general(r, case) for r in (renderer, exact))
     difference = radiance(single) - radiance(double)
     decided = abs(difference).max(axis=-1) > ROUNDING
-    assert decided.mean() < case.decided
-    assert np.median(abs(difference)) < 1e-7  # measured 4.6e-8
-    assert abs(difference[~decided].mean()) < 5e-7  # measured 1.5e-7
-    assert abs(difference.mean()) < 2e-4  # measured 6.2e-5: one pixel that a lamp lights or not
+    with compared(radiance(single), radiance(double)):
+        assert decided.mean() < case.decided
+        assert np.median(abs(difference)) < 1e-7  # measured 4.6e-8
+        assert abs(difference[~decided].mean()) < 5e-7  # measured 1.5e-7
+        assert abs(difference.mean()) < 2e-4  # measured 6.2e-5: one pixel that a lamp lights or not
     # measured 8.0e-4: one pixel whose chain goes on to its 64th bounce instead of its 5th is 5e-4
     assert single.segments() == pytest.approx(double.segments(), rel=2e-3)
 
@@ -111,6 +115,7 @@ def test_half_spaces_and_triangles_are_the_same_stone(renderer: Renderer, exact:
         hull, mesh = (take(used, Scene.read(case.scene), size=SIZE, features=Features(kind)) for kind in SHAPES)
         difference = radiance(mesh) - radiance(hull)
         # measured 0 in double precision; 50, 45, 8, 48 and 97 of 14,400 in single
-        assert (abs(difference).max(axis=-1) > tolerance).mean() <= decided
-        assert abs(difference.mean()) < 2e-4  # measured 5.7e-5
+        with compared(radiance(mesh), radiance(hull)):
+            assert (abs(difference).max(axis=-1) > tolerance).mean() <= decided
+            assert abs(difference.mean()) < 2e-4  # measured 5.7e-5
         assert mesh.segments() == pytest.approx(hull.segments(), rel=rel)  # measured 1.2e-3

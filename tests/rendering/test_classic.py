@@ -10,6 +10,7 @@ import pytest
 from culet.geometry.load import stone_of
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene, preset
+from pictures import compared
 from rendering.classic_reference import classic_picture
 from rendering.views import radiance, take
 
@@ -37,5 +38,6 @@ def test_the_classic_estimator_draws_what_the_report_describes(exact: Renderer, 
     scene = Scene.read({**data, **changes, "stones": [stone]})
     ours = radiance(take(exact, scene, size=SIZE))
     theirs = classic_picture(scene, stone_of(scene.stones[0], {}), *SIZE)
-    assert np.abs(ours - theirs).max() < 1e-7
+    with compared(ours, theirs):
+        assert np.abs(ours - theirs).max() < 1e-7
     assert theirs.std() > 0.01

@@ -15,6 +15,7 @@ from culet.geometry.load import stone_of
 from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import PRESETS, Scene
+from pictures import compared
 from rendering.views import BARE, radiance, take
 
 LANES = 4
@@ -80,7 +81,8 @@ def test_a_decided_feature_shows_what_the_general_program_shows(
     assert machine_code(general) == size_of_general
     # measured 1.9e-7 of the radiance without dispersion, where the channels of one chain are summed in another order;
     # otherwise every bit is the same
-    assert radiance(decided) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
+    with compared(radiance(decided), radiance(general)):
+        assert radiance(decided) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
 
 
 @pytest.mark.parametrize("name", OFF)
@@ -120,7 +122,8 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
     """Every feature decided, against every feature left to run time."""
     own, general = take(narrow, Scene.read(scene)), take(narrow, Scene.read(scene), features=Features())
     # measured 2.2e-7 of the radiance: where less is left to run time, other sums are rounded together
-    assert radiance(own) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
+    with compared(radiance(own), radiance(general)):
+        assert radiance(own) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
     assert machine_code(own) < size_of_general
 
 

@@ -10,6 +10,7 @@ import pytest
 from culet.rendering.panoramas import Panorama, directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from pictures import compared
 from rendering.views import BARE, Array, pixel_directions, radiance
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -54,7 +55,8 @@ def test_a_panorama_of_the_gradient_is_the_gradient(renderer: Renderer, look: di
     seen = looked_up(renderer, sky_scene(look, 120, kind="image"), panorama)
     picture = renderer.picture(sky_scene(look, 120, kind="gradient"), None, 64, 64)
     picture.refine()
-    assert seen == pytest.approx(radiance(picture), abs=4e-6)
+    with compared(seen, radiance(picture)):
+        assert seen == pytest.approx(radiance(picture), abs=4e-6)
 
 
 @LOOK
@@ -79,4 +81,5 @@ def test_a_turned_panorama_is_the_panorama_turned(exact: Renderer) -> None:
     look = LOOKS["seam"]
     turned = looked_up(exact, sky_scene(look, 80, kind="image", turn_degrees=90), panorama)
     rolled = looked_up(exact, sky_scene(look, 80, kind="image"), np.roll(panorama, 8, axis=1))
-    assert turned == pytest.approx(rolled, abs=1e-12)
+    with compared(turned, rolled):
+        assert turned == pytest.approx(rolled, abs=1e-12)

@@ -12,6 +12,7 @@ from culet.geometry.stone import Stone
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from pictures import compared
 from rendering.room_reference import look_around
 from rendering.views import radiance, take
 
@@ -40,7 +41,8 @@ def compare(renderer: Renderer, scene: Scene, stone: Stone | None, tolerance: fl
     room = ~expected.stone
     assert room.mean() > 0.3
     difference = abs(seen - expected.radiance).max(axis=-1)[room]
-    assert (difference > tolerance).sum() <= doubtful
+    with compared(np.where(room[..., None], seen, 0), np.where(room[..., None], expected.radiance, 0)):
+        assert (difference > tolerance).sum() <= doubtful
 
 
 @pytest.mark.parametrize("environment", SKIES.values(), ids=SKIES.keys())
@@ -86,7 +88,8 @@ def test_a_mirrored_camera_sees_the_mirrored_stone(exact: Renderer) -> None:
     floor = look_around(Scene.read({**common, "camera": above, "stones": []}), None, *SIZE).radiance
     bare = look_around(Scene.read({**common, "camera": below, "stones": [], "floor": {"kind": "none"}}), None, *SIZE)
     own = floor - 0.8 * bare.radiance[:, ::-1]  # the mirror's own light
-    assert mirrored == pytest.approx(0.8 * direct + own, abs=1e-12)
+    with compared(mirrored, 0.8 * direct + own):
+        assert mirrored == pytest.approx(0.8 * direct + own, abs=1e-12)
     assert (abs(direct - bare.radiance[:, ::-1]).max(axis=-1) > 0.1).mean() > 0.05  # the stone is in view
 
 
@@ -131,7 +134,8 @@ def test_a_tree_of_triangles_casts_the_same_shadows(exact: Renderer, place: dict
         radiance(take(exact, scene, size=SIZE, features=Features(geometry)))
         for geometry in (Geometry.HULL, Geometry.MESH)
     )
-    assert (abs(by_planes - by_triangles).max(axis=-1) > 1e-9).sum() <= 2
+    with compared(by_planes, by_triangles):
+        assert (abs(by_planes - by_triangles).max(axis=-1) > 1e-9).sum() <= 2
 
 
 def test_a_mirror_shows_the_stones_shadow(exact: Renderer) -> None:

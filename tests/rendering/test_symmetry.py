@@ -8,6 +8,7 @@ import pytest
 
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from pictures import compared
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
 
 SIZE = 180, 180
@@ -44,7 +45,8 @@ def test_a_brilliant_is_the_same_when_the_camera_turns_by_an_eighth(renderer: Re
 def test_a_brilliant_seen_along_its_axis_is_its_own_mirror_image(exact: Renderer) -> None:
     picture = down_the_axis(exact, 0)
     for mirrored in (picture[:, ::-1], picture[::-1], picture.transpose(1, 0, 2)):
-        assert (abs(picture - mirrored).max(axis=-1) > 1e-10).mean() < 0.002
+        with compared(picture, mirrored):
+            assert (abs(picture - mirrored).max(axis=-1) > 1e-10).mean() < 0.002
 
 
 @pytest.mark.parametrize("kind", ["constant", "gradient"])
@@ -52,4 +54,5 @@ def test_a_stone_of_index_one_is_not_there(exact: Renderer, kind: str) -> None:
     base = {**BARE, "environment": {"kind": kind}}
     seen = radiance(take(exact, Scene.read({**base, "stones": [{"material": {"ior": [1, 1, 1]}}]})))
     without = radiance(take(exact, Scene.read({**base, "stones": []})))
-    assert seen == pytest.approx(without, abs=1e-14)
+    with compared(seen, without):
+        assert seen == pytest.approx(without, abs=1e-14)
