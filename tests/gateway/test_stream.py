@@ -276,7 +276,7 @@ class StuckWebSocket:
     """The server's end of a connection whose other end reads nothing after the first message, and says nothing."""
 
     def __init__(self) -> None:
-        self.scope: dict[str, list[str]] = {"subprotocols": []}
+        self.scope: dict[str, list[str]] = {"subprotocols": [], "headers": []}
         self.headers = Headers()
         self.sent: list[str] = []
         self.closes: list[tuple[int, str]] = []

@@ -1,69 +1,153 @@
-"""What may come in at all: bodies up to a limit, and, from browsers, only pages of the allowed origins."""
+"""What may come in at all: requests for this server, from pages that may make them, with bodies up to a limit."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from urllib.parse import urlsplit
+import re
+from collections import Counter
+from collections.abc import Mapping
 
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from culet.gateway.problems import problem
+from culet.errors import BusyError, TooLargeError
+from culet.gateway.client_address import client_of
+from culet.gateway.origins import Hosts, is_address, may_enter
+from culet.gateway.problems import RETRY_AFTER_SECONDS, problem
+from culet.gateway.settings import GatewaySettings
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+_PICTURES = re.compile(r"/api/(render|sessions/[^/]+/frame)\.\w+")
+"""GETs that take the engine's time. Any page can have its visitors' browsers ask for them, as an <img>."""
 
 
-def may_enter(headers: Headers, allow_origin: Collection[str]) -> bool:
-    """Whether a request comes from no page at all, from a page of this host, or from an allowed origin.
+class Bodies:
+    """Bytes of request bodies that are under way, in all and of each client."""
 
-    Browsers open a WebSocket to any host, and send forms there, without asking: CORS covers neither.
-    """
-    origin = headers.get("origin")
-    if origin is None:
-        return True
-    return origin in allow_origin or urlsplit(origin).netloc == headers.get("host")
+    def __init__(self, limit: int, limit_of_client: int) -> None:
+        self.bytes = 0
+        self._limit = limit
+        self._limit_of_client = limit_of_client
+        self._of_client: Counter[str] = Counter()
+
+    def room_for(self, client: str, size: int) -> bool:
+        """Whether so many bytes more would be within the limits."""
+        return self.bytes + size <= self._limit and self._of_client[client] + size <= self._limit_of_client
+
+    def take(self, client: str, size: int) -> None:
+        """So many bytes came."""
+        self.bytes += size
+        self._of_client[client] += size
+
+    def give_back(self, client: str, size: int) -> None:
+        """A request with so many bytes is done with."""
+        self.bytes -= size
+        self._of_client[client] -= size
+        if not self._of_client[client]:
+            del self._of_client[client]
 
 
 class Admission:
-    """ASGI middleware for HTTP: 403 for other pages' requests that change something, 413 for bodies over the limit.
+    """ASGI middleware for HTTP and WebSocket.
 
-    Paths in `own_limit` count their bytes themselves.
+    421 for another host's requests, 403 for other pages' that change something or cost much, 413 for bodies over the
+    limit, 429 where a client has too much under way, 400 for a body of two lengths.
     """
 
-    def __init__(
-        self, app: ASGIApp, *, allow_origin: Collection[str], max_body_bytes: int, own_limit: Collection[str]
-    ) -> None:
+    def __init__(self, app: ASGIApp, *, settings: GatewaySettings, body_limits: Mapping[str, int]) -> None:
+        """`body_limits` are those of paths that do not have the settings' `max_body_bytes`."""
         self._app = app
-        self._allow_origin = allow_origin
-        self._max_body_bytes = max_body_bytes
-        self._own_limit = own_limit
+        self._settings = settings
+        self._body_limits = body_limits
+        own = () if is_address(settings.host) else (settings.host,)
+        self._hosts = Hosts([*settings.allow_host, *own])
+        self._bodies = Bodies(settings.max_bodies_bytes, settings.max_client_bodies_bytes)
+        self._open: Counter[str] = Counter()
+        """Requests and streams under way, of each client."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http":
+        if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
+        refusal = self._refusal(scope)
+        if refusal is not None:
+            await refusal(scope, receive, send)
+            return
+        client = client_of(scope)
+        self._open[client] += 1
+        try:
+            await self._counted(client, scope, receive, send)
+        finally:
+            self._open[client] -= 1
+            if not self._open[client]:
+                del self._open[client]
+
+    def _refusal(self, scope: Scope) -> Response | None:
+        """Why not, by what the head says."""
         headers = Headers(scope=scope)
-        if scope["method"] not in SAFE_METHODS and not may_enter(headers, self._allow_origin):
-            detail = f"pages of {headers['origin']} may not change anything here"
-            await problem(403, "forbidden", detail)(scope, receive, send)
-            return
-        if scope["path"] in self._own_limit:
-            await self._app(scope, receive, send)
-            return
-        limit, came = self._max_body_bytes, 0
-        too_large = f"expected a body of at most {limit} bytes"
+        host = headers.get("host")
+        if not self._hosts.allow(host):
+            detail = f"this server does not go by the name {host!r}; --allow-host makes it one of its names"
+            return problem(421, "misdirected request", detail)
+        client = client_of(scope)
+        if self._open[client] >= self._settings.max_connections_per_address:
+            return _busy(f"{client} has {self._open[client]} requests and streams under way, which is the limit")
+        if scope["type"] == "websocket":
+            return None  # told by a close code who may open streams
+        method, path = scope["method"], scope["path"]
+        if method not in SAFE_METHODS and not may_enter(scope, self._settings.allow_origin):
+            detail = f"pages of {headers['origin'][:80]} may not change anything here; --allow-origin lets them"
+            return problem(403, "forbidden", detail)
+        if _PICTURES.fullmatch(path) and self._is_embedding(headers):
+            detail = "pages of other sites may not show pictures of this server; --allow-embedding lets them"
+            return problem(403, "forbidden", detail)
+        if "transfer-encoding" in headers and "content-length" in headers:
+            return problem(400, "bad request", "expected Content-Length or Transfer-Encoding, got both")
+        declared = headers.get("content-length", "")
+        if declared.isdecimal():
+            limit = self._limit(path)
+            if int(declared) > limit:
+                return problem(TooLargeError.status, TooLargeError.title, f"{_too_large(limit)}, got {declared}")
+            if not self._bodies.room_for(client, int(declared)):
+                return _busy(f"{self._bodies.bytes} bytes of bodies are under way; try again later")
+        return None
+
+    def _is_embedding(self, headers: Headers) -> bool:
+        """Whether a page of another site asks, by what browsers say since 2020 (2023 for Safari)."""
+        if self._settings.allow_embedding or headers.get("origin") in self._settings.allow_origin:
+            return False
+        return headers.get("sec-fetch-site") == "cross-site"
+
+    async def _counted(self, client: str, scope: Scope, receive: Receive, send: Send) -> None:
+        """The request, the bytes of its body counted as they come."""
+        limit, came = self._limit(scope["path"]), 0
 
         async def counted() -> Message:
             nonlocal came
             message = await receive()
-            came += len(message.get("body", b""))
-            if came > limit:
-                raise HTTPException(413, f"{too_large}, got more")
+            size = len(message.get("body", b""))
+            if came + size > limit:
+                raise HTTPException(TooLargeError.status, f"{_too_large(limit)}, got more")
+            if not self._bodies.room_for(client, size):
+                detail = f"{self._bodies.bytes} bytes of bodies are under way; try again later"
+                raise HTTPException(BusyError.status, detail, {"Retry-After": RETRY_AFTER_SECONDS})
+            self._bodies.take(client, size)
+            came += size
             return message
 
-        declared = headers.get("content-length", "")
-        if declared.isdecimal() and int(declared) > limit:
-            await problem(413, "too large", f"{too_large}, got {declared}")(scope, receive, send)
-            return
-        await self._app(scope, counted, send)
+        try:
+            await self._app(scope, counted if scope["type"] == "http" else receive, send)
+        finally:
+            self._bodies.give_back(client, came)
+
+    def _limit(self, path: str) -> int:
+        return self._body_limits.get(path, self._settings.max_body_bytes)
+
+
+def _too_large(limit: int) -> str:
+    return f"expected a body of at most {limit} bytes"
+
+
+def _busy(detail: str) -> Response:
+    return problem(BusyError.status, BusyError.title, detail, headers={"Retry-After": RETRY_AFTER_SECONDS})

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from fastapi import FastAPI
 from fastapi.responses import FileResponse, HTMLResponse
+from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -19,6 +20,8 @@ from culet.gateway.admission import Admission
 from culet.gateway.allowance import Allowance
 from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
+from culet.gateway.methods import Methods
+from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Counters, Gateway
@@ -27,7 +30,8 @@ from culet.gateway.uploads import Uploads
 
 log = logging.getLogger(__name__)
 
-DOCS_PAGE = Path(__file__).with_name("docs.html")
+PARTS = (stills, session_routes, catalogue, upload_routes, health)
+DOCS_FOLDER = Path(__file__).with_name("docs")
 NOT_BUILT = """<!doctype html><meta charset="utf-8"><title>culet</title>
 <h1>culet runs, but its page is not built</h1>
 <p>Build the web client with <code>npm install &amp;&amp; npm run build</code> in <code>client/web</code>, then reload.
@@ -46,12 +50,14 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     )
     app.state.gateway = _gateway(settings)
     problems.install(app)
-    for routes in (stills, session_routes, catalogue, upload_routes, health):
-        app.include_router(routes.router)
+    for part in PARTS:
+        app.include_router(part.router)
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> FileResponse:
-        return FileResponse(DOCS_PAGE, media_type="text/html")
+        return FileResponse(DOCS_FOLDER / "index.html")
+
+    app.mount("/docs", StaticFiles(directory=DOCS_FOLDER))  # its script and style: no policy allows those in a page
 
     if (settings.web / "index.html").is_file():
         app.mount("/", StaticFiles(directory=settings.web, html=True))
@@ -61,13 +67,19 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         async def not_built() -> HTMLResponse:
             return HTMLResponse(NOT_BUILT, 503)
 
-    app.add_middleware(
-        Admission,
-        allow_origin=settings.allow_origin,
-        max_body_bytes=settings.max_body_bytes,
-        own_limit=upload_routes.PATHS,
-    )
+    # The last one is the first that a request meets.
+    app.add_middleware(Methods, routes=[*app.routes, *(route for part in PARTS for route in part.router.routes)])
+    app.add_middleware(Admission, settings=settings, body_limits=upload_routes.body_limits(settings))
     app.add_middleware(Allowance, clients=app.state.gateway.clients)
+    if settings.allow_origin:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=settings.allow_origin,
+            allow_methods=("GET", "HEAD", "POST", "PATCH", "DELETE"),
+            expose_headers=("Location", "Retry-After", "Content-Disposition"),
+            allow_private_network=True,
+        )
+    app.add_middleware(SecurityHeaders, settings=settings)
     app.add_middleware(_CountAnswers, counters=app.state.gateway.counters)
     return app
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
-from pydantic import ByteSize, Field
+from pydantic import ByteSize, Field, field_validator
 
+from culet.gateway.origins import Hosts, read_origin
 from culet.settings import MEBIBYTE, Settings, Words
 
 BUILT_CLIENT = Path(__file__).parents[3] / "client" / "web" / "dist"
@@ -20,9 +22,22 @@ class GatewaySettings(Settings):
     host: str = Field("127.0.0.1", description="Address to listen on; 0.0.0.0 for every one.")
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 for a free one.")
     web: Path = Field(BUILT_CLIENT, description="Folder of the built web client, served at /.")
+    allow_host: Words = Field(
+        (),
+        description="A further name that this server goes by, such as gems.example, *.gems.example, or * for any; "
+        "repeatable. Addresses, localhost and the host that is listened on are always names of it.",
+    )
     allow_origin: Words = Field(
         (),
-        description="A further page that may open streams and change things, such as https://gems.example; repeatable.",
+        description="A further page that may open streams and use the REST interface, such as https://gems.example; "
+        "repeatable.",
+    )
+    allow_embedding: bool = Field(
+        default=False, description="Let pages of any other site show pictures of /api, which take the engine's time."
+    )
+    frame_ancestor: Words = Field(
+        (),
+        description="A site, such as https://shop.example, whose pages may show the page in a frame; repeatable.",
     )
     trusted_proxy: Words = Field(
         (),
@@ -72,6 +87,14 @@ class GatewaySettings(Settings):
     max_body_bytes: ByteSize = Field(
         ByteSize(MEBIBYTE), ge=1024, description="Size of a request's body that is not an upload."
     )
+    max_bodies_bytes: ByteSize = Field(
+        ByteSize(256 * MEBIBYTE), ge=1, description="Size of all requests' bodies that are under way."
+    )
+    max_client_bodies_bytes: ByteSize = Field(
+        ByteSize(128 * MEBIBYTE),
+        ge=1,
+        description="Size of those of one client (an address, or the /64 of an IPv6).",
+    )
     max_kept_upload_bytes: ByteSize = Field(
         ByteSize(256 * MEBIBYTE),
         ge=1,
@@ -84,3 +107,27 @@ class GatewaySettings(Settings):
     engine_silence_seconds: float = Field(
         3.5, gt=1, description="Without a heartbeat (one a second) for so long, the engine counts as down."
     )
+
+    @field_validator("allow_host")
+    @classmethod
+    def _names(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        Hosts(given)
+        return given
+
+    @field_validator("allow_origin")
+    @classmethod
+    def _origins(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        """As browsers write them."""
+        found = {text: read_origin(text) for text in given}
+        if None in found.values():
+            raise ValueError("expected an origin such as https://gems.example")
+        return tuple(map(str, found.values()))
+
+    @field_validator("frame_ancestor")
+    @classmethod
+    def _sources(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        """Words of a Content-Security-Policy."""
+        for text in given:
+            if re.fullmatch(r"\*|https?:|(https?://)?(\*\.)?[\w.-]+(:(\d+|\*))?", text) is None:
+                raise ValueError("expected a site such as https://shop.example")
+        return given

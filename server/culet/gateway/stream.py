@@ -17,9 +17,9 @@ from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
 from culet.errors import BusyError, CuletError, InputError, NotFoundError
-from culet.gateway.admission import may_enter
 from culet.gateway.bucket import Bucket
 from culet.gateway.client_address import client_of
+from culet.gateway.origins import may_enter
 from culet.gateway.problems import check_numbers
 from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
@@ -54,7 +54,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     """Serve one viewer until it leaves."""
     offered: list[str] = websocket.scope["subprotocols"]
     await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in offered else None)
-    if not may_enter(websocket.headers, gateway.settings.allow_origin):
+    if not may_enter(websocket.scope, gateway.settings.allow_origin):
         await websocket.close(
             CloseCode.FORBIDDEN_ORIGIN, f"pages of {websocket.headers['origin'][:60]} may not open streams here"
         )

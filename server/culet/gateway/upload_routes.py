@@ -6,9 +6,10 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 
-from culet.gateway.form import read_form
+from culet.gateway.form import ENVELOPE_BYTES, read_form
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
+from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import MESH, SKY, Kind
 from culet.scene.model import Model
 from culet_protocol.engine import DescribedMesh, DescribedSky
@@ -16,8 +17,6 @@ from culet_protocol.engine import DescribedMesh, DescribedSky
 router = APIRouter(tags=["uploads"])
 
 MESHES_PATH, SKIES_PATH = "/api/meshes", "/api/skies"
-PATHS = frozenset({MESHES_PATH, SKIES_PATH})
-"""They count the bytes of bodies themselves, by a limit of their own."""
 
 _FORM: dict[str, Any] = {
     "requestBody": {
@@ -33,6 +32,11 @@ _FORM: dict[str, Any] = {
         },
     }
 }
+
+
+def body_limits(settings: GatewaySettings) -> dict[str, int]:
+    """The largest body of each path here, in bytes."""
+    return dict.fromkeys((MESHES_PATH, SKIES_PATH), settings.max_upload_bytes + ENVELOPE_BYTES)
 
 
 class MeshAnswer(Model):

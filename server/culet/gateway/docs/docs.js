@@ -1,26 +1,3 @@
-<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>culet: API</title>
-<link rel="icon" href="data:,">
-<style>
-  body { font: 15px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #1c2430; }
-  details { border: 1px solid #ccd4e0; border-radius: 6px; margin: .5rem 0; padding: .4rem .8rem; }
-  summary { cursor: pointer; }
-  code, pre, textarea, input { font: 13px ui-monospace, monospace; }
-  .method { display: inline-block; min-width: 4.5rem; font-weight: 700; color: #135; }
-  label { display: block; margin: .4rem 0; }
-  label small { color: #566; }
-  textarea { width: 100%; height: 8rem; box-sizing: border-box; }
-  pre { background: #f3f5f9; padding: .6rem; overflow: auto; max-height: 30rem; }
-  img { max-width: 100%; }
-</style>
-<h1>culet: API</h1>
-<p>Every request here can be run as it stands. The same as a document for tools: <a href="openapi.json">openapi.json</a>.
-The stream <code>WS /api/sessions/{id}/stream</code> is specified in the repository's <code>protocol/README.md</code>.</p>
-<main></main>
-<script type="module">
 // A listing of openapi.json without anything from the network: what each request takes, its errors, and a button.
 const api = await (await fetch("openapi.json")).json();
 const element = (name, properties = {}, ...children) => {
@@ -99,5 +76,3 @@ async function shown(response) {
   const viewable = type === "image/png" || type === "image/jpeg";
   return [heading, link, ...(viewable ? [element("p", {}, element("img", { src: link.href, alt: "the answer" }))] : [])];
 }
-</script>
-</html>
