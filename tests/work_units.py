@@ -5,7 +5,7 @@ from __future__ import annotations
 from xdist.scheduler import LoadFileScheduling
 
 
-class ByFile(LoadFileScheduling):  # type: ignore[misc] - xdist has no types
+class ByFile(LoadFileScheduling):  # type: ignore[misc]  # xdist has no types
     """A worker takes a whole file, whose fixtures are made once; of the pages' tests all, which share a browser."""
 
     def _split_scope(self, nodeid: str) -> str:

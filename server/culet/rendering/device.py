@@ -102,7 +102,7 @@ def open_device() -> Device:
 def remedy(found: Sequence[Any]) -> str:
     """What to do if none of the devices found works. Without a folder for its machine code PoCL 3.1 offers none, and
     does not say why."""
-    folder = _pocl_cache()
+    folder = pocl_cache()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -113,7 +113,7 @@ def remedy(found: Sequence[Any]) -> str:
         return f"PoCL cannot write to its cache {folder} ({error.strerror}); name another folder by POCL_CACHE_DIR"
 
 
-def _pocl_cache() -> Path:
+def pocl_cache() -> Path:
     """As PoCL's `pocl_cache_init_topdir` finds it."""
     if own := os.environ.get("POCL_CACHE_DIR"):
         return Path(own)

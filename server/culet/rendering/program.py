@@ -12,8 +12,9 @@ import pyopencl as cl
 
 import culet_kernels
 from culet.errors import DeviceError
-from culet.rendering.device import Device, Real
+from culet.rendering.device import Device, Real, pocl_cache
 from culet.rendering.features import Features
+from culet.rendering.making import alone
 from culet.rendering.parameters import layout
 
 log = logging.getLogger(__name__)
@@ -99,9 +100,11 @@ class Programs:
             log.exception("the general program goes on serving: the special one cannot be made (%s)", features)
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
-        program = build(self._device, "render.cl", [*variant.options, *features.options])
-        kernel = cl.Kernel(program, "render")
-        warm_up(self._device, kernel)
+        options = [*variant.options, *features.options]
+        with alone(pocl_cache(), f"{culet_kernels.source('render.cl')} {options}"):
+            program = build(self._device, "render.cl", options)
+            kernel = cl.Kernel(program, "render")
+            warm_up(self._device, kernel)
         return cl.Kernel(program, "render")
 
 
