@@ -20,9 +20,9 @@ from typing import Any
 import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
-from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from culet.gateway.client_address import Network, client_at
+from culet.gateway.paced_stream import PacedStream
 from culet.gateway.problems import problem
 from culet.gateway.settings import GatewaySettings
 
@@ -357,8 +357,8 @@ class _LingeringTransport(asyncio.Transport):
         return self._transport.get_protocol()
 
 
-class GuardedStream(WebSocketsSansIOProtocol):
-    """uvicorn's WebSocket, which the guard counts too."""
+class GuardedStream(PacedStream):
+    """A WebSocket, which the guard counts too."""
 
     config: GuardedConfig
 
