@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import json
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from playwright.sync_api import ConsoleMessage, Page, Request, WebSocket
+from playwright.sync_api import Error as PlaywrightError
 
 from culet_protocol.frame import Flags
 from e2e.server import PATIENCE, Server
@@ -24,6 +26,7 @@ Pixels = NDArray[np.int16]
 """(height, width, 3), 0 to 255; signed, so that differences are."""
 
 MILLISECONDS = 1e3
+POLL_MILLISECONDS = 20
 OF_ONE_VIEWER = ("ack", "ping", "resize", "visibility")
 """Messages that change nothing in the session."""
 
@@ -72,7 +75,7 @@ class View:
     def open(self, query: str = "?preset=matte") -> View:
         """Go to the page, and wait for its first picture."""
         self.page.goto(f"{self.server.url}/{query}")
-        self.page.wait_for_function("() => window.culet && culet.framesShown > 0")
+        self.until("() => window.culet && culet.framesShown > 0")
         return self
 
     @property
@@ -105,8 +108,22 @@ class View:
         return cast(float, self.page.evaluate("name => culet[name]", name))
 
     def until(self, condition: str, argument: object = None) -> None:
-        """Wait until a JavaScript function of the argument is true."""
-        self.page.wait_for_function(condition, arg=argument)
+        """Wait until a JavaScript function of the argument is true.
+
+        Asked from here: Playwright's `wait_for_function` evaluates text in the page, which the page's policy forbids.
+        """
+        deadline = time.monotonic() + PATIENCE
+        while not self._holds(condition, argument):
+            assert time.monotonic() < deadline, f"never true in {PATIENCE} s: {condition} of {argument}"
+            self.page.wait_for_timeout(POLL_MILLISECONDS)
+
+    def _holds(self, condition: str, argument: object) -> bool:
+        try:
+            return bool(self.page.evaluate(condition, argument))
+        except PlaywrightError as error:
+            if "context was destroyed" in str(error):  # by a reload
+                return False
+            raise
 
     def look(self) -> Seen:
         """The canvas and its frame, in one go."""
