@@ -14,8 +14,8 @@ from culet.scene import Scene
 from culet.study.cases import ring as finer_ring
 from geometry.shapes import obj, star_outline
 from geometry.shapes import prism as extruded
-from rendering.views import BARE, UPRIGHT, prism, radiance, slab, take
-from validation.stones import brilliant, ring, skew_block, step_cut
+from rendering.views import BARE, UPRIGHT, radiance, take
+from shared.stones import brilliant, prism, ring, skew_block, slab, step_cut
 
 STONES = [brilliant(), step_cut(), skew_block(), prism(40)]
 STAR = stone_from_mesh(obj(*extruded(star_outline(), 0.8)), "obj", name="star")

@@ -7,51 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.half_spaces import stone_from_half_spaces
 from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from pictures import compared
-from rendering.views import BARE, UPRIGHT, prism, radiance, slab, take
+from rendering.views import BARE, UPRIGHT, radiance, take
+from shared.extremes import GLOW, SCENES, THIN_STONES, looking
 
 SIZE = 64, 36
-GLOW: dict[str, Any] = {"environment": {"kind": "constant"}, "lights": []}
-"""A sky of radiance 1 and unlit surfaces below 1: no pixel may be brighter."""
 
 
-def looking(position: list[float], target: list[float], **camera: object) -> dict[str, Any]:
-    return {"camera": {"position": position, "target": target, **camera}}
-
-
-EXTREMES: dict[str, dict[str, Any]] = {
-    "at the centre": {"stones": [UPRIGHT], **looking([0, 0, 0], [1, 0, 0], fov_degrees=170)},
-    "on the table": {"stones": [UPRIGHT], **looking([0, 0.30, 0], [0, 5, 0.1], fov_degrees=170)},
-    "on the axis of symmetry": {"stones": [UPRIGHT], **looking([0, 3, 0], [0, 0, 0], up=[0, 0, -1])},
-    "in the plane of the girdle": {"stones": [UPRIGHT], **looking([3, 0.1, 0], [-3, 0.1, 0], fov_degrees=1)},
-    "in the floor": {**looking([0, -1, 5], [0, -1, 0])},
-    "along the floor": {**looking([0, -0.999999, 5], [0, -0.999999, 0])},
-    "below the floor": {**looking([0, -3, 3], [0, 0, 0])},
-    "behind a wall": {"walls": {"kind": "mirror"}, **looking([0, 0, -20], [0, 0, 0])},
-    "between mirrors": {"walls": {"kind": "mirror"}, **looking([0, 0, 7], [0, -0.5, -8], fov_degrees=120)},
-    "far away": {**looking([3e5, 8e5, 6e5], [0, 0.5, 0], fov_degrees=1e-3)},
-    "stone far away": {"stones": [{"position": [1e8, 5, 1e8]}], **looking([1e8, 5, 1e8 + 4], [1e8, 5, 1e8])},
-    "widest": {"camera": {"fov_degrees": 170}},
-    "opaque": {"stones": [{"absorption": [1e6, 1e6, 1e6]}]},
-    "as opaque as can be": {"stones": [{"absorption": [1e9, 0, 1e9], "size_mm": 1e9}]},
-    "index 1": {"stones": [{"material": {"ior": [1, 1, 1]}}]},
-    "index just above 1": {"stones": [{"material": {"ior": [1 + 1e-6, 1 + 1e-6, 1 + 1e-7]}}]},
-    "index 10": {"stones": [{"material": {"ior": [10, 10, 10]}}]},
-    "indices 1 and 10": {"stones": [{"material": {"ior": [1, 10, 1.0001]}}]},
-    "finest": {"optics": {"cutoff": 1e-9, "max_bounces": 65536}},
-    "coarsest": {"optics": {"cutoff": 0.999999, "max_bounces": 1}},
-    "sunk in the floor": {"stones": [{"position": [0, -1, 0]}]},
-    "in a wall": {"walls": {"kind": "mirror"}, "stones": [{"position": [0, 0, -8]}]},
-    "light in the stone": {"floor": {"kind": "matte"}, "lights": [{"position": [0, 0.5, 0], "colour": [0, 0, 0]}]},
-    "light in the camera": {"floor": {"kind": "matte"}, "lights": [{"position": [0, 2.4, 4.6], "colour": [0, 0, 0]}]},
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("extreme", EXTREMES.values(), ids=EXTREMES.keys())
+@pytest.mark.parametrize("extreme", SCENES.values(), ids=SCENES.keys())
 def test_no_light_comes_out_of_nothing(renderer: Renderer, exact: Renderer, extreme: dict[str, Any]) -> None:
     """Between 0 and 1 under a sky of 1, whatever the view; finite in both precisions."""
     for used, tolerance in ((renderer, 2e-7), (exact, 5e-16)):  # measured 0 and 0
@@ -64,7 +30,7 @@ def test_no_light_comes_out_of_nothing(renderer: Renderer, exact: Renderer, extr
         assert pixels.max() <= 1 + tolerance
 
 
-@pytest.mark.parametrize("extreme", EXTREMES.values(), ids=EXTREMES.keys())
+@pytest.mark.parametrize("extreme", SCENES.values(), ids=SCENES.keys())
 def test_single_precision_sees_what_double_sees(renderer: Renderer, exact: Renderer, extreme: dict[str, Any]) -> None:
     """On the whole: the mean under a gradient, where a wrong facet shows."""
     scene = Scene.read({**extreme, "lights": [], "environment": {"kind": "gradient"}})
@@ -100,16 +66,7 @@ def test_a_stone_looks_the_same_from_far_and_from_farther(exact: Renderer, rende
     ).mean() < 0.001  # measured 1.9e-4
 
 
-def needle() -> Stone:
-    """A thousand times as long as it is wide."""
-    sides = [[x, y, 0, 0.001] for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))]
-    return stone_from_half_spaces("needle", np.array([*sides, [0, 0, 1, 1], [0, 0, -1, 1.0]]))
-
-
-STONES = {"needle": needle(), "leaf": slab(1e-5), "splinter": prism(0.5), "blade": prism(179)}
-
-
-@pytest.mark.parametrize("stone", STONES.values(), ids=STONES.keys())
+@pytest.mark.parametrize("stone", THIN_STONES.values(), ids=THIN_STONES.keys())
 def test_thin_stones_lose_and_gain_no_light(renderer: Renderer, exact: Renderer, stone: Stone) -> None:
     """The furnace on shapes of 1000 : 1 and more: all light is seen or counted."""
     camera = looking([0.8, 1.5, 2.5], [0, 0, 0], fov_degrees=40)

@@ -10,7 +10,8 @@ import pytest
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from pictures import compared
-from rendering.views import BARE, UPRIGHT, prism, radiance, take, without_stone
+from rendering.views import BARE, UPRIGHT, radiance, take, without_stone
+from shared.stones import prism
 
 FURNACE: dict[str, Any] = {**BARE, "environment": {"kind": "constant"}}
 VIEWS: dict[str, dict[str, Any]] = {

@@ -6,20 +6,12 @@ from typing import Any
 
 import pytest
 
-from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
-from geometry.shapes import obj, prism, star_outline
 from rendering.views import BARE, UPRIGHT, radiance, take
-from validation.stones import brilliant, ring
-
-
-def star() -> Stone:
-    """Ten dents and points: sharp edges inward and outward."""
-    return stone_from_mesh(obj(*prism(star_outline(), 0.8)), "obj", name="star")
-
+from shared.stones import brilliant, ring, star
 
 STONES = {"star": star(), "ring": ring(), "brilliant": brilliant()}
 

@@ -10,11 +10,9 @@ from culet.geometry.stone import Stone
 from culet.rendering.features import features_of
 from culet.rendering.mirrors import makes_finite_group
 from culet.scene import Scene
-from culet.study.extremes import ball
 from geometry.shapes import obj
 from geometry.shapes import prism as extruded
-from rendering.views import prism, slab
-from validation.stones import brilliant, ring, skew_block, step_cut
+from shared.stones import ball, brilliant, prism, ring, skew_block, slab, step_cut
 
 L_SHAPE = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]) - 0.8
 

@@ -14,8 +14,8 @@ from culet.rendering.renderer import Renderer
 from culet.scene import Scene, StoneSettings
 from optics.closed_forms import DIAMOND
 from rendering import ray_fields
-from rendering.views import BARE, UPRIGHT, Array, radiance, slab, take
-from validation.stones import skew_block
+from rendering.views import BARE, UPRIGHT, Array, radiance, take
+from shared.stones import skew_block, slab
 
 FINE = {"cutoff": 1e-9, "max_bounces": 65536}
 

@@ -11,7 +11,8 @@ from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from optics.closed_forms import DIAMOND, deviation, fresnel, minimum_deviation
-from rendering.views import BARE, UPRIGHT, prism, radiance, take
+from rendering.views import BARE, UPRIGHT, radiance, take
+from shared.stones import prism
 
 LEFT = 0
 """The facet that the ray enters by."""

@@ -16,7 +16,7 @@ from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from optics.closed_forms import DIAMOND, fresnel, slab
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
-from rendering.views import slab as slab_stone
+from shared.stones import slab as slab_stone
 
 HALF_HEIGHT = 0.01
 """R; light that is seen at 75 degrees moves 0.009 R sideways in each passage, the chain ends before the plate does."""

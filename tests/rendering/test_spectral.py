@@ -13,7 +13,8 @@ from culet.rendering.chains import GROUPS, chain_table
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from optics.closed_forms import deviation, fresnel, minimum_deviation
-from rendering.views import BARE, UPRIGHT, Array, prism, radiance, take
+from rendering.views import BARE, UPRIGHT, Array, radiance, take
+from shared.stones import prism
 
 APEX = math.radians(40)
 LEFT = 0

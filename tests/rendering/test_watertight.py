@@ -10,46 +10,21 @@ import numpy as np
 import pyopencl as cl
 import pytest
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 import culet_kernels
-from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
 from culet.rendering.device import Device, Real
 from culet.rendering.parameters import layout
 from culet.rendering.program import FLAGS, Variant
 from culet.rendering.projection import rotation_matrix
 from culet.rendering.tree import tree_of
-from culet.study.extremes import ball, box
-from geometry.shapes import obj, prism, star_outline
 from rendering.views import Array
-from validation.stones import brilliant, ring
+from shared.stones import ball, box, brilliant, ring, star, thorns
 
 BOUNCES = 40
 ETA = 2.42
 TURNS = 4
 """Orientations of the stone, the first of which is that of its file."""
-
-
-def star() -> Stone:
-    """Ten dents and points between two flat faces."""
-    return stone_from_mesh(obj(*prism(star_outline(), 0.8)), "obj", name="star")
-
-
-def thorns(seed: int) -> Callable[[], Stone]:
-    """300 random directions, at random distances from the centre: skinny triangles, sharp peaks and dents."""
-
-    def make() -> Stone:
-        random = np.random.default_rng(seed)
-        directions = random.normal(size=(300, 3))
-        directions /= np.linalg.norm(directions, axis=1)[:, None]
-        triangles = ConvexHull(directions).simplices
-        a, b, c = directions[triangles].transpose(1, 0, 2)
-        inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
-        triangles[inward] = triangles[inward][:, ::-1]
-        return stone_from_mesh(obj(directions * random.uniform(0.3, 1, (300, 1)), triangles), "obj", name="thorns")
-
-    return make
 
 
 STONES: dict[str, Callable[[], Stone]] = {

@@ -1,4 +1,4 @@
-"""Scenes and stones whose pictures have closed forms, and pictures as plain arrays."""
+"""Scenes that hold little, and pictures as plain arrays."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.half_spaces import stone_from_half_spaces
 from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.rendering.features import Features
@@ -47,24 +46,6 @@ def radiance(picture: Picture) -> Array:
 
 def without_stone(scene: Scene) -> Scene:
     return scene.model_copy(update={"stones": ()})
-
-
-def slab(half_height: float) -> Stone:
-    """A plate between y = -half_height and half_height, of square outline; its corners are at distance 1."""
-    half_width = math.sqrt((1 - half_height**2) / 2)
-    planes = [
-        [*(sign * np.eye(3)[axis]), extent]
-        for axis, extent in enumerate((half_width, half_height, half_width))
-        for sign in (1, -1)
-    ]
-    return stone_from_half_spaces("slab", np.array(planes))
-
-
-def prism(apex_degrees: float) -> Stone:
-    """A prism along z with its apex up: facet 0 faces -x, facet 1 faces +x, both half the apex angle from vertical."""
-    half = math.radians(apex_degrees) / 2
-    left, right = [-math.cos(half), math.sin(half), 0, 0], [math.cos(half), math.sin(half), 0, 0]
-    return stone_from_half_spaces("prism", np.array([left, right, [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1.0]]))
 
 
 def pixel_directions(scene: Scene, width: int, height: int) -> Array:

@@ -10,7 +10,7 @@ import trimesh
 from culet.geometry.stone import Stone
 from culet.simulation.flight import SAGITTA
 from culet.simulation.state import Triple
-from simulation.conftest import stone_of as stone_of_mesh
+from shared.trimesh_stones import by_trimesh
 from simulation.solids import (
     TABLE_DOWN,
     TILTED,
@@ -27,12 +27,6 @@ from simulation.solids import (
 
 CONTACT_STEP = 0.02 / math.sqrt(G)
 """s, as the scene's default."""
-
-
-@pytest.fixture(scope="module")
-def ball() -> Stone:
-    """A polyhedron of 2562 vertices: rolls like a sphere as far as it is one."""
-    return stone_of_mesh("ball", trimesh.creation.icosphere(4))
 
 
 def test_free_fall_is_on_the_parabola_at_any_step(box: Stone) -> None:
@@ -188,7 +182,7 @@ def test_a_slender_block_rocks_with_housners_period(box: Stone) -> None:
 
     Housner 1963, with p^2 = m g r / I about the pivot (3 g / 4 r for a flat block) and alpha small.
     """
-    slim = stone_of_mesh("slim", trimesh.creation.box((0.2, 2, 0.2)))
+    slim = by_trimesh("slim", trimesh.creation.box((0.2, 2, 0.2)))
     half_width, half_height = (float(slim.vertices[:, axis].max()) for axis in (0, 1))
     arm, alpha = math.hypot(half_width, half_height), math.atan(half_width / half_height)
     inertia = float(slim.mass.inertia[2, 2]) + arm**2

@@ -17,7 +17,7 @@ from culet.simulation.clock import FixedStepClock
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR, WALLS, Surface
-from simulation.conftest import stone_of as stone_of_mesh
+from shared.trimesh_stones import by_trimesh
 from simulation.solids import TABLE_DOWN, TILTED, UPRIGHT, G, about, advance, digest, nearest, numbers, rigid
 
 ROOM = (FLOOR, *WALLS)
@@ -86,8 +86,8 @@ def test_the_same_drop_in_any_units_agrees_up_to_its_second_impact(brilliant: St
 @pytest.mark.parametrize("unit", [1e-3, 25.4])
 def test_the_same_drop_of_a_stone_in_another_unit_of_length_agrees(unit: float) -> None:
     mesh = trimesh.creation.cone(radius=1, height=1.3, sections=16)
-    ours = stone_of_mesh("cone", mesh)
-    other = stone_of_mesh("cone", trimesh.Trimesh(mesh.vertices * unit, mesh.faces))
+    ours = by_trimesh("cone", mesh)
+    other = by_trimesh("cone", trimesh.Trimesh(mesh.vertices * unit, mesh.faces))
     paths = [np.array(scaled_drop(stone, 1, 1, 1)) for stone in (ours, other)]
     length = min(map(len, paths)) - 1
     assert paths[1][:length] == pytest.approx(paths[0][:length], abs=1e-12)  # measured 1e-15
@@ -224,7 +224,7 @@ def test_a_start_in_a_corner_of_three_planes_comes_out_and_rests(brilliant: Ston
 @pytest.mark.parametrize("angle", [0.3, 0.8, 1.2])
 def test_painleves_rod_gets_a_bounded_impulse(friction: float, angle: float) -> None:
     """A rod that slides on its end against the lean: with mu > 4/3 there is no answer, or two (Painlevé 1895)."""
-    rod = stone_of_mesh("rod", trimesh.creation.box((100, 1, 1)))
+    rod = by_trimesh("rod", trimesh.creation.box((100, 1, 1)))
     orientation = about((0.0, 0.0, 1.0), angle)
     lift = nearest(rigid(rod, orientation=orientation))
     for speed in (5.0, -5.0):

@@ -17,9 +17,9 @@ from culet.rendering.panoramas import directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from rendering.views import BARE, UPRIGHT
+from shared.stones import brilliant, ring, skew_block, step_cut
 from validation.comparison import Seen, Verdict, compare, seen
 from validation.mitsuba_reference import Array, reference
-from validation.stones import brilliant, ring, skew_block, step_cut
 
 pytestmark = pytest.mark.validation
 
