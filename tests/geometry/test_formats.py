@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 import time
 from collections.abc import Mapping, Sequence
@@ -178,14 +179,15 @@ def one_mesh(count: int, nodes: Sequence[Mapping[str, object]], **more: object) 
     ("data", "error", "message"),
     [
         (one_mesh(3, [{"children": [1]}, {"children": [0]}]), MeshError, "two parents"),
-        (one_mesh(10**9, [{"mesh": 0}]), MeshError, "claims 1000000000 items"),
+        (one_mesh(10**9, [{"mesh": 0}]), TooLargeError, "at most 200000 triangles"),
+        (one_mesh(300_000, [{"mesh": 0}]), MeshError, "needs 3600000 bytes of a buffer view; got 36"),
         (one_mesh(3, [{"mesh": 0}], extensionsUsed=["KHR_draco_mesh_compression"]), MeshError, "draco"),
-        (one_mesh(3, [{"mesh": 0}], accessors=[{**POSITION, "count": 3, "sparse": {}}]), MeshError, "sparse"),
-        (one_mesh(3, [{"mesh": 5}]), MeshError, "malformed"),
+        (one_mesh(3, [{"mesh": 0}], accessors=[{**POSITION, "count": 3, "sparse": {}}]), MeshError, "malformed"),
+        (one_mesh(3, [{"mesh": 5}]), MeshError, "node 0 names mesh 5 of 1"),
         (one_mesh(3, [{"mesh": 0}], scenes=[]), MeshError, "no scene"),
         (one_mesh(3, [{"children": list(range(1, 20_001))}, *[{"mesh": 0}] * 20_000]), TooLargeError, "nodes"),
     ],
-    ids=["cycle", "count", "draco", "sparse", "index", "no scene", "many nodes"],
+    ids=["cycle", "count", "buffer", "draco", "sparse", "index", "no scene", "many nodes"],
 )
 def test_a_glb_that_lies_is_refused(data: bytes, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
@@ -201,27 +203,31 @@ def test_a_glb_that_lies_is_refused(data: bytes, error: type[Exception], message
         ("obj", b"v 0 0\n", "line 1: expected v x y z"),
         ("obj", b"v 0 0 0\nf 1 1\n", "line 2: expected a face of 3 corners"),
         ("obj", b"v 0 0 0\nf a b c\n", "line 2: expected a vertex index"),
-        ("obj", b"v 0 0 x\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not a readable mesh"),
-        ("off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n", "expected 3 vertices and 1 faces, a line each; got 3 lines"),
-        ("off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "face 0: expected a number of corners"),
+        ("obj", b"v 0 0 x\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "line 1: expected a number, got 'x'"),
+        (
+            "off",
+            b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n",
+            "expected 3 vertices and 1 faces, a line each; the file ends in line 5 with 3 and 0",
+        ),
+        ("off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "line 6: expected a number of corners"),
         ("off", b"OFF\nmany\n", "numbers of vertices and faces"),
         ("off", b"obj\n", "expected OFF, got 'obj"),
         ("ply", b"ply\nformat ascii 1.0\n", "expected a PLY header"),
         ("ply", b"ply\nformat other 1.0\nend_header\n", "PLY format 'other' is not known"),
         ("ply", b"ply\nformat ascii 1.0\nelement vertex -5\nend_header\n", "cannot be understood"),
-        ("ply", binary_ply(*cube())[:-1], "PLY ends within its rows"),
-        ("ply", binary_ply(*cube())[:200], "PLY ends within its vertex rows"),
+        ("ply", binary_ply(*cube())[:-1], "the file is cut off: it ends within its rows of face, after 5 of 6"),
+        ("ply", binary_ply(*cube())[:200], "the file is cut off: it ends within its rows of vertex, after"),
         ("glb", b"glTF", "expected a GLB header of 20 bytes, got 4"),
         ("glb", bytes(64), "expected binary glTF 2.0"),
         ("stl", b"solid nothing\nendsolid nothing\n", "the mesh is empty: no triangles"),
         ("stl", b"not a mesh at all", "expected text from 'solid' to 'endsolid', or binary"),
         ("obj", b" \n ", "the file is empty"),
-        ("obj", b"# nothing\n", "empty: no triangles"),
+        ("obj", b"# nothing\n", "expected polygons (f), got 0 vertices without any"),
         ("3mf", b"PK", "expected a mesh of type obj, off, stl, ply, glb, got '3mf'"),
     ],
 )
 def test_what_is_not_a_mesh_is_refused_by_name(file_type: str, data: bytes, message: str) -> None:
-    with pytest.raises(MeshError, match=message.replace("(", r"\(")):
+    with pytest.raises(MeshError, match=re.escape(message)):
         stone_from_mesh(data, file_type)
 
 
@@ -242,7 +248,7 @@ MILLION = 1_000_000
         ("off", b"OFF\n3 1000000 0\n"),
         ("off", b"OFF\n1 1 0\n0 0 0\n1000000" + b" 0" * MILLION),
         ("stl", bytes(80) + struct.pack("<I", MILLION) + bytes(50 * MILLION)),
-        ("stl", b"solid\n" + b"endfacet\n" * MILLION),
+        ("stl", b"solid\n" + b"facet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n" * MILLION),
         ("ply", big_ply(MILLION)),
         ("glb", one_mesh(3, [{"children": list(range(1, 9))}, *[{"mesh": 0}] * 8])),
     ],

@@ -13,6 +13,7 @@ import numpy as np
 
 from culet.errors import MeshError
 from culet.geometry.assembly import Centre, assemble
+from culet.geometry.closing import closed_bodies
 from culet.geometry.convexity import Polyhedron, convex_form
 from culet.geometry.crossing import crossing_triangles
 from culet.geometry.facets import FLATNESS, facets_of, planes_of
@@ -20,18 +21,7 @@ from culet.geometry.flat_regions import retriangulated
 from culet.geometry.formats import Soup, read_triangles
 from culet.geometry.mass import surface_area
 from culet.geometry.stone import Stone
-from culet.geometry.surface import (
-    NEAR,
-    Bodies,
-    Points,
-    Triangles,
-    bodies_of,
-    refuse_open,
-    weld,
-    weld_near,
-    without_collapsed,
-    without_duplicates,
-)
+from culet.geometry.surface import Bodies, Points, Triangles, weld
 
 MAX_TRIANGLES = 200_000
 MAX_BYTES = 64 << 20
@@ -60,15 +50,20 @@ def stone_from_mesh(
     every repair. MeshError names the defect if there is no such stone; TooLargeError names the limit.
     """
     soup = read_triangles(data, file_type, max_triangles=max_triangles, max_bytes=max_bytes)
-    findings: list[str] = []
+    findings = list(soup.findings)
     if soup.objects > 1:
         findings.append(f"The file shows {soup.objects} meshes; they were joined.")
     vertices = _scaled(soup.vertices[np.unique(soup.triangles)], soup.vertices)
     unused = len(vertices) - len(np.unique(soup.triangles))
     if unused:
         findings.append(f"{_number(unused, 'vertex', 'vertices')} that no face uses left out.")
-    body, source = _largest_body(vertices, soup, findings)
-    return _finished(name, body, source, centre, findings)
+    try:
+        body, source = _largest_body(vertices, soup, findings)
+        return _finished(name, body, source, centre, findings)
+    except MeshError as error:
+        if soup.doubt is None:
+            raise
+        raise MeshError(f"{error}; {soup.doubt}") from error
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,52 +91,13 @@ def _scaled(used: Points, vertices: Points) -> Points:
 
 def _largest_body(vertices: Points, soup: Soup, findings: list[str]) -> tuple[_Body, int]:
     """The closed body of the largest volume, and how many triangles the file had."""
-    count = len(soup.triangles)
     given = len(np.unique(soup.triangles))
     points, triangles = weld(vertices, soup.triangles)
-    bodies, notes = _connected(points, triangles, count)
-    if not bodies.closed.any():
-        near_points, near_triangles = weld_near(points, triangles, NEAR * 2)
-        if len(near_points) < len(points):
-            near, near_notes = _connected(near_points, near_triangles, count)
-            if near.closed.any():
-                gone = len(points) - len(near_points)
-                joined = f"{_number(gone, 'vertex', 'vertices')} nearer than {NEAR:g} of the extent to another joined."
-                points, bodies, notes = near_points, near, [joined, *near_notes]
-    if len(points) < given:
-        findings.append(f"{given} vertices, {len(points)} of them distinct: equal ones were joined.")
-    findings += notes
-    closed = bodies.closed
-    if not closed.any():
-        raise refuse_open(bodies)
-    taken = int(np.argmax(bodies.volume))
-    _tell_others(bodies, taken, findings)
-    return _cut_out(points, bodies, taken, findings), count
-
-
-def _connected(points: Points, triangles: Triangles, count: int) -> tuple[Bodies, list[str]]:
-    """The bodies of the triangles that mean something, and a sentence about the others."""
-    notes = []
-    solid = without_collapsed(triangles)
-    if len(solid) < len(triangles):
-        notes.append(
-            f"{len(triangles) - len(solid)} of {count} triangles degenerate (two corners in one place): dropped."
-        )
-    if len(solid) == 0:
-        raise MeshError("the mesh is flat: every triangle is degenerate, two of its corners in one place")
-    once = without_duplicates(solid, keep_one=True)
-    bodies = bodies_of(points, once)
-    if len(once) < len(solid):
-        said = f"{len(solid) - len(once)} triangles given more than once: dropped."
-        if not bodies.closed.any():
-            # Two bodies face to face: without the wall between them they are one.
-            hollow = without_duplicates(solid, keep_one=False)
-            if len(hollow):
-                open_walls = bodies_of(points, hollow)
-                if open_walls.closed.any():
-                    return open_walls, [*notes, f"{len(solid) - len(hollow)} triangles of inner walls: dropped."]
-        notes.append(said)
-    return bodies, notes
+    closed = closed_bodies(points, triangles, given)
+    findings += closed.notes
+    taken = int(np.argmax(closed.bodies.volume))
+    _tell_others(closed.bodies, taken, findings)
+    return _cut_out(closed.points, closed.bodies, taken, findings), len(soup.triangles)
 
 
 def _tell_others(bodies: Bodies, taken: int, findings: list[str]) -> None:

@@ -53,8 +53,8 @@ def weld(vertices: Points, triangles: Triangles) -> tuple[Points, Triangles]:
     return points[first], label[compact].reshape(-1, 3)
 
 
-def weld_near(vertices: Points, triangles: Triangles, distance: float) -> tuple[Points, Triangles]:
-    """The same with vertices within `distance` / 2 made one.
+def weld_near(vertices: Points, triangles: Triangles, distance: float) -> tuple[Points, Triangles, float]:
+    """The same with vertices within `distance` / 2 made one, and how far one of them is from the one that stays.
 
     Two such points share a cell of width `distance` in at least one of eight grids, each shifted by half a cell along
     some of the axes: linear time, however many points crowd together.
@@ -67,7 +67,9 @@ def weld_near(vertices: Points, triangles: Triangles, distance: float) -> tuple[
     ends = np.concatenate(links)
     _, label = connected_components(coo_array((np.ones(len(ends)), ends.T), shape=(count, count)), directed=False)
     _, first = np.unique(label, return_index=True)
-    return weld(vertices[first], label[triangles].astype(np.int64))
+    moved = vertices - vertices[first[label]]
+    farthest = float(np.sqrt(np.einsum("ij,ij->i", moved, moved).max(initial=0.0)))
+    return *weld(vertices[first], label[triangles].astype(np.int64)), farthest
 
 
 def without_collapsed(triangles: Triangles) -> Triangles:
@@ -150,13 +152,19 @@ def bodies_of(vertices: Points, triangles: Triangles) -> Bodies:
     )
 
 
-def refuse_open(bodies: Bodies) -> MeshError:
-    """What keeps the largest piece, by triangles, from being closed."""
+def refuse_open(bodies: Bodies, gap: float, joined: float) -> MeshError:
+    """What keeps the largest piece, by triangles, from being closed.
+
+    `gap` is the mesh's widest, and gaps of `joined` would have been closed, both in units of its extent.
+    """
     sizes = np.bincount(bodies.piece)
     worst = int(sizes.argmax())
     of = f"the mesh's {len(sizes)} bodies are all unusable; the largest" if len(sizes) > 1 else "the surface"
     if bodies.open_edges[worst]:
-        return MeshError(f"{of} is open: {bodies.open_edges[worst]} boundary edges; expected a closed surface")
+        return MeshError(
+            f"{of} is open: {bodies.open_edges[worst]} boundary edges, the widest gap {gap:.2g} of the extent; "
+            f"expected a closed surface, or gaps of at most {joined:g}, which are closed"
+        )
     if bodies.crowded_edges[worst]:
         return MeshError(
             f"{of} is not a manifold: {bodies.crowded_edges[worst]} edges are shared by more than two triangles"

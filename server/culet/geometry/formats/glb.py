@@ -1,4 +1,8 @@
-"""Binary glTF 2.0: what is refused, and what is too large, before anything is built from it."""
+"""Binary glTF 2.0: the container, and which of its extensions are read.
+
+What may change where a corner is, or whether it is there, is read, told, or refused by name: the glTF specification,
+sections 3.5 (nodes), 3.6 (accessors), 3.7 (meshes, skins, morph targets), and its extensions.
+"""
 
 from __future__ import annotations
 
@@ -7,79 +11,74 @@ import struct
 from typing import Any
 
 from culet.errors import MeshError, TooLargeError
+from culet.geometry.formats.found import Found, Limits
+from culet.geometry.formats.gltf_scene import parts_of
 
-MAX_NODES = 10_000
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_UNREAD = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+MAX_JSON = 8 << 20
+"""Bytes: the largest number of nodes allowed takes a quarter of it. Python takes some thirty times as much."""
+
+_COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+
+_READ = ("KHR_mesh_quantization", "KHR_node_visibility")
+
+_WITHOUT_SHAPE = (
+    *("KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_"),
+    *("KHR_lights_", "EXT_lights_", "KHR_xmp"),
+)
+"""How the names of extensions begin that neither add nor move a corner."""
 
 
-def check(data: bytes, max_triangles: int) -> None:
-    """Read the JSON chunk alone. MeshError names what cannot be read, TooLargeError what is too much."""
+def read(data: bytes, limits: Limits) -> Found:
+    """A part for each mesh that the scene shows, where it shows it. MeshError names what cannot be read."""
     try:
-        _check(_document(data), len(data), max_triangles)
-    except (KeyError, IndexError, TypeError, AttributeError, ValueError, RecursionError) as error:
+        document, binary = _chunks(data)
+        _check_extensions(document)
+        buffers = document.get("buffers", [])
+        if any("uri" in buffer for buffer in buffers):
+            raise MeshError("glTF refers to another file or a data URI; expected one binary buffer within the file")
+        if buffers and buffers[0]["byteLength"] > len(binary):
+            raise MeshError(
+                f"glTF announces a buffer of {buffers[0]['byteLength']} bytes, got {len(binary)}: the file is cut off"
+            )
+        return parts_of(document, binary, limits)
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, RecursionError, OverflowError) as error:
         raise MeshError(f"glTF is malformed: {type(error).__name__} {str(error)[:80]}") from None
 
 
-def _document(data: bytes) -> dict[str, Any]:
+def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
+    """The JSON and the bytes of the binary buffer."""
     if len(data) < 20:
         raise MeshError(f"expected a GLB header of 20 bytes, got {len(data)} bytes")
-    magic, version, _, length, kind = struct.unpack_from("<4sIII4s", data)
-    if magic != b"glTF" or version != 2 or kind != b"JSON" or 20 + length > len(data):
+    magic, version, whole, length, kind = struct.unpack_from("<4sIII4s", data)
+    if magic != b"glTF" or kind != b"JSON":
         raise MeshError("expected binary glTF 2.0 with a JSON chunk")
+    if version != 2:
+        raise MeshError(f"expected binary glTF 2.0, got version {version}")
+    if whole > len(data):
+        raise MeshError(f"glTF announces {whole} bytes, got {len(data)}: the file is cut off")
+    if 20 + length > whole:
+        raise MeshError(f"glTF announces a JSON chunk of {length} bytes in a file of {whole}")
+    if length > MAX_JSON:
+        raise TooLargeError(f"expected a JSON chunk of at most {MAX_JSON} bytes, got {length}")
     document = json.loads(data[20 : 20 + length])
     if not isinstance(document, dict):
         raise MeshError("glTF is malformed: its JSON is no object")
-    return document
+    start = 20 + length
+    if start + 8 > whole:
+        return document, b""
+    size, kind = struct.unpack_from("<I4s", data, start)
+    if kind != b"BIN\0":
+        return document, b""
+    if start + 8 + size > whole:
+        raise MeshError(f"glTF announces a binary chunk of {size} bytes, got {whole - start - 8}: the file is cut off")
+    return document, data[start + 8 : start + 8 + size]
 
 
-def _check(document: dict[str, Any], size: int, max_triangles: int) -> None:
-    for name in _UNREAD:
-        if name in document.get("extensionsRequired", []) or name in document.get("extensionsUsed", []):
+def _check_extensions(document: dict[str, Any]) -> None:
+    required, used = document.get("extensionsRequired", []), document.get("extensionsUsed", [])
+    for name in _COMPRESSED:
+        if name in required or name in used:
             raise MeshError(f"glTF uses {name}, which is not read; export it without compression")
-    if any("uri" in buffer for buffer in document.get("buffers", [])):
-        raise MeshError("glTF refers to another file or a data URI; expected one binary buffer within the file")
-    accessors = document.get("accessors", [])
-    for accessor in accessors:
-        if "sparse" in accessor or "bufferView" not in accessor:
-            raise MeshError("glTF has a sparse or empty accessor, which is not read")
-        if not isinstance(accessor["count"], int) or not 0 <= accessor["count"] <= size:
-            raise MeshError(f"glTF accessor claims {accessor['count']} items in a file of {size} bytes")
-    triangles = [sum(_triangles(p, accessors) for p in mesh["primitives"]) for mesh in document.get("meshes", [])]
-    total = 0
-    for index in _nodes(document):
-        mesh = document["nodes"][index].get("mesh")
-        if mesh is not None:
-            total += triangles[mesh]
-            if total > max_triangles:
-                raise TooLargeError(f"expected at most {max_triangles} triangles, got at least {total}")
-
-
-def _triangles(primitive: dict[str, Any], accessors: list[dict[str, Any]]) -> int:
-    mode = primitive.get("mode", _TRIANGLES)
-    if mode == _FAN:
-        raise MeshError("glTF has a triangle fan, which is not read; export triangles")
-    corners = int(accessors[primitive.get("indices", primitive["attributes"]["POSITION"])]["count"])
-    if mode == _TRIANGLES:
-        return corners // 3
-    return max(corners - 2, 0) if mode == _STRIP else 0
-
-
-def _nodes(document: dict[str, Any]) -> list[int]:
-    """Nodes of the scene that is shown; each has one parent, as the format demands, so that there is no cycle."""
-    scenes = document.get("scenes", [])
-    if not scenes:
-        raise MeshError("glTF has no scene")
-    waiting = list(scenes[document.get("scene", 0)].get("nodes", []))
-    found: list[int] = []
-    seen: set[int] = set()
-    while waiting:
-        index = waiting.pop()
-        if index in seen:
-            raise MeshError(f"glTF node {index} has two parents")
-        seen.add(index)
-        found.append(index)
-        if len(found) > MAX_NODES:
-            raise TooLargeError(f"expected at most {MAX_NODES} glTF nodes, got more")
-        waiting += document["nodes"][index].get("children", [])
-    return found
+    for name in required:
+        if name not in _READ and not str(name).startswith(_WITHOUT_SHAPE):
+            raise MeshError(f"glTF requires {str(name)[:60]!r}, which is not read; export it without this extension")

@@ -1,42 +1,73 @@
-"""OFF (Geomview): polygons cut into fans of triangles, colours and comments left out."""
+"""OFF (Geomview): polygons, with or without colours and normals."""
 
 from __future__ import annotations
 
 import re
-from itertools import pairwise
 
-from culet.errors import MeshError, TooLargeError
+from culet.errors import MeshError
+from culet.geometry.formats.found import Found, Limits, counted, fan, part_of
+from culet.geometry.formats.text import ascii_text, integer, numbered_lines, point, shown
 
-_HEADER = re.compile(rb"\s*(?:ST)?C?N?OFF\b")
+_HEADER = re.compile(rb"(?:ST)?C?N?(?P<space>4?n?)OFF")
+"""Texture coordinates, colours and normals follow each vertex's position, which they leave alone."""
 
 
-def triangles_only(data: bytes, max_triangles: int) -> bytes:
-    """The same mesh with three corners a face.
+def read(data: bytes, limits: Limits) -> Found:
+    """One part with all faces, a polygon cut into a fan of triangles; each vertex and face has a line of its own.
 
-    trimesh 5.2 fails on faces of unlike numbers of corners, and stops without a word where a file ends early.
-    TooLargeError if there are more than `max_triangles`.
+    The word OFF may be missing, as the format says. MeshError names the line.
     """
-    bare = re.sub(rb"#[^\n]*", b"", data.replace(b"\r", b"\n"))
-    header = _HEADER.match(bare)
-    if header is None:
-        raise MeshError(f"expected OFF, got {bare[:20].decode('ascii', 'replace')!r}")
-    lines = [words for line in bare[header.end() :].split(b"\n") if (words := line.split())]
-    try:
-        vertices, faces = (int(word) for word in lines[0][:2])
-    except (IndexError, ValueError):
-        raise MeshError("expected the numbers of vertices and faces after OFF") from None
-    if faces > max_triangles:
-        raise TooLargeError(f"expected at most {max_triangles} triangles, got {faces} faces")
-    if vertices < 0 or faces < 0 or len(lines) < 1 + vertices + faces:
-        raise MeshError(f"expected {vertices} vertices and {faces} faces, a line each; got {len(lines) - 1} lines")
-    triangles: list[bytes] = []
-    for number, words in enumerate(lines[1 + vertices : 1 + vertices + faces]):
-        size = int(words[0]) if words[0].isdigit() else -1
-        if not 3 <= size < len(words):
-            raise MeshError(f"face {number}: expected a number of corners, 3 or more, and that many vertices")
-        corners = words[1 : 1 + size]
-        triangles += (b"3 " + b" ".join((corners[0], a, b)) for a, b in pairwise(corners[1:]))
-        if len(triangles) > max_triangles:
-            raise TooLargeError(f"expected at most {max_triangles} triangles, got more")
-    points = [b" ".join(words[:3]) for words in lines[1 : 1 + vertices]]
-    return b"\n".join([b"OFF", b"%d %d 0" % (vertices, len(triangles)), *points, *triangles, b""])
+    lines = numbered_lines(ascii_text(data))
+    line, words = next(lines, (1, [b""]))
+    header = _HEADER.fullmatch(words[0])
+    if header is not None:
+        if header["space"]:
+            raise MeshError(f"line {line}: {shown(words[0])} has vertices in another space than 3 dimensions")
+        if words[1:2] == [b"BINARY"]:
+            raise MeshError(f"line {line}: binary OFF is not read; expected text")
+        if len(words) == 1:
+            line, words = next(lines, (line, []))
+        else:
+            words = words[1:]
+    elif not words[0].isdigit():
+        raise MeshError(f"line {line}: expected OFF, got {shown(b' '.join(words))}")
+    counts = words[:2]
+    if len(counts) < 2 or not all(word.isdigit() and len(word) < 18 for word in counts):
+        raise MeshError(
+            f"line {line}: expected the numbers of vertices and faces after OFF, got {shown(b' '.join(words))}"
+        )
+    vertices, faces = map(int, counts)
+    limits.check_triangles(faces)
+    limits.check_vertices(vertices)
+    positions: list[tuple[float, float, float]] = []
+    triangles: list[tuple[int, int, int]] = []
+    small = 0
+    for line, words in lines:
+        if len(positions) < vertices:
+            if len(words) < 3:
+                raise MeshError(f"line {line}: expected x y z, got {shown(b' '.join(words))}")
+            positions.append(point(words, line))
+            continue
+        if faces == 0:
+            break
+        faces -= 1
+        size = integer(words[0], line, "a face's number of corners")
+        if not 1 <= size < len(words):
+            raise MeshError(
+                f"line {line}: expected a number of corners, 1 or more, and that many vertices, "
+                f"got {shown(b' '.join(words))}"
+            )
+        limits.check_triangles(len(triangles) + size - 2)
+        corners = [integer(word, line, "a vertex") for word in words[1 : 1 + size]]
+        if min(corners) < 0 or max(corners) >= vertices:
+            worst = min(corners) if min(corners) < 0 else max(corners)
+            raise MeshError(f"line {line}: a face names vertex {worst} of {vertices}, counted from 0")
+        small += size < 3
+        triangles += fan(corners)
+    if len(positions) < vertices or faces:
+        raise MeshError(
+            f"expected {vertices} vertices and {counts[1].decode()} faces, a line each; the file ends in line {line} "
+            f"with {len(positions)} and {int(counts[1]) - faces}"
+        )
+    said = (f"Left out: {counted(small, 'face', 'faces')} of 1 or 2 corners.",) if small else ()
+    return Found((part_of(positions, triangles),), said)

@@ -1,12 +1,17 @@
-"""PLY (Turk 1994): its header, and binary polygons of varying length turned into text."""
+"""PLY (Turk 1994): the header, and what its vertices and faces make."""
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 
-from culet.errors import MeshError, TooLargeError
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.errors import MeshError
+from culet.geometry.formats.found import Found, Limits, Part, counted
+from culet.geometry.formats.ply_rows import Element, Lists, Property, binary_rows, text_rows
+from culet.geometry.formats.text import ascii_text, has_mark, shown
 
 _CODES = {
     **dict.fromkeys(("char", "int8"), "b"),
@@ -20,15 +25,12 @@ _CODES = {
 }
 """PLY's type names to those of `struct`."""
 
+_MAX_HEADER = 1 << 20
+"""Bytes; exporters write a few hundred."""
 
-@dataclass(frozen=True)
-class Element:
-    """Rows of one kind: vertices, faces, or something else."""
-
-    name: str
-    count: int
-    properties: tuple[tuple[str, ...], ...]
-    """(type code,) of a scalar; (code of the length, code of the items) of a list."""
+_END = re.compile(rb"^[ \t]*end_header[ \t]*(\r\n|\n|\r)", re.MULTILINE)
+_CORNERS = ("vertex_indices", "vertex_index")
+"""The names that exporters give a face's list of vertices."""
 
 
 @dataclass(frozen=True)
@@ -36,128 +38,107 @@ class Header:
     """What stands before the rows."""
 
     encoding: str
+    """ascii, binary_little_endian or binary_big_endian."""
     elements: tuple[Element, ...]
-    text: bytes
-    """The header itself."""
+    size: int
+    """Bytes."""
+    lines: int
 
-    def count(self, name: str) -> int:
-        """Rows of that element; 0 if there is none."""
-        return sum(element.count for element in self.elements if element.name == name)
+
+def read(data: bytes, limits: Limits) -> Found:
+    """One part with all faces, a polygon cut into a fan of triangles. MeshError names the line of a text file."""
+    if has_mark(data):
+        data = ascii_text(data)
+    header = read_header(data)
+    vertex, face = _only(header, "vertex"), _only(header, "face")
+    if face is None or face.count == 0:
+        strips = next((element for element in header.elements if element.name == "tristrips"), None)
+        if strips is not None:
+            raise MeshError("PLY holds triangle strips (tristrips), which are not read; export faces")
+        raise MeshError("PLY has no faces: points are no solid")
+    if vertex is None:
+        raise MeshError("PLY has no element vertex")
+    limits.check_triangles(face.count)
+    limits.check_vertices(vertex.count)
+    for axis in "xyz":
+        if not any(own.name == axis and own.length is None for own in vertex.properties):
+            raise MeshError(f"PLY has no property {axis} of a vertex; expected x, y and z")
+    corners = next((own for own in face.properties if own.name in _CORNERS), None)
+    if corners is None or corners.length is None or corners.code in "fd":
+        raise MeshError(f"PLY has no list of integers {' or '.join(_CORNERS)} of a face; expected the vertices of each")
+    if header.encoding == "ascii":
+        wanted = {**{("vertex", axis): None for axis in "xyz"}, ("face", corners.name): vertex.count}
+        columns = text_rows(ascii_text(data[header.size :]), header.lines + 1, header.elements, wanted)
+    else:
+        order = "<" if header.encoding == "binary_little_endian" else ">"
+        columns = binary_rows(data, header.size, header.elements, order)
+    positions = [values for axis in "xyz" if isinstance(values := columns["vertex"].get(axis), np.ndarray)]
+    lists = columns["face"][corners.name]
+    if not isinstance(lists, Lists) or len(positions) < 3:
+        raise MeshError("PLY has vertices with lists of unlike lengths, which are not read")
+    triangles = _fans(lists, limits)
+    small = int((lists.lengths < 3).sum())
+    said = (f"Left out: {counted(small, 'face', 'faces')} of less than 3 corners.",) if small else ()
+    return Found((Part(np.column_stack(positions), triangles),), said)
 
 
 def read_header(data: bytes) -> Header:
-    """MeshError if the file does not begin with a PLY header."""
-    lines: list[list[str]] = []
-    start, end = 0, -1
-    while start < len(data):
-        stop = data.find(b"\n", start)
-        if stop < 0 or stop - start > 4096:
-            break
-        lines.append(data[start:stop].decode("utf-8", "replace").split())
-        start = stop + 1
-        if lines[-1] == ["end_header"]:
-            end = start
-            break
-    if end < 0 or lines[0] != ["ply"]:
+    """MeshError names the line that cannot be understood."""
+    end = _END.search(data, 0, _MAX_HEADER)
+    text = ascii_text(data[: end.end()]) if end is not None else b""
+    lines = [line.split() for line in text.split(b"\n")[:-1]]
+    if not lines or lines[0] != [b"ply"]:
         raise MeshError("expected a PLY header, 'ply' to 'end_header'")
-    encoding = ""
+    encoding = b""
     elements: list[Element] = []
-    for words in lines[1:-1]:
-        try:
-            match words:
-                case ["format", encoding, _]:
-                    pass
-                case ["element", name, count]:
-                    elements.append(Element(name, _row_count(count), ()))
-                case ["property", "list", length, item, _]:
-                    elements[-1] = _with(elements[-1], (_CODES[length], _CODES[item]))
-                case ["property", kind, _]:
-                    elements[-1] = _with(elements[-1], (_CODES[kind],))
-        except (KeyError, ValueError, IndexError):
-            raise MeshError(f"PLY header line {' '.join(words)[:60]!r} cannot be understood") from None
-    if encoding not in {"ascii", "binary_little_endian", "binary_big_endian"}:
-        raise MeshError(f"PLY format {encoding[:40]!r} is not known")
-    return Header(encoding, tuple(elements), data[:end])
+    for number, words in enumerate(lines[1:-1], start=2):
+        match words:
+            case [] | [b"comment" | b"obj_info", *_]:
+                pass
+            case [b"format", encoding, _]:
+                pass
+            case [b"element", name, count] if count.isdigit() and len(count) < 18:
+                elements.append(Element(name.decode(), int(count), ()))
+            case [b"property", b"list", length, item, name] if elements:
+                own = Property(name.decode(), _code(item, number), _code(length, number))
+                elements[-1] = _with(elements[-1], own, number)
+            case [b"property", kind, name] if elements and kind != b"list":
+                elements[-1] = _with(elements[-1], Property(name.decode(), _code(kind, number)), number)
+            case _:
+                raise MeshError(f"PLY header, line {number}: {shown(b' '.join(words))} cannot be understood")
+    if encoding not in {b"ascii", b"binary_little_endian", b"binary_big_endian"}:
+        raise MeshError(f"PLY format {shown(encoding)} is not known")
+    return Header(encoding.decode(), tuple(elements), end.end() if end is not None else 0, len(lines))
 
 
-def plain_polygons(data: bytes, max_triangles: int) -> bytes:
-    """The file, or the same as text if binary faces differ in their numbers of corners.
+def _only(header: Header, name: str) -> Element | None:
+    """The element of that name; MeshError if there are two."""
+    own = [element for element in header.elements if element.name == name]
+    if len(own) > 1:
+        raise MeshError(f"PLY has {len(own)} elements {name}; expected one")
+    return own[0] if own else None
 
-    trimesh 5.2 reads a binary list as if every row were as long as the first.
-    """
-    header = read_header(data)
-    if header.count("face") > max_triangles:
-        raise TooLargeError(f"expected at most {max_triangles} triangles, got {header.count('face')} faces")
-    data = ascii_only(header.text) + data[len(header.text) :]
-    if header.encoding == "ascii":
-        return data
-    order = "<" if header.encoding == "binary_little_endian" else ">"
-    lengths: set[tuple[str, tuple[int, ...]]] = set()
-    rows: list[str] = []
+
+def _code(kind: bytes, line: int) -> str:
     try:
-        for element, _, seen in _rows(data, header, order, lists_only=True):
-            lengths.add((element.name, seen))
-        if len(lengths) == len({name for name, _ in lengths}):
-            return data
-        rows += (" ".join(map(repr, values)) for _, values, _ in _rows(data, header, order, lists_only=False))
-    except struct.error:
-        raise MeshError("PLY ends within its rows") from None
-    text = ascii_only(header.text).replace(header.encoding.encode(), b"ascii", 1)
-    return text + "\n".join([*rows, ""]).encode()
+        return _CODES[kind.decode()]
+    except KeyError:
+        raise MeshError(
+            f"PLY header, line {line}: type {shown(kind)} is not known; expected one of {', '.join(_CODES)}"
+        ) from None
 
 
-def ascii_only(text: bytes) -> bytes:
-    """The same with a question mark for every other byte: names and comments come in any encoding, numbers do not."""
-    return text.translate(bytes([*range(128), *b"?" * 128]))
+def _with(element: Element, own: Property, line: int) -> Element:
+    if any(own.name == other.name for other in element.properties):
+        raise MeshError(f"PLY header, line {line}: {element.name} has two properties {own.name!r}")
+    return replace(element, properties=(*element.properties, own))
 
 
-def _rows(
-    data: bytes, header: Header, order: str, *, lists_only: bool
-) -> Iterator[tuple[Element, tuple[float, ...], tuple[int, ...]]]:
-    """Each row's element, numbers and lengths of lists; with `lists_only`, elements without lists are passed over."""
-    position = len(header.text)
-    for element in header.elements:
-        if not element.properties:
-            continue
-        if all(len(kinds) == 1 for kinds in element.properties):
-            row = struct.Struct(order + "".join(kinds[0] for kinds in element.properties))
-            end = position + row.size * element.count
-            if end > len(data):
-                raise MeshError(f"PLY ends within its {element.name} rows")
-            if not lists_only:
-                yield from ((element, values, ()) for values in row.iter_unpack(data[position:end]))
-            position = end
-        else:
-            for _ in range(element.count):
-                values, position, seen = _row(data, position, order, element)
-                yield element, values, seen
-
-
-def _row(data: bytes, position: int, order: str, element: Element) -> tuple[tuple[float, ...], int, tuple[int, ...]]:
-    """One row's numbers with each list after its length, where it ends, and the lists' lengths."""
-    values: list[float] = []
-    seen: list[int] = []
-    for kinds in element.properties:
-        first = struct.Struct(order + kinds[0])
-        values += first.unpack_from(data, position)
-        position += first.size
-        if len(kinds) == 2:
-            length = int(values[-1])
-            if not 0 <= length <= len(data):
-                raise MeshError(f"PLY {element.name} row has a list of length {length}")
-            items = struct.Struct(f"{order}{length}{kinds[1]}")
-            values += items.unpack_from(data, position)
-            position += items.size
-            seen.append(length)
-    return tuple(values), position, tuple(seen)
-
-
-def _row_count(word: str) -> int:
-    count = int(word)
-    if count < 0:
-        raise ValueError
-    return count
-
-
-def _with(element: Element, kinds: tuple[str, ...]) -> Element:
-    return Element(element.name, element.count, (*element.properties, kinds))
+def _fans(lists: Lists, limits: Limits) -> NDArray[np.int64]:
+    """(T, 3) the triangles of each polygon, from its first corner."""
+    each = np.maximum(lists.lengths - 2, 0)
+    limits.check_triangles(int(each.sum()))
+    first = np.cumsum(lists.lengths) - lists.lengths
+    begin = np.repeat(first, each)
+    step = np.arange(int(each.sum())) - np.repeat(np.cumsum(each) - each, each)
+    return np.column_stack([lists.items[begin], lists.items[begin + step + 1], lists.items[begin + step + 2]])
