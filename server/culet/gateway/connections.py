@@ -250,6 +250,19 @@ class GuardedHttp(H11Protocol):
         self.config.guard.forget(self.transport)
         super().connection_lost(exc)
 
+    def _should_upgrade(self) -> bool:
+        """Whether this is a WebSocket's opening (RFC 6455, 4.1); anything else that says `Upgrade` is plain HTTP.
+
+        uvicorn would wait for ever for the rest of an opening that has a body.
+        """
+        names = {name for name, _ in self.headers}
+        has_body = bool(names & {b"content-length", b"transfer-encoding"})
+        is_opening = self.scope["method"] == "GET" and b"sec-websocket-key" in names and not has_body
+        return is_opening and super()._should_upgrade()
+
+    def _unsupported_upgrade_warning(self) -> None:
+        """Anybody can ask for h2c."""
+
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         """It becomes a stream."""
         if self.connection is not None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from fastapi.routing import APIRoute
 from starlette.responses import Response
-from starlette.routing import BaseRoute
+from starlette.routing import BaseRoute, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from culet.gateway.problems import problem
@@ -21,11 +21,16 @@ class Methods:
 
     def __init__(self, app: ASGIApp, routes: Iterable[BaseRoute]) -> None:
         self._app = app
+        routes = list(routes)
+        self._streams = [route.path_regex for route in routes if isinstance(route, WebSocketRoute)]
         self._routes: list[tuple[re.Pattern[str], frozenset[str]]] = [
             (route.path_regex, frozenset(route.methods or ())) for route in routes if isinstance(route, APIRoute)
         ]
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket" and not any(pattern.match(scope["path"]) for pattern in self._streams):
+            await problem(404, "not found", "there is no stream here")(scope, receive, send)
+            return
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return

@@ -41,9 +41,9 @@ def problem(
     status: int, title: str, detail: str, field: str | None = None, headers: Mapping[str, str] | None = None
 ) -> JSONResponse:
     """The response; `type` is about:blank, as the status and title say all that there is to say about the kind."""
-    body = {"type": "about:blank", "title": title, "status": status, "detail": detail}
+    body = {"type": "about:blank", "title": title, "status": status, "detail": _writable(detail)}
     if field is not None:
-        body["field"] = field
+        body["field"] = _writable(field)
     return JSONResponse(body, status, headers, MEDIA_TYPE)
 
 
@@ -55,11 +55,10 @@ def problem_of(error: CuletError) -> JSONResponse:
 
 
 def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """What OpenAPI should say about a route's errors."""
-    return {
-        status: {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": PROBLEM_SCHEMA}}}
-        for status in statuses
-    }
+    """What OpenAPI should say about a route's errors: those that its user will meet, and that any other is alike."""
+    content = {MEDIA_TYPE: {"schema": PROBLEM_SCHEMA}}
+    known = {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
+    return {**known, "default": {"description": "Another error", "content": content}}
 
 
 def check_numbers(event: SessionEvent | ViewerEvent) -> None:
@@ -71,10 +70,11 @@ def check_numbers(event: SessionEvent | ViewerEvent) -> None:
 
 
 def finite(value: object) -> None:
-    """Raise InputError naming the first number in parsed JSON that is NaN or infinite, or what is nested too deeply.
+    """Raise InputError naming what of parsed JSON cannot be sent on: NaN, infinity, half a character, deep nesting.
 
-    Python reads `NaN` and `1e999`, and pydantic lets them through where a field may hold any JSON; on the way to the
-    engine they would turn into null, which in a merge patch means: delete. Nor can it write what is nested deeply.
+    Python reads `NaN`, `1e999` and `"\\ud800"`, and pydantic lets them through where a field may hold any JSON; on the
+    way to the engine the numbers would turn into null, which in a merge patch means: delete. Half a surrogate pair, and
+    what is nested deeply, cannot be written at all.
     """
     waiting: list[tuple[object, tuple[str, ...]]] = [(value, ())]
     while waiting:
@@ -84,10 +84,19 @@ def finite(value: object) -> None:
             raise InputError(f"{field}: expected at most {MAX_DEPTH} levels of nesting, got more", field)
         if isinstance(item, float) and not math.isfinite(item):
             raise InputError(f"{field or 'body'}: expected a finite number, got {item}", field)
+        if isinstance(item, str):
+            _check_text(item, field)
         if isinstance(item, dict):
+            for key in item:
+                _check_text(key, field)
             waiting += [(inner, (*path, str(key))) for key, inner in item.items()]
         if isinstance(item, list):
             waiting += [(inner, (*path, str(index))) for index, inner in enumerate(item)]
+
+
+def _check_text(text: str, field: str | None) -> None:
+    if _writable(text) != text:
+        raise InputError(f"{field or 'body'}: expected text, got half a surrogate pair in {_short(text)}", field)
 
 
 def install(app: FastAPI) -> None:
@@ -102,10 +111,13 @@ async def _of_culet(_request: Request, error: CuletError) -> JSONResponse:
     return problem_of(error)
 
 
-async def _of_validation(_request: Request, error: RequestValidationError) -> JSONResponse:
+async def _of_validation(request: Request, error: RequestValidationError) -> JSONResponse:
     # FastAPI's own answer repeats the input, and fails with a 500 if NaN is in it.
     findings = error.errors()
     first = findings[0]
+    if first["loc"] == ("body",) and isinstance(first.get("input"), bytes):  # FastAPI did not read it
+        got = request.headers.get("content-type", "none")
+        return problem(415, "unsupported media type", f"expected Content-Type: application/json, got {got[:80]}")
     if first["type"] == "json_invalid":
         detail = f"the body is not JSON: {first['ctx']['error']} at character {first['loc'][-1]}"
         return problem(InputError.status, InputError.title, detail)
@@ -117,12 +129,32 @@ async def _of_validation(_request: Request, error: RequestValidationError) -> JS
 
 
 async def _of_http(_request: Request, error: HTTPException) -> JSONResponse:
+    if error.status_code == 400 and (unreadable := _unreadable(error.__cause__)):
+        return problem(InputError.status, InputError.title, f"the body is not JSON: {unreadable}")
     title = HTTPStatus(error.status_code).phrase.lower()
     return problem(error.status_code, title, error.detail, None, error.headers)
 
 
 async def _of_bug(_request: Request, _error: Exception) -> JSONResponse:
     return problem(500, CuletError.title, "something went wrong in the gateway; its log says what")
+
+
+def _unreadable(cause: BaseException | None) -> str | None:
+    """Why a body could not be parsed, of the causes that FastAPI has one answer for."""
+    match cause:
+        case UnicodeDecodeError():
+            return f"byte {cause.start} is not {cause.encoding.upper()}"
+        case RecursionError():
+            return f"expected at most {MAX_DEPTH} levels of nesting, got very many"
+        case ValueError():
+            return str(cause).partition(";")[0]  # what follows tells of an interpreter's setting
+        case _:
+            return None
+
+
+def _writable(text: str) -> str:
+    """The text as UTF-8 can hold it: half a surrogate pair, which JSON can spell, is spelt out."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _short(value: object) -> str:
