@@ -82,6 +82,7 @@ class Connection(asyncio.Transport):
     """A connection that knows whether it is being read."""
 
     reading = True
+    written = b""
 
     def pause_reading(self) -> None:
         self.reading = False
@@ -92,7 +93,8 @@ class Connection(asyncio.Transport):
     def is_closing(self) -> bool:
         return False
 
-    def write(self, data: object) -> None: ...
+    def write(self, data: bytes | bytearray | memoryview) -> None:
+        self.written += bytes(data)
 
     def close(self) -> None: ...
 
@@ -115,14 +117,9 @@ class Counted(PacedStream):
         super().handle_text(event)
 
 
-@pytest.mark.parametrize(
-    ("first", "frame", "at_once"),
-    [(b"", PONG, BURST), (BEGIN_OF_TEXT, EMPTY_FRAGMENT, BURST), (b"", EMPTY_TEXT, 0)],
-    ids=["pongs", "empty fragments", "messages"],
-)
-async def test_of_what_one_read_brings_no_more_is_taken_apart_than_a_piece_and_what_is_allowed(
-    first: bytes, frame: bytes, at_once: int
-) -> None:
+@asynccontextmanager
+async def served() -> AsyncIterator[tuple[Counted, Connection]]:
+    """A stream of an application that takes nothing, after its handshake."""
     accepted, over = asyncio.Event(), asyncio.Event()
 
     async def app(_scope: object, receive: Callable[[], Any], send: Callable[[Any], Any]) -> None:
@@ -137,13 +134,36 @@ async def test_of_what_one_read_brings_no_more_is_taken_apart_than_a_piece_and_w
     stream.data_received(f"{head}Sec-WebSocket-Key: {base64.b64encode(bytes(16)).decode()}\r\n\r\n".encode())
     async with asyncio.timeout(PATIENCE):
         await accepted.wait()
-    stream.data_received(first + 40_000 * frame)
-    assert stream.counted <= PIECE / len(frame) + 1
-    for _ in range(100):  # turns of the loop
-        await asyncio.sleep(0)
-    assert stream.counted <= at_once + PIECE / len(frame) + 1
-    assert not connection.reading
+    connection.written = b""
+    yield stream, connection
     over.set()
+
+
+@pytest.mark.parametrize(
+    ("first", "frame", "at_once"),
+    [(b"", PONG, BURST), (BEGIN_OF_TEXT, EMPTY_FRAGMENT, BURST), (b"", EMPTY_TEXT, 0)],
+    ids=["pongs", "empty fragments", "messages"],
+)
+async def test_of_what_one_read_brings_no_more_is_taken_apart_than_a_piece_and_what_is_allowed(
+    first: bytes, frame: bytes, at_once: int
+) -> None:
+    async with served() as (stream, connection):
+        stream.data_received(first + 40_000 * frame)
+        assert stream.counted <= PIECE / len(frame) + 1
+        for _ in range(100):  # turns of the loop
+            await asyncio.sleep(0)
+        assert stream.counted <= at_once + PIECE / len(frame) + 1
+        assert not connection.reading
+
+
+async def test_who_reads_again_is_answered_its_latest_ping() -> None:
+    async with served() as (stream, connection):
+        stream.pause_writing()
+        for payload in b"abc":
+            stream.data_received(b"\x89\x81" + MASK + bytes([payload]))
+        assert connection.written == b""
+        stream.resume_writing()
+        assert connection.written == b"\x8a\x01c"
 
 
 async def test_a_ping_among_others_is_answered_and_messages_in_pieces_are_read(gateway: Gateway) -> None:
@@ -159,3 +179,38 @@ async def test_a_ping_among_others_is_answered_and_messages_in_pieces_are_read(g
             received = b""
             while b'{"type":"pong","time":7.0}' not in received or received.count(b"\x8a\x01p") < len(pieces):
                 received += await asyncio.get_running_loop().sock_recv(connection, 4096)
+
+
+@pytest.mark.parametrize(
+    ("frames", "code"),
+    [
+        (b"\x83\x80" + MASK, 1002),
+        (b"\x8b\x80" + MASK, 1002),
+        (b"\xf1\x80" + MASK, 1002),
+        (b"\x81\x00", 1002),
+        (b"\x80\x80" + MASK, 1002),
+        (b"\x01\x80" + MASK + b"\x81\x80" + MASK, 1002),
+        (b"\x09\x80" + MASK, 1002),
+        (b"\x89\xfe\x00\x7e" + MASK + bytes(126), 1002),
+        (b"\x81\xff" + (2**62).to_bytes(8, "big") + MASK, 1009),
+        (b"\x81\xff" + (2**63).to_bytes(8, "big") + MASK, 1009),
+        (b"\x81\x82" + MASK + b"\xff\xfe", 1007),
+        (b"\x88\x81" + MASK + b"\x03", 1002),
+        (b"\x88\x82" + MASK + b"\x00\x01", 1002),
+    ],
+    ids=["unknown data", "unknown control", "reserved bits", "no mask", "nothing to continue", "text in a text",
+         "fragment of a ping", "long ping", "2^62 bytes", "2^63 bytes", "not UTF-8", "half a code", "code 1"],
+)  # fmt: skip
+async def test_what_is_no_websocket_frame_ends_that_stream_by_its_code_and_no_other(
+    gateway: Gateway, frames: bytes, code: int
+) -> None:
+    session, loop = await gateway.session(), asyncio.get_running_loop()
+    async with raw_stream(gateway, session) as connection, gateway.viewer(session) as other:
+        await loop.sock_sendall(connection, frames)
+        received = b""
+        async with asyncio.timeout(PATIENCE):
+            while part := await loop.sock_recv(connection, 65536):
+                received += part
+        assert b"\x88" in received
+        assert code.to_bytes(2, "big") in received[received.rindex(b"\x88") :]
+        await other.final()

@@ -30,6 +30,7 @@ class PacedStream(WebSocketsSansIOProtocol):
         self._come = bytearray()
         self._next: asyncio.Handle | None = None
         self._frames = Bucket(FRAMES_PER_SECOND)
+        self._owed: list[bytes] = []
 
     def data_received(self, data: bytes) -> None:
         """Bytes of frames."""
@@ -68,12 +69,19 @@ class PacedStream(WebSocketsSansIOProtocol):
         return message
 
     def handle_ping(self) -> None:
-        """Answer, if what was answered before has been read."""
+        """Answer; while the other end does not read, keep the latest answer only (RFC 6455 section 5.5.3)."""
         self._frames.spend(1, self.loop.time())
         if self.writable.is_set():
             super().handle_ping()
         else:
-            self.conn.data_to_send()
+            self._owed = self.conn.data_to_send()
+
+    def resume_writing(self) -> None:
+        """The other end reads again."""
+        super().resume_writing()
+        owed, self._owed = self._owed, []
+        if owed and not self.transport.is_closing():
+            self.transport.write(b"".join(owed))
 
     def handle_pong(self, event: Frame) -> None:
         """It lives."""
