@@ -4,10 +4,36 @@
 #include "camera.cl"
 #include "trace.cl"
 
+// The stone in a studio floor: of `glossy` rays, which end at the floor, those that a smooth floor would send to the stone.
+// For them `ray` goes on there, with the floor's reflectance for its weight, and what they showed gives way to it. From
+// sample to sample the floor is tilted a little, which softens what is seen far above it.
+static inline maskL mirrored_in_floor(world_t world, rayL *ray, maskL glossy, double jitter_x, double jitter_y,
+                                      vec3L *point, vec3L *normal, radianceL *radiance) {
+  __constant const parameters_t *scene = world.scene;
+  const real tilt_x = scene->floor_roughness * (real)clamp(2 * jitter_x - 1, -1.0, 1.0),
+             tilt_z = scene->floor_roughness * (real)clamp(2 * jitter_y - 1, -1.0, 1.0);
+  const vec3L up = normalise(vec3(splat(tilt_x), splat(1), splat(tilt_z)));
+  const vec3L onward = reflect3(ray->direction, dot3(ray->direction, up), up);
+  const maskL heading = glossy & passes_stone(ray->origin, onward, splat(0));
+  if (!any_lane(heading)) return heading;
+  const crossingL entry = stone_entry(world, ray->origin, onward, splat(0), heading);
+  const maskL enters = heading & entry.hit;
+  const vec3L met = along(ray->origin, entry.t, onward);
+  const realL height = blend(enters, fmax(met.y - ray->origin.y, splat(0)), splat(0));
+  const realL share = blend(enters, scene->floor_reflectance * exp_fast(-height / scene->floor_fade), splat(0));
+  EACH (k, 3) radiance->channel[k] *= 1 - share;
+  ray->weight *= blend(enters, share, splat(1));
+  ray->direction = blend3(enters, onward, ray->direction);
+  *point = blend3(enters, met, *point);
+  *normal = blend3(enters, entry.normal, *normal);
+  return enters;
+}
+
 // What each pixel of the tile sees without the stone, directly or by way of mirrors, and where its ray meets the stone.
 static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, int row, double jitter_x,
                        double jitter_y) {
   const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
+  const int has_backdrop = DECIDED(BACKDROP, world.scene->has_backdrop);
   hits->count = 0;
   const int columns = shown(column, world.scene->width), rows = shown(row, world.scene->height);
   for (int y = 0; y < rows; y += PACKET_HEIGHT)
@@ -18,7 +44,8 @@ static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, in
       const maskL all = in_picture(world.scene, column + x, row + y), none = all & !all;
       maskL meets = camera_inside ? all : none, open = camera_inside ? none : all;
       maskL heading = GEOMETRY == EMPTY ? none : open & passes_stone(ray.origin, ray.direction, ray.start);
-      radianceL radiance = black();
+      radianceL radiance = black(), behind = black();
+      if (has_backdrop) behind = backdrop_at(world.scene, column + x, row + y, jitter_x, jitter_y, all_channels());
       realL cut = splat(0);
       while (any_lane(open)) {
         if (any_lane(heading)) {
@@ -30,8 +57,12 @@ static inline void see(world_t world, tile_t *tile, hits_t *hits, int column, in
           open &= !enters;
         }
         heading = open;
-        const radianceL seen = gather(world, &ray, splat(1), &heading, &cut, all_channels());
+        maskL glossy = none;
+        const radianceL seen = gather(world, &ray, splat(1), BY_CAMERA, has_backdrop ? &behind : 0, &heading, &glossy,
+                                      &cut, all_channels());
         EACH (k, 3) radiance.channel[k] += seen.channel[k];
+        if (GEOMETRY != EMPTY && any_lane(glossy))
+          meets |= mirrored_in_floor(world, &ray, glossy, jitter_x, jitter_y, &point, &normal, &radiance);
         open = heading;
       }
       const int first = first_pixel(x, y);
@@ -61,7 +92,7 @@ static inline void trace(world_t world, tile_t *tile, pools_t *pools, task_t tas
       if (camera_inside)
         push(&pools->inside, mask, &packet);
       else
-        enter(world, tile, pools, task, &packet, packet.origin, normal, mask);
+        enter(world, tile, pools, task, &packet, packet.origin, normal, mask, DECIDED(GLARE, world.scene->glare));
       next += LANES;
     } else
       return;

@@ -13,7 +13,7 @@
 #include "tile.cl"
 
 static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel, maskL active,
-                                 intL *segments) {
+                                 const radianceL *backdrop, intL *segments) {
   __constant const parameters_t *scene = world.scene;
   const channels_t channels = {channel, 1};
   const real eta = world.chains[channel].eta;
@@ -49,7 +49,7 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
       }
     }
     const maskL in_room = active & !at_stone;
-    const viewL view = look(world, ray, channels);
+    const viewL view = look(world, ray, meeting == 0 ? BY_CAMERA : BY_STONE, meeting == 0 ? backdrop : 0, channels);
     const radianceL fallback =
         sky(world, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
     const maskL faces_room = in_room & view.meets;
@@ -66,7 +66,8 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     const realL ratio = blend(inside, splat(eta), splat(1 / eta));
     const realL squared = (real)1 - ratio * ratio * ((real)1 - cosine * cosine);
     const maskL refracted = at_stone & (squared >= 0) & !last, total = at_stone & !refracted & !last;
-    radiance += blend(at_stone, ray.weight * mirrored_sky.channel[0] * blend(last, splat(1), term), splat(0));
+    const maskL shows = at_stone & (inside | widen((intL)(DECIDED(GLARE, scene->glare) || meeting > 0 ? -1 : 0)));
+    radiance += blend(shows, ray.weight * mirrored_sky.channel[0] * blend(last, splat(1), term), splat(0));
     const realL bend = blend(inside, sqrt(fmax(squared, splat(0))), -sqrt(fmax(squared, splat(0)))) - ratio * cosine;
     const vec3L bent =
         renormalise(vec3(fma(ratio, ray.direction.x, bend * normal.x), fma(ratio, ray.direction.y, bend * normal.y),
@@ -93,10 +94,14 @@ static inline void classic_tile(world_t world, tile_t *tile, int column, int row
     for (int x = 0; x < columns; x += PACKET_WIDTH) {
       const primaryL primary = primary_rays(scene, column + x, row + y, jitter_x, jitter_y);
       const int first = first_pixel(x, y);
-      for (int channel = 0; channel < 3; channel++)
+      for (int channel = 0; channel < 3; channel++) {
+        const channels_t channels = {channel, 1};
+        const radianceL behind = backdrop_at(scene, column + x, row + y, jitter_x, jitter_y, channels);
         store_lanes(classic_path(world, primary.origin, primary.direction, primary.eye, channel,
-                                 in_picture(scene, column + x, row + y), &tile->segments),
+                                 in_picture(scene, column + x, row + y),
+                                 DECIDED(BACKDROP, scene->has_backdrop) ? &behind : 0, &tile->segments),
                     tile->radiance[channel] + first);
+      }
       store_lanes(splat(0), tile->cut + first);
     }
 }

@@ -12,10 +12,11 @@
 #define CHAIN 0
 #define CLASSIC 1
 
-// Kinds of surface for FLOOR and WALLS.
+// Kinds of surface for FLOOR and WALLS; of STUDIO_FLOOR are floors only.
 #define NONE 0
 #define MATTE 1
 #define MIRROR 2
+#define STUDIO_FLOOR 3
 
 // Kinds of SKY.
 #define CONSTANT 0
@@ -56,6 +57,18 @@
 #endif
 #ifndef SKY
 #define SKY RUNTIME
+#endif
+#ifndef BOXES // 0: a studio sky has none
+#define BOXES RUNTIME
+#endif
+#ifndef HEAD // 0: the observer has none
+#define HEAD RUNTIME
+#endif
+#ifndef BACKDROP // 0: the camera sees the sky
+#define BACKDROP RUNTIME
+#endif
+#ifndef GLARE // 0: what the stone reflects outside, where the camera's rays meet it, is left out
+#define GLARE RUNTIME
 #endif
 #ifndef DISPERSION // 0: one chain for the three channels
 #define DISPERSION RUNTIME

@@ -7,6 +7,7 @@
 #define TONE_SRGB 1
 #define TONE_CLASSIC 2
 #define TONE_FILMIC 3
+#define TONE_NEUTRAL 4
 
 #define BLOCK 16 // pixels that are shown together
 
@@ -52,9 +53,25 @@ static inline rgb16 filmic(rgb16 c) {
   return desaturate(scaled, 1);
 }
 
+// Khronos PBR Neutral (2024) without its offset: up to COMPRESSED as it is; above that the largest component comes ever
+// nearer to 1, and the colour goes to white as far as it is held back.
+#define COMPRESSED 0.8f
+#define WHITENING 0.15f
+static inline rgb16 neutral(rgb16 c) {
+  const rgb16 kept = {fmax(c.red, 0.0f), fmax(c.green, 0.0f), fmax(c.blue, 0.0f)};
+  const float16 peak = fmax(kept.red, fmax(kept.green, kept.blue));
+  const float room = 1 - COMPRESSED;
+  const float16 above = fmax(peak - COMPRESSED, 0.0f), lowered = COMPRESSED + above * room / (above + room);
+  const float16 scale = select((float16)(1), lowered / fmax(peak, 1e-20f), peak > COMPRESSED);
+  const float16 held_back = select((float16)(0), peak - lowered, peak > COMPRESSED);
+  const float16 colour = 1 / (WHITENING * held_back + 1);
+  const rgb16 scaled = {scale * kept.red, scale * kept.green, scale * kept.blue};
+  return mix_rgb(select(scaled.red, lowered, peak > COMPRESSED), colour, scaled);
+}
+
 static inline float16 shown(float16 x, int tone_map) {
   const float16 inside = clamp(x, 0.0f, 4.0f);
-  if (tone_map == TONE_SRGB || tone_map == TONE_FILMIC) return encode_srgb(inside);
+  if (tone_map == TONE_SRGB || tone_map == TONE_FILMIC || tone_map == TONE_NEUTRAL) return encode_srgb(inside);
   if (tone_map == TONE_CLASSIC) return power(1.2f * inside, 1.2f); // the report's
   return inside;
 }
@@ -77,6 +94,7 @@ __kernel void develop(__global const real4 *earlier, __global const real4 *later
   rgb16 colour = {vload16(0, linear[0]), vload16(0, linear[1]), vload16(0, linear[2])};
   if (!inside_gamut) colour = desaturate(colour, 1e20f);
   if (tone_map == TONE_FILMIC) colour = filmic(colour);
+  if (tone_map == TONE_NEUTRAL) colour = neutral(colour);
   uchar out[3][BLOCK];
   vstore16(to_bytes(colour.red, tone_map), 0, out[0]);
   vstore16(to_bytes(colour.green, tone_map), 0, out[1]);

@@ -5,7 +5,7 @@
 #include "lanes.cl"
 
 #define MAX_LIGHTS 8
-#define MAX_LAMPS 8
+#define MAX_LAMPS 24
 #define MAX_SURFACES 4 // the floor and three walls
 
 typedef struct {
@@ -23,13 +23,27 @@ typedef struct {
   real lamp[MAX_LAMPS][3];                         // direction of a lamp in the sky, of unit length;
   real lamp_rim[MAX_LAMPS], lamp_slope[MAX_LAMPS]; // its edge: rim - slope (squared distance to it), from 0 to 1
   real lamp_radiance[MAX_LAMPS][3];                // by channel
+  real box[MAX_LAMPS][3][3];       // soft boxes: the way to one, of unit length, the way across, and the way up;
+  real box_edge[MAX_LAMPS][2];     // share across, and up: edge (way to it) - |way across|, from 0 to 1;
+  real box_level[MAX_LAMPS][2];    // radiance at its middle, and its rise by the way up, in parts of box_radiance
+  real box_radiance[MAX_LAMPS][3]; // by channel
+  real head[3];                    // the way to the observer's head, of unit length; its edge is as a lamp's
+  real head_rim, head_slope;
+  real head_radiance[3];           // by channel
+  real backdrop_centre[3], backdrop_edge[3];           // radiance, by channel
+  real backdrop_focus[2];                              // column and row where it is the centre's
+  real backdrop_scale[2];                              // from columns and rows to parts of the way to its edge
+  real floor_colour[3];                                // STUDIO_FLOOR: radiance, by channel
+  real floor_reflectance, floor_fade, floor_roughness; // of stones, per R of height, and the tilt at most
+  real contact[3][3];                                  // the contact shadow's ellipsoid, see room.cl
+  real contact_shadow;                                 // part of the floor's light that it takes at most
   real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
   real light[MAX_LIGHTS][3];        // position
   real light_colour[MAX_LIGHTS][3]; // by channel
   real axes[3][3];                  // columns: the stone's own axes in the world's
   int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
   int facets;                       // half-spaces of the stone
-  int lights, lamps;
+  int lights, lamps, boxes;
   int max_bounces;                  // interior segments of a chain, at most
   int width, height;
   int chains;                       // one for each index of refraction
@@ -37,6 +51,7 @@ typedef struct {
   int sample;                       // its number, from which chance and the pixels' wavelengths are drawn
   int floor_kind, walls_kind, sky_kind, fresnel_kind, end_kind;
   int camera_inside;                // the stone
+  int has_head, has_backdrop, glare;
   int convex;                       // the stone: light that leaves it does not come back by itself
   int pierces;                      // the stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;

@@ -16,9 +16,14 @@
 // R by which a point may lie behind a surface and still see it: a stone that rests on the floor, rounded.
 #define SLOP ((real)1e-3)
 
+// Who looks: a ray that has left a stone, or one of the camera's, by way of mirrors too.
+#define BY_STONE 0
+#define BY_CAMERA 1
+
 typedef struct {
   maskL meets;         // floor or walls, not the sky
   maskL reflects;      // a mirror: the ray goes on
+  maskL glossy;        // a studio floor, in which the camera sees the stone
   vec3L point, normal; // from where, if it does
   radianceL radiance;  // what is seen there: the surface's own light, or the sky
 } viewL;
@@ -69,20 +74,64 @@ static inline maskL hidden_by_room(world_t world, rayL ray, realL t) {
   return hidden;
 }
 
-// What a ray that meets no stone shows.
-static inline viewL look(world_t world, rayL ray, channels_t channels) {
+// What the camera sees in place of the sky, and of a studio floor, at a packet of pixels.
+static inline radianceL backdrop_at(__constant const parameters_t *scene, int column, int row, double jitter_x,
+                                    double jitter_y, channels_t channels) {
+  const realL x = ints_to_real(column + PACKET_X) + (real)jitter_x, y = ints_to_real(row + PACKET_Y) + (real)jitter_y;
+  const realL across = scene->backdrop_scale[0] * (x - scene->backdrop_focus[0]),
+              down = scene->backdrop_scale[1] * (y - scene->backdrop_focus[1]);
+  const realL part = fmin(sqrt(across * across + down * down), splat(1)), share = part * part * ((real)3 - 2 * part);
+  radianceL radiance = black();
+  EACH_CHANNEL (k, channels) {
+    const real centre = scene->backdrop_centre[channels.first + k], edge = scene->backdrop_edge[channels.first + k];
+    radiance.channel[k] = fma(share, splat(edge - centre), splat(centre));
+  }
+  return radiance;
+}
+
+// The part of an even sky's light that a convex body keeps from a point of the floor is, from afar, the solid angle that
+// it fills there, times its cosine, over pi. Here the body is the ellipsoid x' S^-1 x = 1 that is spread as the stone is,
+// seen from p below its centre: its outline has the area pi sqrt(det S p' S^-1 p) / |p|, so that the part is
+// height sqrt(det S p' S^-1 p) / |p|^4; `contact` is det S S^-1. For a ball it is exact, down to where they touch. Near a
+// flat body it is more than all, so it is led towards 1.
+#define MOST_SHADE ((real)100)
+static inline realL contact_shadow(__constant const parameters_t *scene, vec3L point) {
+  realL outline = splat(0);
+  EACH (k, 3) {
+    const realL row = fma(point.x, splat(scene->contact[k][0]),
+                          fma(point.y, splat(scene->contact[k][1]), point.z * scene->contact[k][2]));
+    outline = fma(row, k == 0 ? point.x : k == 1 ? point.y : point.z, outline);
+  }
+  const realL squared = fmax(dot3(point, point), splat((real)1e-6)), height = fmax(-point.y, splat(0));
+  const realL part = fmin(height * sqrt(fmax(outline, splat(0))) / (squared * squared), splat(MOST_SHADE));
+  return scene->contact_shadow * part * rsqrt(sqrt(1 + part * part * part * part));
+}
+
+// What a ray that meets no stone shows. What the camera sees in place of the sky is `backdrop`, if that is not null.
+static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *backdrop, channels_t channels) {
   __constant const parameters_t *scene = world.scene;
   const int floor_kind = DECIDED(FLOOR, scene->floor_kind), walls_kind = DECIDED(WALLS, scene->walls_kind);
   viewL view;
-  view.meets = view.reflects = ray.start < ray.start; // none
+  const maskL none = ray.start < ray.start;
+  view.meets = view.reflects = view.glossy = none;
   view.point = ray.origin;
   view.normal = ray.direction;
-  view.radiance = sky(world, ray.direction, channels);
+  view.radiance = backdrop ? *backdrop : sky(world, ray.direction, channels);
+  if (viewer == BY_STONE && DECIDED(HEAD, scene->has_head))
+    hide_by_head(world, ray.direction, !none, channels, &view.radiance);
+  const int endless = walls_kind == NONE ? floor_kind == STUDIO_FLOOR : 0;
+  if (viewer == BY_STONE ? endless : 0) { // the same wherever it is met
+    view.meets = ray.direction.y < -HORIZON;
+    EACH_CHANNEL (k, channels)
+      view.radiance.channel[k] =
+          blend(view.meets, splat(scene->floor_colour[channels.first + k]), view.radiance.channel[k]);
+    return view;
+  }
   const int first = floor_kind == NONE ? 1 : 0, last = walls_kind == NONE ? 1 : MAX_SURFACES;
   if (first == last) return view;
 
   realL nearest = splat(1e30f);
-  maskL met = view.meets, mirror = view.meets;
+  maskL met = none, mirror = none, studio = none;
   for (int i = first; i < last; i++) {
     const real nx = scene->surface[i][0], ny = scene->surface[i][1], nz = scene->surface[i][2];
     const realL speed = ray.direction.x * nx + ray.direction.y * ny + ray.direction.z * nz;
@@ -94,10 +143,22 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
     met |= nearer;
     const int kind = i == 0 ? floor_kind : walls_kind;
     mirror = kind == MIRROR ? mirror | nearer : mirror & !nearer;
+    if (floor_kind == STUDIO_FLOOR) studio = i == 0 ? nearer : studio & !nearer;
   }
   if (!any_lane(met)) return view;
   nearest = blend(met, nearest, splat(0));
   view.point = along(ray.origin, nearest, ray.direction);
+  view.meets = met;
+  if (floor_kind == STUDIO_FLOOR) {
+    const realL lit = viewer == BY_CAMERA ? 1 - contact_shadow(scene, view.point) : splat(1);
+    EACH_CHANNEL (k, channels) {
+      const realL colour = backdrop ? backdrop->channel[k] : splat(scene->floor_colour[channels.first + k]);
+      view.radiance.channel[k] = blend(studio, lit * colour, view.radiance.channel[k]);
+    }
+    view.glossy = studio;
+    if (walls_kind == NONE) return view;
+    met &= !studio;
+  }
 
   // Checkers are counted in the world: over x and z on the floor, along the wall and over y on a wall.
   const realL x = view.point.x + scene->centre[0], y = view.point.y + scene->centre[1],
@@ -110,7 +171,6 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
   const realL albedo = blend(mirror, mirrored, matte);
   const radianceL light = lighting(world, view.point, view.normal, met, channels);
   EACH_CHANNEL (k, channels) view.radiance.channel[k] = blend(met, albedo * light.channel[k], view.radiance.channel[k]);
-  view.meets = met;
   view.reflects = met & mirror;
   return view;
 }
@@ -122,16 +182,24 @@ static inline viewL look(world_t world, rayL ray, channels_t channels) {
 // Follows rays through the room by way of its mirrors. Returns the radiance that they gather. `towards` takes the lanes to
 // follow, and gives back those that a mirror has sent towards the stone, in `ray` as they leave the mirror. A ray's whole
 // weight is `share` times its own; if that is below the cut-off, the stone is left out of its way. What that may have
-// hidden, and the rays that mirrors would pass on for ever, are added to `cut`.
-__attribute__((always_inline)) static inline radianceL gather(world_t world, rayL *ray, realL share, maskL *towards,
+// hidden, and the rays that mirrors would pass on for ever, are added to `cut`. For the camera `glossy` takes up the lanes
+// that end at a studio floor, in `ray` as they meet it.
+__attribute__((always_inline)) static inline radianceL gather(world_t world, rayL *ray, realL share, int viewer,
+                                                              const radianceL *backdrop, maskL *towards, maskL *glossy,
                                                               realL *cut, channels_t channels) {
   const real cutoff = world.scene->cutoff;
   radianceL radiance = black();
   maskL active = *towards;
   *towards = active & !active;
   for (;;) {
-    const viewL view = look(world, *ray, channels);
+    const viewL view = look(world, *ray, viewer, backdrop, channels);
     EACH_CHANNEL (k, channels) radiance.channel[k] += blend(active, ray->weight * view.radiance.channel[k], splat(0));
+    const int studio = DECIDED(FLOOR, world.scene->floor_kind) == STUDIO_FLOOR;
+    if (studio ? viewer == BY_CAMERA : 0) {
+      const maskL ends = active & view.glossy;
+      *glossy |= ends;
+      ray->origin = blend3(ends, view.point, ray->origin);
+    }
     active &= view.reflects;
     if (!any_lane(active)) return radiance;
     ray->start = blend(active, splat(0), ray->start);

@@ -62,6 +62,35 @@ static inline radianceL panorama(world_t world, vec3L direction, channels_t chan
   return seen;
 }
 
+// A box is what lies between four planes through the eye, and its share rises with the distances to them: to the edges
+// across it is sin(half width) (way to the box) - cos(half width) |way across|, here in units of how far it fades.
+static inline void add_boxes(__constant const parameters_t *scene, vec3L direction, channels_t channels,
+                             radianceL *radiance) {
+  for (int i = 0; i < scene->boxes; i++) {
+    realL way[3]; // how far the direction goes to the box, across and up
+    EACH (k, 3)
+      way[k] = fma(direction.x, splat(scene->box[i][k][0]),
+                   fma(direction.y, splat(scene->box[i][k][1]), direction.z * scene->box[i][k][2]));
+    const realL across = clamp(scene->box_edge[i][0] * way[0] - fabs(way[1]), (realL)0, (realL)1);
+    const realL up = clamp(scene->box_edge[i][1] * way[0] - fabs(way[2]), (realL)0, (realL)1);
+    const realL s = across * up;
+    const realL share = s * s * ((real)3 - 2 * s) * (scene->box_level[i][0] + scene->box_level[i][1] * way[2]);
+    EACH_CHANNEL (k, channels)
+      radiance->channel[k] = fma(share, splat(scene->box_radiance[i][channels.first + k]), radiance->channel[k]);
+  }
+}
+
+// The sky as a stone sees it: with the observer's head before it.
+static inline void hide_by_head(world_t world, vec3L direction, maskL mask, channels_t channels, radianceL *radiance) {
+  __constant const parameters_t *scene = world.scene;
+  const vec3L apart = vec3(direction.x - scene->head[0], direction.y - scene->head[1], direction.z - scene->head[2]);
+  const realL s = clamp(scene->head_rim - scene->head_slope * dot3(apart, apart), (realL)0, (realL)1);
+  const realL share = blend(mask, s * s * ((real)3 - 2 * s), splat(0));
+  EACH_CHANNEL (k, channels)
+    radiance->channel[k] =
+        fma(share, scene->head_radiance[channels.first + k] - radiance->channel[k], radiance->channel[k]);
+}
+
 static inline radianceL sky(world_t world, vec3L direction, channels_t channels) {
   __constant const parameters_t *scene = world.scene;
   const int kind = DECIDED(SKY, scene->sky_kind);
@@ -79,6 +108,7 @@ static inline radianceL sky(world_t world, vec3L direction, channels_t channels)
       EACH_CHANNEL (k, channels)
         radiance.channel[k] = fma(share, splat(scene->lamp_radiance[i][channels.first + k]), radiance.channel[k]);
     }
+    if (BOXES != 0) add_boxes(scene, direction, channels, &radiance);
     return radiance;
   }
   EACH_CHANNEL (k, channels) {

@@ -99,7 +99,8 @@ static inline realL leave(world_t world, pools_t *pools, task_t task, packetL *p
   maskL towards = mask;
   realL cut = splat(0);
   if (clear) {
-    const radianceL radiance = gather(world, &ray, share * largest_weight(packet), &towards, &cut, channels_of(task));
+    const radianceL radiance =
+        gather(world, &ray, share * largest_weight(packet), BY_STONE, 0, &towards, 0, &cut, channels_of(task));
     EACH (k, CHANNELS)
       packet->radiance[k] += blend(mask, share * packet->weight[min(k, WEIGHTS - 1)] * radiance.channel[k], splat(0));
     cut = blend(mask, cut * share * over_channels(task, packet), splat(0));
@@ -193,16 +194,19 @@ static inline splitL meet_boundary(world_t world, task_t task, const packetL *pa
   return result;
 }
 
-// Splits light that meets the stone from outside: what is reflected goes into the room, what enters starts a chain.
+// Splits light that meets the stone from outside: what is reflected goes into the room, if `glare` says so, and what
+// enters starts a chain.
 static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, packetL *packet, vec3L point,
-                         vec3L normal, maskL mask) {
+                         vec3L normal, maskL mask, bool glare) {
   const realL cos_a = clamp(-dot3(packet->direction, normal), (realL)0, (realL)1);
   const chainL eta = OF_CHAIN(task, packet->tag, eta);
   const realL cos_s = cosine_in_stone(cos_a, eta);
   const splitL parts =
       meet_boundary(world, task, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
-  realL cut = leave(world, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept,
-                    parts.reflected, mask, GEOMETRY != MESH);
+  realL cut = splat(0);
+  if (glare)
+    cut = leave(world, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept,
+                parts.reflected, mask, GEOMETRY != MESH);
 
   packetL inner = *packet;
   inner.origin = point;
@@ -295,7 +299,8 @@ static inline void come_back(world_t world, tile_t *tile, pools_t *pools, task_t
     deposit(tile, task, misses, &passing, cut);
   }
   if (any_lane(hits))
-    enter(world, tile, pools, task, &packet, along(packet.origin, crossing.t, packet.direction), crossing.normal, hits);
+    enter(world, tile, pools, task, &packet, along(packet.origin, crossing.t, packet.direction), crossing.normal, hits,
+          true);
 }
 
 #endif

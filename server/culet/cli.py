@@ -113,7 +113,11 @@ def simulate(
         Path | None, typer.Option(metavar="FILE", help="Draw height, energy and angular speed over time too: .png")
     ] = None,
 ) -> None:
-    """Let the stone fall and write its path, step by step: position, orientation, velocities, energy, contacts."""
+    """Let the stone fall and write its path, step by step: position, orientation, velocities, energy, contacts.
+
+    A stone that stands on the floor is lifted to y = 1.5 first.
+    """
+    from culet.simulation.drop import dropped
     from culet.simulation.paths import ENDINGS, write
     from culet.simulation.paths import record as record_path
 
@@ -125,7 +129,7 @@ def simulate(
         if stone is None:
             raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
         with progress_bar("simulating") as advance:
-            path = record_path(settings, stone, seconds, advance)
+            path = record_path(dropped(settings, stone), stone, seconds, advance)
         write(path, out)
         if plot is not None:
             from culet.simulation.plot import plot as draw

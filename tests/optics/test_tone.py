@@ -32,12 +32,13 @@ def test_black_is_black_white_is_white_and_between_it_climbs(name: str) -> None:
     radiance = np.concatenate([[0], np.geomspace(1e-6, 100, 5000)])
     shown = tone_map(grey(radiance), name)
     assert shown[0].tolist() == [0, 0, 0]
-    assert shown[-1].tolist() == pytest.approx([1, 1, 1], abs=1e-15)
+    white = {"srgb": 1, "filmic": FILMIC_WHITE, "classic": 1 / 1.2, "none": 1, "neutral": np.inf}[name]
+    assert shown[-1].tolist() == pytest.approx([1, 1, 1], abs=1e-15 if np.isfinite(white) else 2e-4)
     assert np.diff(shown, axis=0).min() > -1e-15  # next to white the last digit wavers
-    white = {"srgb": 1, "filmic": FILMIC_WHITE, "classic": 1 / 1.2, "none": 1}[name]
     below = radiance < white
     assert (np.diff(shown[below & (radiance < 0.99 * white)], axis=0) > 0).all()
-    assert tone_map(grey(np.array([white])), name) == pytest.approx(1, abs=1e-15)
+    if np.isfinite(white):
+        assert tone_map(grey(np.array([white])), name) == pytest.approx(1, abs=1e-15)
     assert np.ptp(shown, axis=1).max() < 1e-12  # grey stays grey
 
 
@@ -52,6 +53,18 @@ def test_srgb_is_the_standards() -> None:
 
 def test_classic_is_the_reports() -> None:
     assert tone_map([0.1, 0.5, 0.9], "classic") == pytest.approx([0.12**1.2, 0.6**1.2, 1], rel=1e-14, abs=0)
+
+
+def test_neutral_leaves_colours_below_four_fifths_and_leads_brighter_ones_towards_white() -> None:
+    """By hand: a peak of 1 becomes 1 - 0.04 / 0.4 = 0.9, one of 2.4 becomes 1 - 0.04 / 1.8 = 0.977778; 1 / (0.15 x the
+    difference + 1) of the colour stays."""
+    below = 0.8 * fire() / fire().max(axis=1, keepdims=True)
+    assert tone_map(below, "neutral") == pytest.approx(tone_map(below), abs=1e-15)
+    assert decoded(tone_map([1, 1, 1], "neutral")) == pytest.approx(0.9, abs=1e-7)
+    kept = 1 / (0.15 * (2.4 - 0.9777778) + 1)
+    assert decoded(tone_map([2.4, 0, 0], "neutral")) == pytest.approx(
+        [0.9777778, 0.9777778 * (1 - kept), 0.9777778 * (1 - kept)], abs=1e-6
+    )
 
 
 def test_filmic_is_hables_curve() -> None:
@@ -100,5 +113,7 @@ def test_whatever_comes_is_shown_between_0_and_1(name: str) -> None:
 
 
 def test_an_unknown_tone_map_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"film\.tone_map: expected one of srgb, filmic, classic, none, got 'aces'"):
+    with pytest.raises(
+        InputError, match=r"film\.tone_map: expected one of srgb, neutral, filmic, classic, none, got 'aces'"
+    ):
         tone_map([0, 0, 0], "aces")

@@ -20,8 +20,8 @@ from culet.scene.model import (
     GradientEnvironment,
     HalfEnvironment,
     LightEnvironment,
-    StudioEnvironment,
 )
+from culet.scene.studio import BoxLamp, StudioEnvironment
 from rendering.views import Array, pixel_directions
 
 SURFACES = np.array([[0, 1, 0, -1], [0, 0, 1, -8], [math.sqrt(3) / 2, 0, 0.5, -8], [-math.sqrt(3) / 2, 0, 0.5, -8]])
@@ -39,6 +39,23 @@ class Seen:
     """Where the way of light meets the stone; the radiance is not told there."""
 
 
+def box_share(box: BoxLamp, direction: Array) -> Array:
+    """(N,) radiance of an upright soft box in parts of its own: by the angles from each direction to the planes through
+    the eye and the box's edges, and by its height within the box."""
+    assert box.turn_degrees == 0
+    middle = np.array(box.direction) / np.linalg.norm(box.direction)
+    right = np.cross(middle, (0, 1, 0)) / np.linalg.norm(np.cross(middle, (0, 1, 0)))
+    up = np.cross(right, middle)
+    share = np.ones(len(direction))
+    for way, half_degrees in ((right, box.half_width_degrees), (up, box.half_height_degrees)):
+        half = np.radians(half_degrees)
+        inwards = [np.sin(half) * middle + sign * np.cos(half) * way for sign in (1, -1)]  # edges' planes
+        nearest = np.min([direction @ normal for normal in inwards], axis=0)
+        share *= np.clip(nearest / np.sin(box.softness * half), 0, 1)
+    height = direction @ up / np.sin(np.radians(box.half_height_degrees))
+    return np.asarray((3 * share**2 - 2 * share**3) * (1 - box.fade * (1 - height) / 2))
+
+
 def sky(environment: Environment, direction: Array) -> Array:
     """(N, 3) radiance from infinity; direction (N, 3) of unit length."""
     height = (0.5 * (1 + direction[:, 1]))[:, None]
@@ -54,6 +71,9 @@ def sky(environment: Environment, direction: Array) -> Array:
         case StudioEnvironment(ambient=ambient, lamps=lamps):
             total = np.tile(np.array(ambient), (len(direction), 1))
             for lamp in lamps:
+                if isinstance(lamp, BoxLamp):
+                    total += box_share(lamp, direction)[:, None] * np.array(lamp.radiance)
+                    continue
                 rim, full = np.cos(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])))
                 cosine = direction @ (np.array(lamp.direction) / np.linalg.norm(lamp.direction))
                 s = np.clip((cosine - rim) / (full - rim), 0, 1)

@@ -67,7 +67,7 @@ def test_an_orientation_is_normalised_once() -> None:
 
 LAMP = {"half_angle_degrees": 5, "radiance": [1, 1, 1]}
 BAD: dict[str, tuple[Any, str | None, str]] = {
-    "unknown key": ({"colour": 1}, "colour", "unknown field; there are: camera, environment, film,"),
+    "unknown key": ({"colour": 1}, "colour", "unknown field; there are: backdrop, camera, environment, film,"),
     "misspelt key": ({"stonez": []}, "stonez", "unknown field; did you mean `stones`"),
     "misspelt nested key": ({"camera": {"fow_degrees": 3}}, "camera.fow_degrees", "mean `fov_degrees`"),
     "misspelt key of a list": ({"stones": [{"materiel": "ruby"}]}, "stones.0.materiel", "mean `material`"),
@@ -104,7 +104,29 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "negative absorption": ({"stones": [{"absorption": [0, -1, 0]}]}, "stones.0.absorption.1", "0; got -1"),
     "size 0": ({"stones": [{"size_mm": 0}]}, "stones.0.size_mm", "expected greater than 0; got 0"),
     "no orientation": ({"stones": [{"orientation": [0, 0, 0, 0]}]}, "stones.0.orientation", "length 0"),
-    "unknown floor": ({"floor": {"kind": "glossy"}}, "floor.kind", "'mirror'; got 'glossy'"),
+    "lamp of another shape": (
+        {"environment": {"kind": "studio", "lamps": [{"shape": "star"}]}}, "environment.lamps.0", "'round' or 'box'"
+    ),
+    "box without a width": (
+        {"environment": {"kind": "studio", "lamps": [{"shape": "box", "direction": [0, 1, 0], "radiance": [1, 1, 1]}]}},
+        "environment.lamps.0.half_width_degrees", "expected a value",
+    ),
+    "a round lamp's width": (
+        {"environment": {"kind": "studio", "lamps": [
+            {"direction": [0, 1, 0], "radiance": [1, 1, 1], "half_angle_degrees": 3, "half_width_degrees": 3}]}},
+        "environment.lamps.0.half_width_degrees", "did you mean `half_angle_degrees`?",
+    ),
+    "25 lamps": (
+        {"environment": {"kind": "studio", "lamps": [
+            {"direction": [0, 1, 0], "radiance": [1, 1, 1], "half_angle_degrees": 3}] * 25}},
+        "environment.lamps", "at most 24",
+    ),
+    "gradient's colour": ({"backdrop": {"kind": "gradient", "colour": [1, 1, 1]}}, "backdrop.colour", "unknown field"),
+    "unknown backdrop": ({"backdrop": {"kind": "curtain"}}, "backdrop", "'gradient'.*'curtain'"),
+    "mirror's colour": ({"floor": {"kind": "mirror", "colour": [1, 1, 1]}}, "floor.colour", "there are: kind"),
+    "head of no size": ({"head": {"half_angle_degrees": 0}}, "head.half_angle_degrees", "at least 0.1"),
+    "picture of no height": ({"camera": {"kind": "orthographic", "height": 0}}, "camera.height", "at least"),
+    "unknown floor": ({"floor": {"kind": "glossy"}}, "floor", "'mirror' or 'studio'; got .*'glossy'"),
     "floor by name": ({"floor": "mirror"}, "floor", "got 'mirror'"),
     "nine lights": ({"lights": [{"position": [0, 9, 0], "colour": [1, 1, 1]}] * 9}, "lights", "at most 8"),
     "dark light": ({"lights": [{"position": [0, 9, 0], "colour": [1, 1, -1]}]}, "lights.0.colour.2", "0; got -1"),

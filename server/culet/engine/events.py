@@ -139,7 +139,7 @@ def _with_walls_toggled(scene: Scene) -> Scene:
     if scene.walls.kind != "none":
         walls = Plane(kind="none")
     else:
-        walls = Plane(kind="matte" if scene.floor.kind == "none" else scene.floor.kind)
+        walls = Plane(kind="mirror" if scene.floor.kind == "mirror" else "matte")
     return scene.model_copy(update={"walls": walls})
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from culet.engine.viewpoint import axes
+from culet.engine.viewpoint import axes, half_height
 from culet.geometry.stone import Stone
 from culet.scene import Camera, Vector
 from culet.simulation.rotation import rotate_back
@@ -22,10 +22,13 @@ def struck_point(
     be its bounding sphere.
     """
     right, up, forward = axes(camera)
-    half = math.tan(math.radians(camera.fov_degrees) / 2)
-    sight = forward + half * (x * right + y * up)
-    sight /= np.linalg.norm(sight)
     eye = np.array(camera.position, float) - np.array(position, float)
+    half = half_height(camera)
+    if camera.kind == "orthographic":
+        sight, eye = forward, eye + half * (x * right + y * up)
+    else:
+        sight = forward + half * (x * right + y * up)
+        sight /= np.linalg.norm(sight)
     if not stone.convex:
         along = float(eye @ sight)
         inside = along * along - float(eye @ eye) + 1
@@ -43,7 +46,7 @@ def struck_point(
         distance = float(crossings[entering].max(initial=-math.inf))
         if distance > float(crossings[~entering].min(initial=math.inf)):
             return None
-    if distance <= 0:
+    if distance <= 0 and camera.kind == "pinhole":
         return None
     hit = eye + distance * sight + np.array(position, float)
     return (float(hit[0]), float(hit[1]), float(hit[2]))

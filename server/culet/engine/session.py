@@ -179,10 +179,14 @@ class Session:
         self._show()
 
     def toggle_fall(self) -> None:
-        """Start or pause free fall; a stone that sleeps is dropped anew. InputError if there is nothing to fall."""
-        if self.asleep:
-            self.reset_stone()
-        self.set_falling(not self.falling)
+        """Start or pause free fall. A stone that sleeps, or has not moved yet, is dropped from where the scene has it,
+        and from above there if it stands on the floor. InputError if there is nothing to fall."""
+        simulation, was_falling = self._simulation, self.falling
+        if simulation is not None and (self.asleep or (simulation.at_start and not was_falling)):
+            self._stop()
+            simulation.drop()
+            was_falling = False
+        self.set_falling(not was_falling)
 
     def push(self, x: float, y: float, right: float, up: float) -> None:
         """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.

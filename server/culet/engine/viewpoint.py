@@ -18,6 +18,9 @@ STEEPEST = math.radians(89)
 CLOSEST = 0.05
 """R; a dolly stops this far before the point looked at, beyond which the camera would turn round."""
 
+LEAST_HEIGHT = 1e-3
+"""R, of what a picture of parallel rays shows."""
+
 Array = NDArray[np.float64]
 
 
@@ -36,12 +39,12 @@ def translate(camera: Camera, right: float, up: float) -> Camera:
 
 
 def dolly(camera: Camera, forward: float) -> Camera:
-    """The camera moved towards its target, never through it."""
+    """The camera moved towards its target, never through it; parallel rays are brought together as much."""
     position, target = np.array(camera.position, float), np.array(camera.target, float)
     offset = position - target
     distance = float(np.linalg.norm(offset))
     wanted = max(distance - forward, min(distance, CLOSEST))
-    return _placed(camera, target + offset * (wanted / distance), target)
+    return _placed(camera, target + offset * (wanted / distance), target, camera.height * wanted / distance)
 
 
 def look_at(camera: Camera, point: Vector) -> Camera:
@@ -51,9 +54,10 @@ def look_at(camera: Camera, point: Vector) -> Camera:
     """
     offset = np.array(camera.position, float) - np.array(camera.target, float)
     distance = float(np.linalg.norm(offset))
-    least = 1 / math.sin(math.radians(camera.fov_degrees) / 2)  # R, by which the stone's ball touches both edges
+    # R, by which the stone's ball touches both edges
+    least = 1 / math.sin(math.radians(camera.fov_degrees) / 2) if camera.kind == "pinhole" else 0.0
     target = np.array(point, float)
-    return _placed(camera, target + offset * (max(distance, least) / distance), target)
+    return _placed(camera, target + offset * (max(distance, least) / distance), target, max(camera.height, 2.0))
 
 
 def axes(camera: Camera) -> tuple[Array, Array, Array]:
@@ -64,6 +68,13 @@ def axes(camera: Camera) -> tuple[Array, Array, Array]:
     right = np.cross(forward, up / np.linalg.norm(up))
     right /= np.linalg.norm(right)
     return right, np.cross(right, forward), forward
+
+
+def half_height(camera: Camera) -> float:
+    """Of the picture: as the tangent of an angle, or in R where rays are parallel."""
+    if camera.kind == "orthographic":
+        return camera.height / 2
+    return math.tan(math.radians(camera.fov_degrees) / 2)
 
 
 def orbit_light(position: Vector, yaw: float, pitch: float) -> Vector:
@@ -95,9 +106,12 @@ def _turned(offset: Array, up: Array, yaw: float, pitch: float) -> Array:
     return distance * (math.cos(elevation) * level + math.sin(elevation) * up)
 
 
-def _placed(camera: Camera, position: Array, target: Array) -> Camera:
+def _placed(camera: Camera, position: Array, target: Array, height: float | None = None) -> Camera:
     """The camera there; pydantic's ValidationError if that is beyond the range of coordinates."""
-    return Camera(position=_vector(position), target=_vector(target), up=camera.up, fov_degrees=camera.fov_degrees)
+    place: dict[str, object] = {"position": _vector(position), "target": _vector(target)}
+    if camera.kind == "orthographic" and height is not None:
+        place["height"] = min(max(height, LEAST_HEIGHT), 1e9)
+    return Camera.model_validate({**camera.model_dump(), **place})
 
 
 def _vector(array: Array) -> Vector:

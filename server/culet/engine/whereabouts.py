@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from culet.engine.viewpoint import axes
+from culet.engine.viewpoint import axes, half_height
 from culet.scene import Camera, Vector
 from culet_protocol.frame import Flags
 
@@ -20,13 +20,13 @@ def whereabouts(camera: Camera, position: Vector, aspect: float) -> Flags:
     right, up, forward = axes(camera)
     to_stone = np.array(position, float) - np.array(camera.position, float)
     x, y, depth = (float(to_stone @ axis) for axis in (right, up, forward))
-    if depth < -1:
+    half, parallel = half_height(camera), camera.kind == "orthographic"
+    if depth < -1 and not parallel:
         return Flags.BEHIND
-    half = math.tan(math.radians(camera.fov_degrees) / 2)
     sides = Flags.NONE
     edges = ((y, half, Flags.ABOVE, Flags.BELOW), (x, half * aspect, Flags.RIGHT, Flags.LEFT))
     for across, reach, side, other in edges:
         # The distance to the plane through the eye and that edge: (across - depth reach) / sqrt(1 + reach^2).
-        if abs(across) - depth * reach > math.hypot(1, reach):
+        if abs(across) > reach + 1 if parallel else abs(across) - depth * reach > math.hypot(1, reach):
             sides |= side if across > 0 else other
     return sides

@@ -9,7 +9,8 @@ from fastapi import APIRouter
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
-from culet.scene.model import BrilliantCut, Model
+from culet.scene.fields import Model
+from culet.scene.model import BrilliantCut
 
 router = APIRouter(tags=["catalogue"])
 

@@ -16,7 +16,7 @@ from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
 from culet.gateway.stills import MEDIA_TYPES, Height, PngResponse, TargaResponse, Width
 from culet.scene import Scene, preset
-from culet.scene.model import Model
+from culet.scene.fields import Model
 from culet_protocol.engine import Render
 from culet_protocol.messages import PatchScene, SessionEvent
 

@@ -12,7 +12,8 @@ from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
-from culet.scene.model import MaterialName, Model
+from culet.scene.fields import Model
+from culet.scene.model import MaterialName
 from culet_protocol.engine import Format, Render
 
 router = APIRouter(tags=["pictures"])

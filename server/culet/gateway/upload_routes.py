@@ -11,7 +11,7 @@ from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import MESH, SKY, Kind
-from culet.scene.model import Model
+from culet.scene.fields import Model
 from culet_protocol.engine import DescribedMesh, DescribedSky
 
 router = APIRouter(tags=["uploads"])

@@ -1,6 +1,7 @@
 """Tone maps: from linear radiance, exposed, to what a screen is sent, from 0 to 1.
 
     srgb     IEC 61966-2-1, exact; what is above 1 is clipped
+    neutral  as it is up to 0.8, then a shoulder that brightness never climbs over, turning white; then srgb
     filmic   Hable's curve on the luminance, hue kept, then srgb
     classic  (1.2 L)^1.2, the report's
     none     linear
@@ -65,6 +66,24 @@ def _filmic(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
     return encode_srgb(desaturate(scale * rgb, ceiling=1))
 
 
+COMPRESSED = 0.8
+"""Largest component from which on neutral compresses."""
+WHITENING = 0.15
+"""How fast what is held back turns a colour white."""
+
+
+def _neutral(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Khronos PBR Neutral (2024, github.com/KhronosGroup/ToneMapping) without its offset, which serves glossy paint:
+    what is below COMPRESSED stays as it is, so that the colours of a product do."""
+    kept = np.maximum(rgb, 0)
+    peak = kept.max(axis=-1, keepdims=True)
+    above, room = np.maximum(peak - COMPRESSED, 0), 1 - COMPRESSED
+    lowered = np.where(above > 0, COMPRESSED + above * room / (above + room), peak)
+    scaled = kept * np.divide(lowered, peak, out=np.ones_like(peak), where=peak > 0)
+    colour = 1 / (WHITENING * (peak - lowered) + 1)
+    return encode_srgb(np.clip(lowered + colour * (scaled - lowered), 0, 1))
+
+
 def _classic(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.minimum(1.2 * np.clip(rgb, 0, 1), 1) ** 1.2)
 
@@ -74,7 +93,7 @@ def _none(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 TONE_MAPS: Mapping[str, Callable[[NDArray[np.float64]], NDArray[np.float64]]] = MappingProxyType(
-    {"srgb": _srgb, "filmic": _filmic, "classic": _classic, "none": _none}
+    {"srgb": _srgb, "neutral": _neutral, "filmic": _filmic, "classic": _classic, "none": _none}
 )
 """By name."""
 

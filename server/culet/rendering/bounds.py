@@ -6,7 +6,8 @@ import numpy as np
 
 from culet.rendering.panoramas import Panorama, panorama_of
 from culet.rendering.parameters import sky_colours
-from culet.scene.model import ImageEnvironment, Scene, StudioEnvironment
+from culet.scene.model import ImageEnvironment, Scene
+from culet.scene.studio import StudioEnvironment, StudioFloor
 
 MATTE_ALBEDO = 0.9
 """Of the checker's brighter cells, as in room.cl."""
@@ -25,7 +26,11 @@ def largest_radiance(scene: Scene, panorama: Panorama | None = None) -> float:
         brightest = float(np.max(sky_colours(environment)))
     if isinstance(environment, StudioEnvironment):
         brightest += float(np.sum([lamp.radiance for lamp in environment.lamps], axis=0).max(initial=0))
-    if scene.floor.kind != "none" or scene.walls.kind != "none":
+    if scene.head is not None:
+        brightest = max(brightest, *scene.head.radiance)
+    if isinstance(scene.floor, StudioFloor):
+        brightest = max(brightest, *scene.floor.colour)
+    if scene.floor.kind in ("matte", "mirror") or scene.walls.kind != "none":
         light = AMBIENT + np.sum([light.colour for light in scene.lights], axis=0).max(initial=0)
         brightest = max(brightest, MATTE_ALBEDO * float(light))
     return brightest

@@ -10,7 +10,8 @@ from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.projection import camera_is_inside
-from culet.scene.model import Environment, Plane, Scene
+from culet.scene.model import Environment, Floor, Plane, Scene
+from culet.scene.studio import boxes_of
 
 RUNTIME = -1
 """The choice is left to the parameters; the program holds the code of every kind."""
@@ -28,7 +29,7 @@ MOST_HALF_SPACES = 1500
 """Facets up to which a convex stone is traced by half-spaces: their cost grows with the number, a tree's hardly. Of
 balls, one of 600 facets takes 1.9 times as long by the tree, one of 1500 as long, one of 2000 0.8 times."""
 ESTIMATOR = {"chain": 0, "classic": 1}
-SURFACE = {"none": 0, "matte": 1, "mirror": 2}
+SURFACE = {"none": 0, "matte": 1, "mirror": 2, "studio": 3}
 SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3, "image": 4}
 FRESNEL = {"exact": 0, "schlick": 1}
 END = {"cut": 0, "roulette": 1, "sky": 2}
@@ -43,6 +44,10 @@ class Features:
     walls: int = RUNTIME
     lights: int = RUNTIME
     sky: int = RUNTIME
+    boxes: int = RUNTIME
+    head: int = RUNTIME
+    backdrop: int = RUNTIME
+    glare: int = RUNTIME
     dispersion: int = RUNTIME
     absorption: int = RUNTIME
     fresnel: int = RUNTIME
@@ -84,18 +89,22 @@ def geometry_of(stone: Stone | None) -> Geometry:
 
 def features_of(scene: Scene, stone: Stone | None) -> Features:
     """The program that holds what this scene needs, and nothing else."""
-    kinds: tuple[Plane, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
+    kinds: tuple[Floor, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds
     optics = scene.optics
-    surfaces = floor.kind != "none" or walls.kind != "none"
+    lit = floor.kind in ("matte", "mirror") or walls.kind != "none"
     settings = scene.stones[0] if stone is not None else None
     indices = channel_indices(settings.material) if settings else (1.0, 1.0, 1.0)
     return Features(
         geometry=geometry_of(stone),
         floor=SURFACE[floor.kind],
         walls=SURFACE[walls.kind],
-        lights=RUNTIME if scene.lights and surfaces else 0,
+        lights=RUNTIME if scene.lights and lit else 0,
         sky=SKY[environment.kind],
+        boxes=RUNTIME if boxes_of(environment) else 0,
+        head=int(scene.head is not None),
+        backdrop=int(scene.backdrop.kind != "none"),
+        glare=int(optics.glare),
         dispersion=int(len(set(indices)) > 1),
         absorption=RUNTIME if stone is not None and is_coloured(scene) else 0,
         fresnel=FRESNEL[optics.fresnel],

@@ -10,6 +10,7 @@ from culet.rendering.chains import absorption
 from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.projection import camera_is_inside, placement, project
+from culet.rendering.studio import set_studio
 from culet.scene.model import (
     ConstantEnvironment,
     Environment,
@@ -17,11 +18,11 @@ from culet.scene.model import (
     HalfEnvironment,
     LightEnvironment,
     Scene,
-    StudioEnvironment,
 )
 from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
+from culet.scene.studio import MOST_LAMPS, StudioEnvironment
 
-MAX_LAMPS = 8
+MAX_LAMPS = MOST_LAMPS
 MAX_LIGHTS = 8
 MAX_SURFACES = 4
 
@@ -37,12 +38,18 @@ def layout(real: Real) -> np.dtype[np.void]:
             ("centre", r, 3), ("absorption", r, 3),
             ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
             ("lamp_rim", r, MAX_LAMPS), ("lamp_slope", r, MAX_LAMPS),
-            ("lamp_radiance", r, (MAX_LAMPS, 3)), ("surface", r, (MAX_SURFACES, 4)),
+            ("lamp_radiance", r, (MAX_LAMPS, 3)), ("box", r, (MAX_LAMPS, 3, 3)), ("box_edge", r, (MAX_LAMPS, 2)),
+            ("box_level", r, (MAX_LAMPS, 2)), ("box_radiance", r, (MAX_LAMPS, 3)),
+            ("head", r, 3), ("head_rim", r), ("head_slope", r), ("head_radiance", r, 3),
+            ("backdrop_centre", r, 3), ("backdrop_edge", r, 3), ("backdrop_focus", r, 2), ("backdrop_scale", r, 2),
+            ("floor_colour", r, 3), ("floor_reflectance", r), ("floor_fade", r), ("floor_roughness", r),
+            ("contact", r, (3, 3)), ("contact_shadow", r), ("surface", r, (MAX_SURFACES, 4)),
             ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
-            ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("max_bounces", i),
+            ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("boxes", i),
+            ("max_bounces", i),
             ("width", i), ("height", i), ("chains", i), ("panorama_width", i), ("panorama_height", i), ("sample", i),
             ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i), ("end_kind", i),
-            ("camera_inside", i), ("convex", i), ("pierces", i),
+            ("camera_inside", i), ("has_head", i), ("has_backdrop", i), ("glare", i), ("convex", i), ("pierces", i),
         ],
         align=True,
     )  # fmt: skip
@@ -91,8 +98,7 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
     p["cutoff"] = scene.optics.cutoff
     p["centre"] = centre
     p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
-    if isinstance(scene.environment, StudioEnvironment):
-        _set_lamps(p, scene.environment)
+    set_studio(p, scene, stone, width, height)
     p["surface"] = room_surfaces(centre)
     for number, light in enumerate(scene.lights):
         p["light"][number] = np.array(light.position) - centre
@@ -105,6 +111,7 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
     p["sky_kind"] = SKY[scene.environment.kind]
     p["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
     p["end_kind"] = END[scene.optics.end]
+    p["glare"] = scene.optics.glare
     if stone is not None:
         p["absorption"] = absorption(scene)
         p["facets"] = len(stone.planes)
@@ -112,18 +119,6 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
         p["convex"] = stone.convex
         p["pierces"] = _pierces(scene, stone)
     return p
-
-
-def _set_lamps(p: NDArray[np.void], studio: StudioEnvironment) -> None:
-    """A lamp's share is smoothstep((rim - x) / (rim - full)); x = 1 - cosine = 2 sin^2(angle / 2), and rim and full are
-    its values at the lamp's rim and where it has its full radiance."""
-    for number, lamp in enumerate(studio.lamps):
-        rim, full = 2 * np.sin(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])) / 2) ** 2
-        p["lamp"][number] = np.array(lamp.direction) / np.linalg.norm(lamp.direction)
-        p["lamp_rim"][number] = rim / (rim - full)
-        p["lamp_slope"][number] = 0.5 / (rim - full)
-        p["lamp_radiance"][number] = lamp.radiance
-    p["lamps"] = len(studio.lamps)
 
 
 def _pierces(scene: Scene, stone: Stone) -> bool:

@@ -39,7 +39,9 @@ def world_planes(scene: Scene, stone: Stone) -> Array:
 
 
 def camera_is_inside(scene: Scene, stone: Stone) -> bool:
-    """Whether the eye is within the stone's surface; on it counts as outside."""
+    """Whether the eye is within the stone's surface; on it counts as outside. Parallel rays begin outside."""
+    if scene.camera.kind == "orthographic":
+        return False
     centre, rotation = placement(scene)
     eye = (np.array(scene.camera.position) - centre) @ rotation
     if eye @ eye >= 1:
@@ -59,9 +61,13 @@ def _winding_number(stone: Stone, point: Array) -> float:
     return float(2 * np.arctan2(triple, dots).sum() / (4 * np.pi))
 
 
+NEAREST_PLANE = 2.0
+"""R from the stone's centre, within which no parallel rays begin: the whole stone is in front of them."""
+
+
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """Rays of a pinhole as affine functions of the pixel: foot + x column + y row, x and y in pixels."""
+    """Rays of a camera as affine functions of the pixel: foot + x column + y row, x and y in pixels."""
 
     foot: Array
     """(3, 3): the point of pixel (0, 0)'s ray abreast of the stone, relative to it; its change by column; by row."""
@@ -81,6 +87,15 @@ def project(scene: Scene, width: int, height: int) -> Projection:
     right = np.cross(forward, np.array(camera.up, dtype=float))
     right /= np.linalg.norm(right)
     up = np.cross(right, forward)
+    if camera.kind == "orthographic":
+        column, row = right * (camera.height / height), -up * (camera.height / height)
+        along = float(-eye @ forward)
+        corner = eye + along * forward - column * (width / 2) - row * (height / 2)
+        return Projection(
+            foot=np.array([corner, column, row]),
+            direction=np.array([forward, np.zeros(3), np.zeros(3)]),
+            reach=max(along, NEAREST_PLANE),
+        )
     half_height = np.tan(np.radians(camera.fov_degrees) / 2)
     column, row = right * (2 * half_height / height), -up * (2 * half_height / height)
     corner = forward - column * (width / 2) - row * (height / 2)

@@ -26,7 +26,7 @@ NONE_DEALT = np.zeros(1, np.uint32)
 """Of a launch's tiles, before it begins; see tile.cl."""
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
-TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3}
+TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3, "neutral": 4}
 
 
 class Renderer:

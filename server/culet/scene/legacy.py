@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from culet.scene.model import Camera, Film, Lamp, Light, Plane, Scene, StoneSettings, StudioEnvironment
+from culet.scene.model import Camera, Film, Light, Plane, Scene, StoneSettings
+from culet.scene.studio import Lamp, StudioEnvironment
 
 LEGACY_DEFAULT = Scene(
     stones=(StoneSettings(position=(0, 0.5, 0), orientation=(0.93670, 0.33047, 0, 0.11566)),),

@@ -11,7 +11,6 @@ from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
     BaseModel,
-    ConfigDict,
     Discriminator,
     Field,
     Tag,
@@ -21,19 +20,11 @@ from pydantic import (
 )
 
 from culet.errors import SceneError
+from culet.scene.fields import Colour, Coordinate, Model, Vector
+from culet.scene.studio import Backdrop, Head, NoBackdrop, StudioEnvironment, StudioFloor
 from culet.scene.wording import expected, unknown_field
 
-Coordinate = Annotated[float, Field(ge=-1e9, le=1e9)]
-Component = Annotated[float, Field(ge=0, le=1e6)]
-Vector = tuple[Coordinate, Coordinate, Coordinate]
-Colour = tuple[Component, Component, Component]
 Index = Annotated[float, Field(ge=1, le=10)]
-
-
-class Model(BaseModel):
-    """Immutable; unknown keys, NaN and infinity are errors."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class BrilliantCut(Model):
@@ -149,6 +140,23 @@ class Plane(Model):
     kind: Literal["none", "matte", "mirror"] = "none"
 
 
+def _form_of_floor(value: object) -> str | None:
+    kind = value.get("kind", "none") if isinstance(value, dict) else getattr(value, "kind", None)
+    if kind == "studio":
+        return "<studio>"
+    return "<matte>" if kind in ("none", "matte", "mirror") else None
+
+
+Floor = Annotated[
+    Annotated[Plane, Tag("<matte>")] | Annotated[StudioFloor, Tag("<studio>")],
+    Discriminator(
+        _form_of_floor,
+        custom_error_type="floor",
+        custom_error_message="Input should be a floor of kind 'none', 'matte', 'mirror' or 'studio'",
+    ),
+]
+
+
 class Light(Model):
     """A point light without falloff; it lights the floor and the walls, and the stone shades it."""
 
@@ -190,39 +198,6 @@ class GradientEnvironment(Model):
     top: Colour = (1, 1, 1)
 
 
-class Lamp(Model):
-    """A round lamp in the sky, infinitely far away."""
-
-    direction: Vector
-    half_angle_degrees: Annotated[float, Field(ge=0.1, le=90)]
-    radiance: Colour
-    softness: Annotated[float, Field(ge=0.02, le=1)] = Field(
-        0.25, description="Part of the radius over which it fades."
-    )
-
-    @field_validator("direction")
-    @classmethod
-    def _points_somewhere(cls, direction: Vector) -> Vector:
-        if not any(direction):
-            raise ValueError("a direction of length 0 points nowhere")
-        return direction
-
-
-class StudioEnvironment(Model):
-    """Round lamps before a uniform ground: small bright ones bring out the fire, wide ones the facets."""
-
-    kind: Literal["studio"] = "studio"
-    ambient: Colour = (0.03, 0.035, 0.05)
-    lamps: Annotated[tuple[Lamp, ...], Field(max_length=8)] = (
-        Lamp(direction=(-0.6, 1, 0.35), half_angle_degrees=24, radiance=(1.5, 1.45, 1.35)),
-        Lamp(direction=(0.9, 0.75, -0.4), half_angle_degrees=16, radiance=(1.1, 1.3, 1.6)),
-        Lamp(direction=(0.25, 0.9, 0.9), half_angle_degrees=6, radiance=(8, 8, 8)),
-        Lamp(direction=(-0.9, 0.45, -0.9), half_angle_degrees=5, radiance=(9, 8, 7)),
-        Lamp(direction=(0.7, 0.3, 1), half_angle_degrees=4, radiance=(10, 10, 11)),
-        Lamp(direction=(-0.2, 1, -0.35), half_angle_degrees=5, radiance=(9, 9, 9)),
-    )
-
-
 class ImageEnvironment(Model):
     """A panorama of all directions: an uploaded picture, or one of the studio's own."""
 
@@ -247,12 +222,20 @@ Environment = Annotated[
 
 
 class Camera(Model):
-    """A pinhole."""
+    """A pinhole, or parallel rays as in the instruments of the trade."""
 
+    kind: Literal["pinhole", "orthographic"] = Field(
+        "pinhole",
+        description="orthographic: parallel rays, from a plane through the position; one within 2 R of the stone's "
+        "centre is moved back.",
+    )
     position: Vector = (0, 2.4, 4.6)
     target: Vector = (0, 0.1, 0)
     up: Vector = (0, 1, 0)
-    fov_degrees: Annotated[float, Field(ge=1e-3, le=170)] = Field(40, description="Vertical field of view.")
+    fov_degrees: Annotated[float, Field(ge=1e-3, le=170)] = Field(40, description="Vertical field of view (pinhole).")
+    height: Annotated[float, Field(ge=1e-6, le=1e9)] = Field(
+        3, description="R, of what the picture shows (orthographic)."
+    )
 
     @model_validator(mode="after")
     def _looks_somewhere(self) -> Self:
@@ -289,6 +272,11 @@ class Optics(Model):
         "cut",
         description="Of a chain below the cut-off: dropped, continued by chance without bias, or replaced by the sky.",
     )
+    glare: bool = Field(
+        True,
+        description="Whether the stone's surface shows what it reflects outside. Without it the picture is not "
+        "physical: it shows what comes out of the stone, as a polarising filter does in part.",
+    )
     estimator: Literal["chain", "classic"] = "chain"
 
 
@@ -306,9 +294,10 @@ class Film(Model):
     """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
 
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
-    tone_map: Literal["srgb", "filmic", "classic", "none"] = Field(
+    tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(
         "srgb",
-        description="srgb: IEC 61966-2-1; filmic: a curve on the luminance that keeps hues, then srgb; "
+        description="srgb: IEC 61966-2-1; neutral: as it is up to 0.8, above that a shoulder towards white, then srgb; "
+        "filmic: a curve on the luminance that keeps hues, then srgb; "
         "classic: (1.2 L)^1.2 as in the report; none: linear. What is above 1 is clipped.",
     )
     gamut: Literal["desaturate", "clip"] = Field(
@@ -377,13 +366,15 @@ class Scene(Model):
 
     version: Literal[1] = 1
     stones: Annotated[tuple[StoneSettings, ...], Field(max_length=1)] = (StoneSettings(),)
-    floor: Plane = Plane(kind="mirror")
+    floor: Floor = Plane(kind="mirror")
     walls: Plane = Plane(kind="none")
     lights: Annotated[tuple[Light, ...], Field(max_length=8)] = (
         Light(position=(-4, 6, 4), colour=(1, 0.2, 0.2)),
         Light(position=(4, 6, 4), colour=(0.2, 0.5, 1)),
     )
     environment: Environment = StudioEnvironment()
+    backdrop: Backdrop = Field(NoBackdrop(), description="What the camera sees in place of the sky.")
+    head: Head | None = Field(None, description="The observer's, as stones see it; none without one.")
     camera: Camera = Camera()
     optics: Optics = Optics()
     sampling: Sampling = Sampling()
@@ -406,9 +397,10 @@ class Scene(Model):
         return self.model_copy(update={"stones": (stone,)})
 
 
-_ENVIRONMENT_KINDS = frozenset(
-    get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(get_args(Environment)[0])
-)
+_KINDS = {
+    name: frozenset(get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(get_args(union)[0]))
+    for name, union in (("environment", Environment), ("backdrop", Backdrop))
+}
 
 
 def field_of(location: tuple[int | str, ...]) -> str:
@@ -417,7 +409,7 @@ def field_of(location: tuple[int | str, ...]) -> str:
     return ".".join(
         part
         for before, part in zip(["", *parts], parts, strict=False)
-        if not (part.startswith("<") or (part in _ENVIRONMENT_KINDS and before == "environment"))
+        if not (part.startswith("<") or part in _KINDS.get(before, ()))
     )
 
 

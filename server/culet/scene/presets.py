@@ -15,8 +15,8 @@ from culet.scene.model import (
     Scene,
     Simulation,
     StoneSettings,
-    StudioEnvironment,
 )
+from culet.scene.studio import StudioEnvironment
 
 _CLASSIC_STONE = StoneSettings(
     material="classic", absorption=(0.02, 0.02, 0.02), position=(0, 4, 0), orientation=(1, 0, 0, 0)

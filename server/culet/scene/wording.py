@@ -79,5 +79,6 @@ def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
 
 def _is_form(model: type[BaseModel], tag: str) -> bool:
     """Whether a tag in a location, `light` or `<ior>`, chose that form of a union."""
-    kind = model.model_fields.get("kind")
-    return tag.strip("<>") in model.model_fields or (kind is not None and tag in get_args(kind.annotation))
+    name = tag.strip("<>")
+    choices = (model.model_fields[field].annotation for field in ("kind", "shape") if field in model.model_fields)
+    return name in model.model_fields or any(name in get_args(choice) for choice in choices)

@@ -10,6 +10,7 @@ from culet.errors import InputError
 from culet.geometry.stone import Stone
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
+from culet.simulation.drop import drop_position
 from culet.simulation.impulses import impulse_at
 from culet.simulation.models import MODELS
 from culet.simulation.motion import Motion, speed
@@ -58,6 +59,11 @@ class Simulation:
         """Whether nothing that `interpolated` gives will change any more."""
         return self.state.asleep and self.previous.asleep
 
+    @property
+    def at_start(self) -> bool:
+        """Whether nothing has moved the stone yet."""
+        return self.state == self._start
+
     def prepare(self) -> None:
         """Compute what all steps need, so that the first takes no longer than the next."""
         _ = self.body.hull
@@ -103,7 +109,7 @@ class Simulation:
         old, body = self.body, self.body
         if (settings.mass, settings.inertia) != (self.settings.mass, self.settings.inertia):
             body = RigidBody.of(settings, old.stone, old.surfaces)
-        unmoved = self.state == self._start
+        unmoved = self.at_start
         self.settings, self.body = settings, body
         self._start = _moving_at(settings, body, self._start)
         if unmoved:
@@ -134,6 +140,12 @@ class Simulation:
     def reset(self) -> None:
         """Back to the start, step 0."""
         self.state = self.previous = self._start
+
+    def drop(self) -> None:
+        """Back to the start, step 0; a stone that stands on the floor there is lifted first, so that it falls."""
+        start = self._start
+        position = drop_position(self.body.stone, start.position, start.orientation)
+        self.state = self.previous = replace(start, position=position)
 
     def interpolated(self, fraction: float) -> tuple[Triple, Quaternion]:
         """Position and orientation `fraction` (0 to 1) of the way from the previous state to the current one."""

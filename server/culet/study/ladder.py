@@ -2,9 +2,10 @@
 
     python -m culet.study.ladder > server/culet/engine/ladder.json
 
-Each setting draws the legacy default scene at one sample a pixel, as a moving frame is. They take turns, and what counts is
-the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them. The
-picture is brought to full size as a browser does, and compared, as it is shown and in radiance, with a converged one.
+Each setting draws the legacy default scene at one sample a pixel, as a moving frame is. They take turns, and what
+counts is the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them.
+The picture is brought to full size as a browser does, and compared, as it is shown and in radiance, with a converged
+one.
 Besides the ladder, the errors of all settings are kept: what is drawn may be a rung at another size.
 """
 

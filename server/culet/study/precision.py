@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from culet.geometry.load import stone_of
 from culet.rendering.renderer import Renderer
-from culet.scene.model import GradientEnvironment, Plane, Scene, StudioEnvironment
+from culet.scene.model import GradientEnvironment, Plane, Scene
+from culet.scene.studio import StudioEnvironment
 
 Array = NDArray[np.float64]
 Settings = Mapping[str, Any]

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError
 
 from culet.errors import InputError
-from culet.scene.model import Model
+from culet.scene.fields import Model
 
 SCHEMA_VERSION = 1
 

@@ -1,0 +1,120 @@
+"""The studio's quantities as the kernels read them: lamps, boxes, head, backdrop and floor."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.stone import Stone
+from culet.rendering.projection import placement
+from culet.scene.model import Scene
+from culet.scene.room import FLOOR_Y
+from culet.scene.studio import (
+    Backdrop,
+    BoxLamp,
+    GradientBackdrop,
+    PlainBackdrop,
+    StudioFloor,
+    boxes_of,
+    round_lamps_of,
+)
+
+Array = NDArray[np.float64]
+
+
+def set_studio(p: NDArray[np.void], scene: Scene, stone: Stone | None, width: int, height: int) -> None:
+    """Fill in what the scene has of it."""
+    lamps, boxes = round_lamps_of(scene.environment), boxes_of(scene.environment)
+    for number, lamp in enumerate(lamps):
+        p["lamp"][number] = _unit(lamp.direction)
+        p["lamp_rim"][number], p["lamp_slope"][number] = disc_edge(lamp.half_angle_degrees, lamp.softness)
+        p["lamp_radiance"][number] = lamp.radiance
+    for number, box in enumerate(boxes):
+        _set_box(p, number, box)
+    p["lamps"], p["boxes"] = len(lamps), len(boxes)
+    if scene.head is not None:
+        p["has_head"] = True
+        p["head"] = towards_observer(scene)
+        p["head_rim"], p["head_slope"] = disc_edge(scene.head.half_angle_degrees, scene.head.softness)
+        p["head_radiance"] = scene.head.radiance
+    _set_backdrop(p, scene.backdrop, width, height)
+    if isinstance(scene.floor, StudioFloor):
+        _set_floor(p, scene.floor, scene, stone)
+
+
+def disc_edge(half_angle_degrees: float, softness: float) -> tuple[float, float]:
+    """Rim and slope: a disc's share is smoothstep(rim - slope (squared distance of unit vectors)).
+
+    That is smoothstep((rim - x) / (rim - full)), where x = 1 - cosine = 2 sin^2(angle / 2), and rim and full are its
+    values at the disc's rim and where it has its full radiance.
+    """
+    rim, full = 2 * np.sin(np.radians(half_angle_degrees * np.array([1, 1 - softness])) / 2) ** 2
+    return float(rim / (rim - full)), float(0.5 / (rim - full))
+
+
+def box_axes(box: BoxLamp) -> tuple[Array, Array, Array]:
+    """The ways to a box, across it and up, of unit length. The box of the zenith has -z up."""
+    to_box = _unit(box.direction)
+    across = np.cross(to_box, (0, 1, 0))
+    length = float(np.linalg.norm(across))
+    across = across / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+    up = np.cross(across, to_box)
+    turn = np.radians(box.turn_degrees)
+    return to_box, np.cos(turn) * across + np.sin(turn) * up, np.cos(turn) * up - np.sin(turn) * across
+
+
+def towards_observer(scene: Scene) -> Array:
+    """The unit vector from the stone to the camera; of parallel rays, against them."""
+    camera = scene.camera
+    back = np.subtract(camera.position, camera.target)
+    from_stone = np.subtract(camera.position, placement(scene)[0])
+    far = camera.kind == "orthographic" or not np.linalg.norm(from_stone) > 1e-6
+    return _unit(back if far else from_stone)
+
+
+def _set_box(p: NDArray[np.void], number: int, box: BoxLamp) -> None:
+    """See add_boxes in sky.cl: ways across and up are scaled so that a share of 1 is where it fades no more."""
+    halves = np.radians([box.half_width_degrees, box.half_height_degrees])
+    fades = np.sin(box.softness * halves)
+    to_box, across, up = box_axes(box)
+    reach = np.cos(halves) / fades
+    p["box"][number] = to_box, reach[0] * across, reach[1] * up
+    p["box_edge"][number] = np.sin(halves) / fades
+    # 1 at the upper edge, where the way up is reach sin(half height), and 1 - fade at the lower
+    p["box_level"][number] = 1 - box.fade / 2, box.fade / 2 / (reach[1] * np.sin(halves[1]))
+    p["box_radiance"][number] = box.radiance
+
+
+def _set_backdrop(p: NDArray[np.void], backdrop: Backdrop, width: int, height: int) -> None:
+    match backdrop:
+        case PlainBackdrop(colour=colour):
+            p["backdrop_centre"] = p["backdrop_edge"] = colour
+        case GradientBackdrop(centre=centre, edge=edge, focus=focus, size=size):
+            p["backdrop_centre"], p["backdrop_edge"] = centre, edge
+            p["backdrop_focus"] = width / 2 + focus[0] * height, height / 2 - focus[1] * height
+            p["backdrop_scale"] = 1 / (size[0] * height), 1 / (size[1] * height)
+    p["has_backdrop"] = backdrop.kind != "none"
+
+
+def _set_floor(p: NDArray[np.void], floor: StudioFloor, scene: Scene, stone: Stone | None) -> None:
+    p["floor_colour"] = floor.colour
+    p["floor_reflectance"], p["floor_fade"] = floor.reflectance, floor.fade
+    p["floor_roughness"] = floor.roughness
+    if stone is not None and placement(scene)[0][1] > FLOOR_Y:
+        p["contact"] = contact_form(scene, stone)
+        p["contact_shadow"] = floor.shadow
+
+
+def contact_form(scene: Scene, stone: Stone) -> Array:
+    """(3, 3) det S S^-1 in the world's axes: x' S^-1 x = 1 is the ellipsoid of even density that has the stone's second
+    moments, which are S / 5."""
+    inertia = stone.mass.inertia
+    spread = 5 * (np.trace(inertia) / 2 * np.eye(3) - inertia)
+    rotation = placement(scene)[1]
+    adjugate = np.linalg.det(spread) * np.linalg.inv(spread)
+    return np.asarray(rotation @ adjugate @ rotation.T)
+
+
+def _unit(vector: object) -> Array:
+    direction = np.asarray(vector, dtype=float)
+    return np.asarray(direction / np.linalg.norm(direction))

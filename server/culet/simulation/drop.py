@@ -1,0 +1,29 @@
+"""Where a stone falls from that stands on the floor: time alone would not move it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from culet.geometry.stone import Stone
+from culet.scene.model import Scene
+from culet.scene.room import FLOOR_Y
+from culet.simulation.rotation import rotate_back
+from culet.simulation.state import Quaternion, Triple
+
+DROP_HEIGHT = 1.5
+"""y of the centre, R: 2.5 R above the floor, from where a stone takes 0.6 s to fall, in the default picture's sight."""
+STANDING = 0.05
+"""R above the floor, below which a stone's lowest corner counts as standing on it."""
+
+
+def drop_position(stone: Stone, position: Triple, orientation: Quaternion) -> Triple:
+    """Where to let it fall from: where it is, or, if it stands on the floor, DROP_HEIGHT above that place."""
+    x, y, z = position
+    lowest = float((stone.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
+    return position if y + lowest - FLOOR_Y > STANDING else (x, max(y, DROP_HEIGHT), z)
+
+
+def dropped(scene: Scene, stone: Stone) -> Scene:
+    """The scene with its stone where it falls from."""
+    placed = scene.stones[0]
+    return scene.moved(drop_position(stone, placed.position, placed.orientation), placed.orientation)
