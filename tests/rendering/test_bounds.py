@@ -40,7 +40,7 @@ def test_what_mirrors_cut_of_a_chain_counts_in_however_many_parts_it_is_followed
     assert in_parts == pytest.approx(at_once, rel=1e-12, abs=1e-15)
 
 
-@pytest.mark.parametrize("name", [name for name, (_, scene) in PRESETS.items() if scene.optics.estimator == "chain"])
+@pytest.mark.parametrize("name", [name for name, preset in PRESETS.items() if preset.scene.optics.estimator == "chain"])
 def test_nothing_is_brighter_than_the_largest_radiance(exact: Renderer, name: str) -> None:
-    scene = PRESETS[name][1]
+    scene = PRESETS[name].scene
     assert radiance(take(exact, scene)).max() <= largest_radiance(scene) * (1 + 1e-12)

@@ -32,7 +32,7 @@ SCENES: dict[str, dict[str, Any]] = {
 def test_the_classic_estimator_draws_what_the_report_describes(exact: Renderer, name: str) -> None:
     """Measured: at most 1e-9, which is the epsilon, in every pixel, so no ray takes another facet at an edge."""
     changes = {"optics": {"estimator": "classic", "fresnel": "schlick", "max_bounces": 12}, **SCENES[name]}
-    data = preset("falling").model_dump(mode="json")
+    data = preset("report-fig1").model_dump(mode="json")
     stone = {**data["stones"][0], "orientation": [0.9, 0.3, 0.1, 0.2]}
     stone["absorption"] = changes.pop("absorption", stone["absorption"])
     scene = Scene.read({**data, **changes, "stones": [stone]})

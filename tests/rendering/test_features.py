@@ -131,8 +131,10 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
     """Lights and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
     stone = stone_of(Scene().stones[0], {})
     left = {
-        name: {field.name for field in fields(Features) if getattr(features_of(scene, stone), field.name) == RUNTIME}
-        for name, (_, scene) in PRESETS.items()
+        name: {
+            field.name for field in fields(Features) if getattr(features_of(preset.scene, stone), field.name) == RUNTIME
+        }
+        for name, preset in PRESETS.items()
     }
     assert left["default"] == {"lights"}
     assert left["tinted-blue"] == {"lights", "absorption"}

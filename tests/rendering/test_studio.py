@@ -24,7 +24,8 @@ from culet.scene import PRESETS, Scene
 from culet.scene.legacy import LEGACY_DEFAULT
 from optics.closed_forms import fresnel
 from rendering.room_reference import passes_through, sky, world_half_spaces
-from rendering.views import BARE, UPRIGHT, Array, pixel_directions, radiance, slab, take
+from rendering.views import BARE, UPRIGHT, Array, pixel_directions, radiance, take
+from shared.stones import slab
 
 SIZE = 96, 54
 BOXES = [
@@ -65,7 +66,7 @@ def floor_points(scene: Scene) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("name", ["legacy", *PRESETS])
 def test_a_scene_that_asks_for_none_of_it_has_a_program_without_it(name: str, brilliant: Stone) -> None:
-    scene = LEGACY_DEFAULT if name == "legacy" else PRESETS[name][1]
+    scene = LEGACY_DEFAULT if name == "legacy" else PRESETS[name].scene
     asks = scene.head is not None or scene.backdrop.kind != "none" or not scene.optics.glare
     features = features_of(scene, brilliant)
     found = {feature: getattr(features, feature) for feature in OFF}

@@ -41,7 +41,7 @@ def test_nothing_is_the_default_scene_written_out() -> None:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_scene_survives_json(name: str) -> None:
-    scene = PRESETS[name][1]
+    scene = PRESETS[name].scene
     assert Scene.read(json.loads(scene.model_dump_json())) == scene
     assert Scene.model_validate_json(scene.model_dump_json()) == scene
 

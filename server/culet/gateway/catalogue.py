@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
 from culet.scene.fields import Model
 from culet.scene.model import BrilliantCut
+from culet.scene.presets import Group
+from culet.scene.thumbnails import thumbnail_of
 
 router = APIRouter(tags=["catalogue"])
 
+WEBP = "image/webp"
 CUTS = {"brilliant": "A round brilliant by its proportions."}
 SKIES = {
     "light-box": "A photographer's light box: bright above, softer at the sides, dark below.",
@@ -36,7 +39,13 @@ class Preset(Model):
     """A named scene."""
 
     name: str
+    title: str
+    """What people call it."""
     summary: str
+    """One sentence."""
+    group: Group
+    thumbnail: str
+    """Address of a small picture of it."""
     scene: Scene
 
 
@@ -113,8 +122,24 @@ class Integrators(Model):
 async def presets() -> Presets:
     """Scenes to begin with."""
     return Presets(
-        presets=tuple(Preset(name=name, summary=summary, scene=scene) for name, (summary, scene) in PRESETS.items())
+        presets=tuple(
+            Preset(
+                name=preset.name,
+                title=preset.title,
+                summary=preset.summary,
+                group=preset.group,
+                thumbnail=f"/api/presets/{preset.name}/thumbnail.webp",
+                scene=preset.scene,
+            )
+            for preset in PRESETS.values()
+        )
     )
+
+
+@router.get("/api/presets/{name}/thumbnail.webp", response_class=Response, responses={200: {"content": {WEBP: {}}}})
+async def thumbnail(name: str) -> Response:
+    """A small picture of a preset."""
+    return Response(thumbnail_of(name), media_type=WEBP, headers={"Cache-Control": "max-age=3600"})
 
 
 @router.get("/api/materials")
