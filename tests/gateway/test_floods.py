@@ -136,7 +136,7 @@ async def test_requests_over_a_clients_share_are_told_when_to_come_again_and_oth
             {"method": "PATCH", "url": path, "json": {"film": {"exposure": -2}}},
             {"method": "POST", "url": f"{path}/events", "content": b"{"},
         ):
-            answers = [await gateway.http.request(**ask, headers=greedy) for _ in range(60)]  # type: ignore[arg-type]
+            answers = [await gateway.http.request(**ask, headers=greedy) for _ in range(60)]
             refused = [answer for answer in answers if answer.status_code == 429]
             assert len(refused) > 20
             assert refused[0].headers["content-type"] == "application/problem+json"
@@ -181,8 +181,8 @@ def hostile(chance: random.Random, depth: int = 0) -> object:
         case 3 | 4 | 5:
             kinds = ["orbit", "dolly", "push", "balance", "resize", "visibility", "ack", "ping", "toggle_fall", "hello"]
             fields = ["yaw", "pitch", "width", "height", "visible", "sequence", "time", "patch", "scene", "extra"]
-            number = chance.choice([0.1, 1, 1e9, "far", None, [1], {}, True])
-            return {"type": chance.choice(kinds)} | {chance.choice(fields): number for _ in range(chance.randrange(4))}
+            value: object = chance.choice([0.1, 1, 1e9, "far", None, [1], {}, True])
+            return {"type": chance.choice(kinds)} | {chance.choice(fields): value for _ in range(chance.randrange(4))}
         case 6 | 7:
             return {chance.choice(WORDS): hostile(chance, depth + 1) for _ in range(chance.randrange(4))}
         case _:

@@ -153,6 +153,7 @@ async def _frame(
     http: Request, session_id: str, query: FrameQuery, gateway: Gateway, file_format: Literal["tga", "png"]
 ) -> Response:
     session = gateway.sessions.get(session_id)
+    session.watched = True
     client = client_of(http.scope)
     message = Render(
         session=session.id,
@@ -164,7 +165,6 @@ async def _frame(
     )
     with gateway.stills.place(client):
         result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
-    session.watched = True
     kind = "attachment" if file_format == "tga" else "inline"  # no browser shows a TGA
     disposition = f'{kind}; filename="culet-{result["step"]}.{file_format}"'
     return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
