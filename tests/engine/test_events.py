@@ -10,7 +10,7 @@ from culet.engine.assets import Assets
 from culet.engine.session import Session
 from culet.engine.snapshot import Snapshot
 from culet.errors import InputError, SceneError
-from culet.rendering.panoramas import SkyPicture
+from culet.rendering.sky_files.picture import SkyPicture
 from culet.scene import Scene
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent

@@ -50,6 +50,15 @@ class FailingRenderer:
     def describe(self) -> Mapping[str, Any]:
         return self.renderer.describe()
 
+    def forget(self, panorama: Panorama) -> None:
+        self.renderer.forget(panorama)
+
+    def held(self) -> Mapping[str, int]:
+        return self.renderer.held()
+
+    def release(self) -> None:
+        self.renderer.release()
+
 
 @asynccontextmanager
 async def served(folder: Path) -> AsyncIterator[tuple[Peer, Callable[[str], Watcher]]]:

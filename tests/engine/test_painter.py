@@ -80,6 +80,15 @@ class World:
     def describe(self) -> dict[str, str]:
         return {}
 
+    def forget(self, panorama: Panorama) -> None:
+        pass
+
+    def held(self) -> dict[str, int]:
+        return {}
+
+    def release(self) -> None:
+        pass
+
     def turn(self, *, since: float, seconds: float) -> None:
         """Drag, from so long after now on, for so long."""
         self.events += [self.now + since + number / POINTER_RATE for number in range(int(seconds * POINTER_RATE))]

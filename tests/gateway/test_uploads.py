@@ -58,8 +58,8 @@ async def test_an_uploaded_sky_is_described_and_seen_in_stills_and_sessions(gate
 @pytest.mark.parametrize(
     ("name", "data", "defect"),
     [
-        ("empty.png", b"", "expected a readable .png picture"),
-        ("text.hdr", b"sunny", "Radiance header"),
+        ("empty.png", b"", "expected a .png picture, which begins with"),
+        ("text.hdr", b"sunny", "expected a Radiance picture, which begins with"),
         ("stone.obj", TETRAHEDRON, ".exr, .hdr, .png"),
     ],
 )

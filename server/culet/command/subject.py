@@ -65,7 +65,7 @@ def _mesh(file: Path) -> Stone:
 
 def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
-    from culet.rendering.panoramas import read_sky
+    from culet.rendering.sky_files.reading import read_sky
     from culet.scene.model import ImageEnvironment
 
     if file is None:

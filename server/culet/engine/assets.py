@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
-from culet.rendering.panoramas import Panorama, SkyPicture, panorama_of
+from culet.rendering.panoramas import Panorama, panorama_of
+from culet.rendering.sky_files.picture import SkyPicture
 from culet.scene import Environment, StoneSettings
 from culet.scene.model import ImageEnvironment
 
@@ -25,4 +26,7 @@ class Assets:
 
     def panorama(self, environment: Environment) -> Panorama | None:
         """The picture of a sky that is one; SceneError for an unknown id."""
-        return panorama_of(environment, self.skies) if isinstance(environment, ImageEnvironment) else None
+        if not isinstance(environment, ImageEnvironment):
+            return None
+        picture = self.skies.get(environment.image)
+        return panorama_of(environment, {} if picture is None else {environment.image: picture.pixels})

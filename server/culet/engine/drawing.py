@@ -60,6 +60,15 @@ class Renderer(Protocol):
     ) -> Picture:
         """An empty picture of the scene, its stone where the scene has it; `panorama` is that of its sky."""
 
+    def forget(self, panorama: Panorama) -> None:
+        """A sky that no scene shows any more. From any thread."""
+
+    def held(self) -> Mapping[str, int]:
+        """Bytes of memory, by what takes them. From any thread."""
+
+    def release(self) -> None:
+        """Give back the memory of pictures that are gone."""
+
     def describe(self) -> Mapping[str, Any]:
         """Device, driver and lanes."""
 

@@ -9,9 +9,10 @@ from pydantic import ValidationError
 from culet.engine import viewpoint
 from culet.engine.assets import Assets
 from culet.engine.merge_patch import merge_patch
-from culet.engine.session import Session, Sky
-from culet.errors import InputError
+from culet.engine.session import Past, Session, Sky
+from culet.errors import InputError, NotFoundError, SceneError
 from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment
 from culet_protocol import messages
@@ -63,6 +64,16 @@ def sky_for(scene: Scene, session: Session | None, assets: Assets) -> Sky:
     if session is not None and session.sky.environment == scene.environment:
         return session.sky
     return own_sky(scene.environment, assets)
+
+
+def past_subject(past: Past, session: Session, assets: Assets) -> tuple[Stone | None, Panorama | None]:
+    """The stone and the picture of the sky that a session showed at a step; NotFoundError if they are not kept any
+    more. May make the stone, which takes a while."""
+    try:
+        stone = stone_for(past.scene, session, assets)
+        return stone, sky_for(past.scene, session, assets).panorama
+    except SceneError as error:
+        raise NotFoundError(f"what was shown at step {past.step} is not kept any more: {error}") from error
 
 
 def own_sky(environment: Environment, assets: Assets) -> Sky:

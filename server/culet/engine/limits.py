@@ -29,12 +29,17 @@ class Limits(Settings):
         description="Pixels of a live frame; one asked for larger is rendered so large, with the same aspect ratio.",
     )
     max_uploads: int = Field(32, ge=1, description="Uploads of each kind, mesh or sky, that are kept.")
-    max_kept_bytes: ByteSize = Field(
-        ByteSize(2**30),
-        ge=1,
-        description="Memory of all kept uploads of a kind; the latest one is kept in any case.",
+    memory: ByteSize | None = Field(
+        None,
+        ge=256 * 2**20,
+        description="Memory of sessions, uploads and pictures; by default half of the machine's or container's.",
     )
+    max_sky_pixels: int = Field(2**25, ge=2, description="Pixels of an uploaded sky; each takes 12 bytes.")
     read_seconds: float = Field(60, gt=0, description="Time for reading one upload.")
+    read_processor_seconds: float = Field(30, gt=0, description="Time of a processor for reading one upload.")
+    max_read_bytes: ByteSize = Field(
+        ByteSize(2**30), ge=2**26, description="Memory that reading one upload may take; what is kept of it among it."
+    )
     max_mesh_triangles: int = Field(200_000, ge=1, description="Triangles of an uploaded mesh.")
     max_shown_states: int = Field(
         600,

@@ -135,9 +135,11 @@ class LivePicture:
         return self.watched and self.at_rest and not self.final and in_full
 
     def abandon(self) -> None:
-        """Nobody watches: free the picture's memory, keep the message."""
+        """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
         self.picture = None
         self.refinement = None
+        if self.painted is not self.session.shown:
+            self.painted = None
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import time
 from collections.abc import Callable
@@ -13,6 +14,7 @@ from culet.engine import events
 from culet.engine.assets import Assets
 from culet.engine.limits import Limits, check_still_size, live_size
 from culet.engine.live import LivePicture
+from culet.engine.memory import Memory
 from culet.engine.painter import Painter
 from culet.engine.session import Session, Sky
 from culet.engine.snapshot import Snapshot
@@ -21,7 +23,9 @@ from culet.engine.uploads import MESH, SKY, UploadStore
 from culet.errors import BusyError, InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
+from culet.rendering.sky_files.picture import SkyPicture
 from culet.scene import Environment, Scene
+from culet.scene.model import ImageEnvironment
 from culet_protocol import engine as protocol
 
 STILL_SIZE = (640, 360)
@@ -29,6 +33,15 @@ STILL_SIZE = (640, 360)
 
 SUBSCRIPTIONS = 4096
 """Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
+
+SESSION_BYTES = 2**20
+"""Of a session: its scene, its simulation with the stone's hull, and its stone if that is a cut."""
+SHOWN_BYTES = 2**14
+"""Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
+HISTORY_SHARE = 1 / 8
+"""Of the memory that all histories together may take."""
+LEAST_LIVE_SIZE = (160, 90)
+"""Pixels that a live picture has in any case."""
 
 LONG_EVENTS = frozenset({"patch_scene", "set_scene", "toggle_fall", "toggle_walls", "push"})
 """They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
@@ -47,6 +60,8 @@ class Requests:
         device: dict[str, Any],
         *,
         tell: Callable[[protocol.SessionState], None],
+        memory: Memory,
+        forget_sky: Callable[[SkyPicture], object],
     ) -> None:
         self.instance = os.urandom(8).hex()
         """Differs for every process."""
@@ -55,9 +70,16 @@ class Requests:
         self._limits = limits
         self._device = device
         self._tell = tell
-        self._meshes, self._skies = UploadStore(MESH, limits), UploadStore(SKY, limits)
+        self._memory = memory
+        self._meshes = UploadStore(MESH, limits, memory, in_use=self._named)
+        self._skies = UploadStore(SKY, limits, memory, in_use=self._named, forgotten=forget_sky)
         self._assets = Assets(self._meshes, self._skies)
+        self._history = history_length(limits, memory.budget)
+        memory.count("sessions", self._session_bytes)
+        memory.count("histories", self._history_bytes)
         self._touched: dict[str, float] = {}
+        self._awaited: set[Still] = set()
+        """Stills that somebody waits for."""
         self._subscriptions: set[bytes] = set()
         self._started = time.monotonic()
 
@@ -122,6 +144,8 @@ class Requests:
             "meshes": len(self._meshes),
             "skies": len(self._skies),
             **vars(self._painter.counters),
+            "memory_budget_bytes": self._memory.budget,
+            **{f"memory_{kind}_bytes": size for kind, size in self._memory.held().items()},
             "device": self._device,
         }
 
@@ -137,7 +161,7 @@ class Requests:
         if request.session in pictures:  # opened twice at once
             return described(self._live(request.session))
         self._make_room()
-        history = self._limits.max_shown_states
+        history = self._history
         if snapshot is None:
             session = Session(request.session, scene, stone, sky=sky, history=history)
         else:
@@ -155,6 +179,37 @@ class Requests:
         if oldest is None or now - self._touched[oldest] < self._limits.engine_idle_seconds:
             raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
         self._close(oldest)
+
+    def _named(self) -> set[str]:
+        """The meshes and skies that sessions show, or would go back to, and that stills wait for."""
+        named = set[str]()
+        for live in self._painter.pictures.values():
+            named |= names_in(live.session.shown.scene, live.session.sky.environment)
+            for shown in (live.painted, live.refused):
+                if shown is not None:
+                    named |= names_in(shown.scene)
+        for still in self._awaited:
+            named |= names_in(still.scene)
+        return named
+
+    def _session_bytes(self) -> int:
+        """Of open sessions, and of what only they and their stills hold of skies."""
+        kept = {id(sky.pixels) for sky in self._skies.contents()}
+        panoramas: dict[int, int] = {}
+        size = 0
+        for live in self._painter.pictures.values():
+            size += SESSION_BYTES + len(live.message or b"")
+            painted = live.painted.panorama if live.painted else None
+            for panorama in (live.session.sky.panorama, painted):
+                if panorama is not None:
+                    panoramas[id(panorama)] = panorama.nbytes
+        for still in self._awaited:
+            if still.panorama is not None:
+                panoramas[id(still.panorama)] = still.panorama.nbytes
+        return size + sum(own for key, own in panoramas.items() if key not in kept)
+
+    def _history_bytes(self) -> int:
+        return SHOWN_BYTES * sum(live.session.remembered for live in self._painter.pictures.values())
 
     def _close(self, session: str) -> dict[str, Any]:
         self._live(session)
@@ -181,9 +236,29 @@ class Requests:
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
         live = self._live(request.session)
         live.rate = request.frames_per_second
-        live.size = live_size(request.width, request.height, self._limits)
+        live.size = self._size_within_memory(live, *live_size(request.width, request.height, self._limits))
         self._painter.wake()
         return {"width": live.size[0], "height": live.size[1]}
+
+    def _size_within_memory(self, live: LivePicture, width: int, height: int) -> tuple[int, int]:
+        """The size, or one of that shape whose picture takes no more than half of the memory that is free."""
+        needed = picture_bytes(width, height)
+        others = sum(picture_bytes(*other.size) for other in self._painter.pictures.values() if other is not live)
+        held = self._memory.held()
+        taken = sum(held.values()) - held.get("pictures", 0) + others
+        room = max(0, self._memory.budget - taken) // 2
+        if needed <= room:
+            return width, height
+        self._memory.make_room(2 * needed)
+        scale = math.sqrt(max(room, picture_bytes(*LEAST_LIVE_SIZE)) / needed)
+        return (width, height) if scale >= 1 else (max(1, int(width * scale)), max(1, int(height * scale)))
+
+    def _make_room_for(self, still: Still) -> None:
+        """BusyError if pictures so large do not fit besides what is held and what waits."""
+        waiting = [other for other in self._awaited if other.picture is None]
+        needed = sum(picture_bytes(other.width, other.height) for other in (*waiting, still))
+        with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
+            pass
 
     async def _render(self, request: protocol.Render) -> Answer:
         if (request.scene is None) == (request.session is None):
@@ -196,9 +271,14 @@ class Requests:
         if request.session is not None:
             samples = max(samples, SESSION_STILL_SAMPLES)
         still = Still(scene, stone, width, height, samples, request.format, panorama)
+        self._make_room_for(still)
         self._stills.put(still)
+        self._awaited.add(still)
         self._painter.wake()
-        data = await still.done
+        try:
+            data = await still.done
+        finally:
+            self._awaited.discard(still)
         return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
 
     async def _subject(
@@ -210,8 +290,9 @@ class Requests:
             return scene, stone, sky.panorama, STILL_SIZE, None
         live = self._live(request.session)
         async with live.session.lock:
-            shown = live.session.recall(request.step)
-        return shown.scene, shown.stone, shown.panorama, live.size, shown.step
+            past = live.session.recall(request.step)
+            stone, panorama = await asyncio.to_thread(events.past_subject, past, live.session, self._assets)
+        return past.scene, stone, panorama, live.size, past.step
 
     def _live(self, session: str) -> LivePicture:
         try:
@@ -224,6 +305,23 @@ class Requests:
     def _made(self, scene: Scene, environment: Environment | None) -> tuple[Stone | None, Sky]:
         sky = events.own_sky(environment or scene.environment, self._assets)
         return events.stone_for(scene, None, self._assets), sky
+
+
+def names_in(scene: Scene, *environments: Environment) -> set[str]:
+    """What may be ids of uploads in a scene and in further skies."""
+    named = {stone.mesh for stone in scene.stones if stone.mesh is not None}
+    skies = (scene.environment, *environments)
+    return named | {sky.image for sky in skies if isinstance(sky, ImageEnvironment)}
+
+
+def history_length(limits: Limits, budget: int) -> int:
+    """Shown states that each session may keep, so that all sessions' take HISTORY_SHARE of the memory at most."""
+    return max(1, min(limits.max_shown_states, int(HISTORY_SHARE * budget) // (SHOWN_BYTES * limits.max_sessions)))
+
+
+def picture_bytes(width: int, height: int) -> int:
+    """Of a picture while it is rendered: two sums of four float32, and three bytes that are shown, for each pixel."""
+    return 35 * width * height
 
 
 def _file(data: bytes | None) -> bytes:

@@ -14,6 +14,8 @@ from pydantic import BaseModel, ValidationError
 
 from culet.engine.drawing import Picture, Renderer
 from culet.engine.limits import Limits
+from culet.engine.machine import default_budget
+from culet.engine.memory import Memory
 from culet.engine.painter import Painter
 from culet.engine.requests import Requests
 from culet.engine.sockets import Peers, bind_control, bind_frames
@@ -100,7 +102,14 @@ class Engine:
         self._painter = Painter(
             renderer, render_thread, stills, send=self._send_frame, report=self._report_problem, encode_still=encode
         )
-        self._requests = Requests(self._painter, stills, limits, dict(renderer.describe()), tell=self._tell)
+        memory = Memory(limits.memory or default_budget())
+        memory.count("pictures", lambda: renderer.held().get("pictures", 0))
+        memory.count("device_skies", lambda: renderer.held().get("device_skies", 0))
+        memory.give_back(lambda _: renderer.release())
+        self._requests = Requests(
+            self._painter, stills, limits, dict(renderer.describe()), tell=self._tell, memory=memory,
+            forget_sky=lambda sky: renderer.forget(sky.pixels),
+        )  # fmt: skip
 
     async def run_until(self, stopping: asyncio.Event) -> None:
         """Serve until told to stop; an error of the engine itself ends it, so that it is started anew."""

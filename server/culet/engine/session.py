@@ -49,6 +49,15 @@ class Shown:
     moving: bool
 
 
+@dataclass(frozen=True)
+class Past:
+    """What was shown, by the names of its mesh and sky: however long it is remembered, it keeps neither."""
+
+    step: int
+    scene: Scene
+    """With the live camera and the stone's pose."""
+
+
 class Session:
     """Mutable; changed under `lock` only, since a change may wait for a thread that makes a stone."""
 
@@ -74,7 +83,7 @@ class Session:
         self.sequence = 0
         """Of the frame sent last."""
         self._history_length = history
-        self._history: OrderedDict[int, Shown] = OrderedDict()
+        self._history: OrderedDict[int, Past] = OrderedDict()
         self._advanced_at: float | None = None
         self._timer = timer
         self._allowance = Allowance()
@@ -247,14 +256,19 @@ class Session:
 
     def remember(self, shown: Shown) -> None:
         """Keep what a frame was made of, so that it can be rendered again."""
-        self._history[shown.step] = shown
+        self._history[shown.step] = Past(shown.step, shown.scene)
         while len(self._history) > self._history_length:
             self._history.popitem(last=False)
 
-    def recall(self, step: int | None) -> Shown:
+    @property
+    def remembered(self) -> int:
+        """Shown states that are kept."""
+        return len(self._history)
+
+    def recall(self, step: int | None) -> Past:
         """What was shown at a step (None: now), or NotFoundError."""
         if step is None or step == self.shown.step:
-            return self.shown
+            return Past(self.shown.step, self.shown.scene)
         try:
             return self._history[step]
         except KeyError:

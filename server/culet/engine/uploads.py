@@ -1,24 +1,33 @@
-"""Uploaded meshes and skies: read in a process of their own and kept, the least recently used forgotten first."""
+"""Uploaded meshes and skies: read in a process of their own and kept, the least recently used forgotten first, but none
+that a session shows."""
 
 from __future__ import annotations
 
 import asyncio
-import pickle
+import hashlib
 import re
-import sys
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from culet.engine.limits import Limits
+from culet.engine.memory import Memory
+from culet.engine.upload_answer import TooLittleMemoryError
+from culet.engine.upload_process import Room, read_upload
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.stone import Stone
-from culet.rendering.panoramas import SkyPicture
+from culet.rendering.sky_files.picture import SkyPicture
 from culet_protocol.engine import Described, DescribedMesh, DescribedSky
 
 WAITING = 8
 """Uploads of a kind that may wait to be read: each holds its bytes in memory."""
+LEAST_TO_READ = 2**26
+"""Bytes that must be free for a file to be read at all."""
+SHARE_TO_READ = 0.5
+"""Of the memory that is free, at first, for one process that reads: another kind may be read at the same time."""
+STONE_COPIES = 4
+"""Bytes that a mesh takes over those of its arrays: its tree and its hull, and the device's copies of them."""
 
 
 class Read(Protocol):
@@ -38,21 +47,46 @@ class Kind(Generic[T]):
 
     name: str
     """As upload_reader knows it."""
+    plural: str
+    content: type[T]
     error: type[InputError]
     """For a file that cannot be read at all."""
     describe: Callable[[T], Described]
     """What an uploader is told."""
+    size: Callable[[T], int]
+    """Bytes that it takes in memory."""
+
+
+@dataclass(frozen=True)
+class _Kept(Generic[T]):
+    content: T
+    digest: bytes
+    """Of the file that it was read from."""
 
 
 class UploadStore(Mapping[str, T]):
     """What was read of the uploads of one kind, by their id."""
 
-    def __init__(self, kind: Kind[T], limits: Limits) -> None:
+    def __init__(
+        self,
+        kind: Kind[T],
+        limits: Limits,
+        memory: Memory | None = None,
+        *,
+        in_use: Callable[[], Collection[str]] = frozenset,
+        forgotten: Callable[[T], object] = lambda _: None,
+    ) -> None:
+        """`in_use` says which ids sessions show: those are kept. `forgotten` is told what is not kept any more."""
         self._kind = kind
         self._limits = limits
-        self._kept: OrderedDict[str, _Read[T]] = OrderedDict()
+        self._memory = memory or Memory(2**62)
+        self._in_use = in_use
+        self._forgotten = forgotten
+        self._kept: OrderedDict[str, _Kept[T]] = OrderedDict()
         self._turn = asyncio.Lock()
         self._waiting = 0
+        self._memory.count(kind.plural, lambda: sum(kind.size(kept.content) for kept in self._kept.values()))
+        self._memory.give_back(self._forget)
 
     def __getitem__(self, name: str) -> T:
         found = self._kept[name]
@@ -65,6 +99,10 @@ class UploadStore(Mapping[str, T]):
     def __len__(self) -> int:
         return len(self._kept)
 
+    def contents(self) -> list[T]:
+        """All that is kept, without being used by that."""
+        return [kept.content for kept in self._kept.values()]
+
     async def put(self, name: str, file_type: str, data: bytes) -> dict[str, Any]:
         """Read a file and keep what it holds under a name; what was found in it, or InputError, BusyError."""
         kind = self._kind.name
@@ -74,53 +112,76 @@ class UploadStore(Mapping[str, T]):
             raise TooLargeError(f"expected a {kind} of at most {self._limits.max_upload_bytes} bytes, got {len(data)}")
         if self._waiting >= WAITING:
             raise BusyError(f"{WAITING} uploads ({kind}) are waiting to be read")
+        digest = hashlib.sha256(file_type.encode() + b"\0" + data).digest()
         self._waiting += 1
         try:
             async with self._turn:
-                read = await self._read(data, file_type)
+                content = self._known(name, digest) or await self._read(name, digest, file_type, data)
         finally:
             self._waiting -= 1
-        self._kept[name] = read
-        self._kept.move_to_end(name)
-        while len(self._kept) > self._limits.max_uploads or self._over_memory():
-            self._kept.popitem(last=False)
-        return self._kind.describe(read.content).model_dump(mode="json")
+        return self._kind.describe(content).model_dump(mode="json")
 
-    def _over_memory(self) -> bool:
-        return len(self._kept) > 1 and sum(read.size for read in self._kept.values()) > self._limits.max_kept_bytes
+    def _known(self, name: str, digest: bytes) -> T | None:
+        """What that very file was read to before, so that sessions do not hold one copy and the store another."""
+        kept = self._kept.get(name)
+        return self[name] if kept is not None and kept.digest == digest else None
 
-    async def _read(self, data: bytes, file_type: str) -> _Read[T]:
-        """What the file holds, read by a process that can be ended, so that no frame waits for it."""
+    async def _read(self, name: str, digest: bytes, file_type: str, data: bytes) -> T:
+        """In a process that can be ended, so that no frame waits for it; its memory is reserved meanwhile.
+
+        At first with what is free. A file for which that is too little is worth what nobody uses.
+        """
         kind, limits = self._kind, self._limits
-        process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "culet.engine.upload_reader", kind.name, file_type, str(limits.max_mesh_triangles),
-            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
-        )  # fmt: skip
-        try:
-            async with asyncio.timeout(limits.read_seconds):
-                answer, complaint = await process.communicate(data)
-        except TimeoutError:
-            raise kind.error(f"the {kind.name} could not be read in {limits.read_seconds:g} s") from None
-        finally:
-            if process.returncode is None:
-                process.kill()
-                await process.wait()
-        if process.returncode != 0:
-            last = complaint.decode(errors="replace").strip().rpartition("\n")[2]
-            raise kind.error(
-                f"the {kind.name} ended the process that read it: {last or f'exit code {process.returncode}'}"
-            )
-        content = pickle.loads(answer)  # noqa: S301 - written by our own process, which read data and ran none
-        if isinstance(content, InputError):
-            raise content
-        return _Read(content, len(answer))
+        while len(self._kept) >= limits.max_uploads and self._forget_one():
+            pass
+        if len(self._kept) >= limits.max_uploads and name not in self._kept:
+            raise BusyError(f"sessions show {len(self._kept)} uploads ({kind.name}), as many as are kept; close one")
+        room = self._room(int(self._memory.make_room(LEAST_TO_READ) * SHARE_TO_READ))
+        while True:
+            try:
+                content = await self._read_within(room, file_type, data)
+                break
+            except TooLittleMemoryError as error:
+                needed = error.needed or 2 * room.memory
+                self._memory.make_room(needed)
+                more = self._room(min(needed, self._memory.free))
+                if more.memory < min(needed, limits.max_read_bytes):
+                    raise BusyError(
+                        f"reading the {kind.name} needs {needed / 2**20:.0f} MiB of memory, "
+                        f"{more.memory / 2**20:.0f} MiB are free; try again later"
+                    ) from None
+                room = more
+        self._kept[name] = _Kept(content, digest)
+        self._kept.move_to_end(name)
+        return content
 
+    def _room(self, size: int) -> Room:
+        """So much, or what a file may take at most, or at least."""
+        most = int(self._limits.max_read_bytes)
+        memory = max(LEAST_TO_READ, min(most, size))
+        return Room(memory, full=memory == most)
 
-@dataclass(frozen=True)
-class _Read(Generic[T]):
-    content: T
-    size: int
-    """Bytes, as pickled: what it takes in memory, nearly."""
+    async def _read_within(self, room: Room, file_type: str, data: bytes) -> T:
+        kind = self._kind
+        with self._memory.reserved("reading", room.memory, f"reading a {kind.name}"):
+            content = await read_upload(kind.name, kind.error, file_type, data, self._limits, room)
+        assert isinstance(content, kind.content)  # noqa: S101 - by its kind
+        return content
+
+    def _forget(self, size: int) -> None:
+        """Up to so many bytes, the least recently used first."""
+        while size > 0 and (forgotten := self._forget_one()):
+            size -= forgotten
+
+    def _forget_one(self) -> int:
+        """Bytes given back; 0 if sessions show all there is."""
+        used = self._in_use()
+        for name, kept in self._kept.items():
+            if name not in used:
+                del self._kept[name]
+                self._forgotten(kept.content)
+                return max(1, self._kind.size(kept.content))
+        return 0
 
 
 def described_mesh(stone: Stone) -> DescribedMesh:
@@ -143,5 +204,16 @@ def described_sky(picture: SkyPicture) -> DescribedSky:
     )
 
 
-MESH = Kind("mesh", MeshError, described_mesh)
-SKY = Kind("sky", InputError, described_sky)
+def mesh_size(stone: Stone) -> int:
+    """Bytes of a stone and of what is made of it."""
+    arrays = (stone.vertices, stone.triangles, stone.facet_of_triangle, stone.planes)
+    return STONE_COPIES * sum(array.nbytes for array in arrays)
+
+
+def sky_size(picture: SkyPicture) -> int:
+    """Bytes of a sky's pixels; the device's copies are its own."""
+    return int(picture.pixels.nbytes)
+
+
+MESH = Kind("mesh", "meshes", Stone, MeshError, described_mesh, mesh_size)
+SKY = Kind("sky", "skies", SkyPicture, InputError, described_sky, sky_size)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+import threading
 from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,12 +16,13 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.errors import DeviceError
+from culet.rendering.panoramas import check_panorama
 
 Real = type[np.float32] | type[np.float64]
 """The precision of a program."""
 
 MOST_PANORAMAS = 4
-"""That stay on the device."""
+"""That stay on the device at a time."""
 
 _PROBE = """
 __kernel void probe(__global float4 *a) {
@@ -41,19 +43,43 @@ class Device:
     lanes: int
     """Of single precision; double precision has half as many."""
     units: int
+    shares_memory: bool = False
+    """It reads what lies in this process's memory, so that a sky is not copied for it."""
     panoramas: OrderedDict[int, tuple[NDArray[np.float32], Any]] = field(default_factory=OrderedDict, repr=False)
     """Skies that are on the device, the latest used last: by the array's identity, with the array, which keeps it."""
+    lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
+    """Of the panoramas: one thread renders, another may forget."""
 
     def panorama(self, pixels: NDArray[np.float32]) -> Any:  # noqa: ANN401 - pyopencl has no types
-        """The buffer of a sky, which is uploaded once and not for every picture."""
-        if id(pixels) not in self.panoramas:
-            flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
-            buffer = cl.Buffer(self.context, flags, hostbuf=np.ascontiguousarray(pixels, np.float32))
+        """The buffer of a sky, which is uploaded once and not for every picture. InputError if it is no sky."""
+        with self.lock:
+            known = self.panoramas.get(id(pixels))
+            if known is not None:
+                self.panoramas.move_to_end(id(pixels))
+                return known[1]
+        check_panorama(pixels)
+        own = np.ascontiguousarray(pixels, np.float32)
+        place = cl.mem_flags.USE_HOST_PTR if self._shared(own, pixels) else cl.mem_flags.COPY_HOST_PTR
+        buffer = cl.Buffer(self.context, cl.mem_flags.READ_ONLY | place, hostbuf=own)
+        with self.lock:
             self.panoramas[id(pixels)] = pixels, buffer
-        self.panoramas.move_to_end(id(pixels))
-        while len(self.panoramas) > MOST_PANORAMAS:
-            self.panoramas.popitem(last=False)
-        return self.panoramas[id(pixels)][1]
+            while len(self.panoramas) > MOST_PANORAMAS:
+                self.panoramas.popitem(last=False)
+        return buffer
+
+    def forget(self, pixels: NDArray[np.float32]) -> None:
+        """A sky that is not needed any more; pictures that are being made of it go on."""
+        with self.lock:
+            self.panoramas.pop(id(pixels), None)
+
+    def panorama_bytes(self) -> int:
+        """Memory of the skies on the device, but for those that it reads where they are."""
+        with self.lock:
+            return sum(pixels.nbytes for pixels, _ in self.panoramas.values() if not self._shared(pixels, pixels))
+
+    def _shared(self, own: NDArray[np.float32], given: NDArray[np.float32]) -> bool:
+        """An array that somebody might write to is copied: a picture shows the sky as it was when it was begun."""
+        return self.shares_memory and own is given and not given.flags.writeable
 
     def lanes_for(self, real: Real) -> int:
         """Lanes of a packet in that precision."""
@@ -92,7 +118,7 @@ def open_device() -> Device:
         lanes = max(lane for lane in (1, 4, 8, 16) if lane <= max(1, width))
         return Device(
             context, queue, candidate.name.strip(), candidate.platform.version.strip(), lanes,
-            candidate.max_compute_units,
+            candidate.max_compute_units, shares_memory=bool(candidate.host_unified_memory),
         )  # fmt: skip
     if not tried:
         tried = [f"none matches CULET_DEVICE={wanted!r}" if wanted and candidates else "the drivers offer none"]

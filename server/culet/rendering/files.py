@@ -13,6 +13,7 @@ import OpenEXR
 import PIL.Image
 
 from culet.errors import InputError
+from culet.memory_file import path_in_memory
 from culet.rendering.renderer import Picture
 
 JPEG_QUALITY = 95
@@ -41,8 +42,7 @@ def _exr(picture: Picture) -> bytes:
     """Linear radiance, single precision. The library writes to paths only."""
     pixels = np.ascontiguousarray(picture.linear(), np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "picture.exr"
+    with path_in_memory(ending="exr") as path:
         OpenEXR.File(header, {"RGB": pixels}).write(str(path))
         return path.read_bytes()
 

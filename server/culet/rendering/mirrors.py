@@ -8,7 +8,7 @@ what comes to be past the critical angle stays for ever. So for these the kernel
 
 from __future__ import annotations
 
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -20,9 +20,17 @@ SAME = 1e-9
 """Cosines this near to 1 are of one direction."""
 
 
-@lru_cache(maxsize=16)
+_ANSWERS: WeakKeyDictionary[Stone, bool] = WeakKeyDictionary()
+
+
 def makes_finite_group(stone: Stone) -> bool:
-    """Whether the facets as mirrors, and their images in each other, are at most MOST_MIRRORS."""
+    """Whether the facets as mirrors, and their images in each other, are at most MOST_MIRRORS; found out once."""
+    if stone not in _ANSWERS:
+        _ANSWERS[stone] = _are_few(stone)
+    return _ANSWERS[stone]
+
+
+def _are_few(stone: Stone) -> bool:
     mirrors, waiting = np.empty((0, 3)), stone.planes[:, :3]
     while len(waiting):
         for normal in waiting:

@@ -6,26 +6,19 @@ edge, +x a quarter of the way to the right. So has it Mitsuba's `envmap`, and, t
 
 from __future__ import annotations
 
-import io
-import re
-import tempfile
+import math
+import weakref
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
-import OpenEXR
-import PIL.Image
 from numpy.typing import NDArray
 
-from culet.errors import InputError, SceneError, TooLargeError
+from culet.errors import InputError, SceneError
 from culet.scene.model import ImageEnvironment
 
 Panorama = NDArray[np.float32]
 
-MOST_PIXELS = 2**25
-"""Of a panorama that is read: 8192 x 4096."""
 STUDIO_HEIGHT = 512
 """Rows of the studio's own panoramas: a third of a degree each."""
 
@@ -75,12 +68,33 @@ STUDIO: Mapping[str, Callable[[], Panorama]] = {"light-box": light_box, "ring-li
 """By the name that a scene gives."""
 
 
+_SOUND: dict[int, weakref.ref[Panorama]] = {}
+"""Arrays that passed and that nobody can write to, by identity: a large one takes a tenth of a second to look at."""
+
+
+def check_panorama(pixels: Panorama) -> None:
+    """InputError unless an array is a panorama: (height, width, 3), its radiance finite and not below 0."""
+    if not pixels.flags.writeable and (known := _SOUND.get(id(pixels))) is not None and known() is pixels:
+        return
+    if pixels.ndim != 3 or pixels.shape[-1] != 3 or pixels.size == 0:
+        raise InputError(f"panorama: expected an array of (height, width, 3), got {pixels.shape}", "panorama")
+    low, high = float(pixels.min()), float(pixels.max())  # NaN if there is one
+    if not (0 <= low <= high < math.inf):
+        raise InputError(
+            f"panorama: expected radiance that is finite and not below 0, got values from {low:.4g} to {high:.4g}",
+            "panorama",
+        )
+    if not pixels.flags.writeable:
+        key = id(pixels)
+        _SOUND[key] = weakref.ref(pixels, lambda _: _SOUND.pop(key, None))
+
+
 @lru_cache(maxsize=4)
 def _studio(name: str) -> Panorama:
     return STUDIO[name]()
 
 
-def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, SkyPicture]) -> Panorama:
+def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, Panorama]) -> Panorama:
     """The scene's panorama, or SceneError if there is none of that name."""
     if environment.image in STUDIO:
         return _studio(environment.image)
@@ -89,116 +103,4 @@ def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, SkyPicture]
             f"environment.image: expected {', '.join(STUDIO)} or the id of an upload, got {environment.image!r}",
             "environment.image",
         )
-    return uploads[environment.image].pixels
-
-
-@dataclass(frozen=True, eq=False)
-class SkyPicture:
-    """What a file of a sky held."""
-
-    pixels: Panorama
-    findings: tuple[str, ...] = ()
-    """What was found in the file and what was done about it, a sentence each."""
-
-
-def read_sky(data: bytes, file_type: str) -> SkyPicture:
-    """From an equirectangular .exr or .hdr (linear) or .png (sRGB) file; InputError says what is wrong with it."""
-    readers = {"exr": _read_exr, "hdr": _read_hdr, "png": _read_png}
-    if file_type not in readers:
-        raise InputError(f"expected a sky as .exr, .hdr or .png, got {file_type!r}", "file")
-    try:
-        pixels = readers[file_type](data)
-    except InputError:
-        raise
-    except Exception as error:  # three libraries, as many ways to fail
-        raise InputError(f"expected a readable .{file_type} picture, got a damaged or another file", "file") from error
-    if not np.isfinite(pixels).all() or (pixels < 0).any():
-        raise InputError("expected a sky of finite radiance, not negative; got NaN, infinity or less than 0", "file")
-    panorama = np.ascontiguousarray(pixels, np.float32)
-    return SkyPicture(panorama, tuple(_findings(panorama)))
-
-
-def _findings(panorama: Panorama) -> list[str]:
-    height, width, _ = panorama.shape
-    found = []
-    if width != 2 * height:
-        found.append(f"{width} x {height} pixels are stretched over all directions, which need twice the width.")
-    if not np.any(panorama):
-        found.append("All of it is black.")
-    return found
-
-
-def _check_size(width: int, height: int) -> None:
-    if width * height > MOST_PIXELS:
-        raise TooLargeError(f"expected a sky of at most {MOST_PIXELS} pixels, got {width} x {height}", "file")
-    if width < 2 or height < 1:
-        raise InputError(f"expected a sky of at least 2 x 1 pixels, got {width} x {height}", "file")
-
-
-def _read_png(data: bytes) -> NDArray[np.floating]:
-    with PIL.Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
-        _check_size(*picture.size)
-        encoded = np.asarray(picture.convert("RGB")) / 255.0
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
-
-
-def _read_exr(data: bytes) -> NDArray[np.floating]:
-    """The library reads paths only."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "sky.exr"
-        path.write_bytes(data)
-        with OpenEXR.File(str(path), header_only=True) as file:
-            lower, upper = file.header()["dataWindow"]
-            _check_size(int(upper[0] - lower[0]) + 1, int(upper[1] - lower[1]) + 1)
-        with OpenEXR.File(str(path)) as file:
-            channels = file.channels()
-            name = next((name for name in ("RGB", "RGBA", "Y") if name in channels), None)
-            if name is None:
-                raise InputError(f"expected channels RGB, RGBA or Y, got {', '.join(channels)}", "file")
-            pixels = np.asarray(channels[name].pixels, np.float32)
-    return pixels[..., :3] if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=-1)
-
-
-def _read_hdr(data: bytes) -> NDArray[np.floating]:
-    """Radiance's RGBE (G. Ward, Real Pixels, Graphics Gems II, 1991), plain or with new run-length encoding."""
-    head = re.match(rb"#\?\w+\n(?:[^\n]*\n)*?\n-Y (\d{1,5}) \+X (\d{1,5})\n", data[:4096])
-    if head is None or b"FORMAT=32-bit_rle_rgbe" not in head[0]:
-        raise InputError("expected a Radiance header of 32-bit_rle_rgbe and -Y height +X width", "file")
-    height, width = int(head[1]), int(head[2])
-    _check_size(width, height)
-    raw = np.frombuffer(data, np.uint8, offset=head.end())
-    if 8 <= width < 32768 and len(raw) >= 4 and raw[0] == raw[1] == 2:
-        rgbe, position = np.empty((height, 4, width), np.uint8), 0
-        for row in rgbe:
-            position = _read_scanline(raw, position, row)
-        rgbe = rgbe.transpose(0, 2, 1)
-    else:
-        if len(raw) < 4 * width * height:
-            raise InputError(f"expected {4 * width * height} bytes of pixels, got {len(raw)}", "file")
-        rgbe = raw[: 4 * width * height].reshape(height, width, 4)
-    scale = np.ldexp(1.0, rgbe[..., 3:].astype(int) - 136)
-    return np.where(rgbe[..., 3:] > 0, (rgbe[..., :3] + 0.5) * scale, 0)
-
-
-def _read_scanline(raw: NDArray[np.uint8], position: int, row: NDArray[np.uint8]) -> int:
-    """Four runs of components; returns where the next scanline begins."""
-    width = row.shape[1]
-    if bytes(raw[position : position + 4]) != bytes([2, 2, width >> 8, width & 255]):
-        raise InputError(f"expected a scanline of {width} pixels at byte {position}", "file")
-    position += 4
-    for component in row:
-        filled = 0
-        while filled < width:
-            if position + 1 >= len(raw):
-                raise InputError("the picture ends in the middle of a scanline", "file")
-            count = int(raw[position])
-            run, length = count > 128, count - 128 if count > 128 else count
-            if length == 0 or filled + length > width:
-                raise InputError(f"a run of {length} pixels does not fit at byte {position}", "file")
-            source = raw[position + 1 : position + 2] if run else raw[position + 1 : position + 1 + length]
-            if not run and len(source) < length:
-                raise InputError("the picture ends in the middle of a scanline", "file")
-            component[filled : filled + length] = source
-            filled += length
-            position += 2 if run else 1 + length
-    return position
+    return uploads[environment.image]

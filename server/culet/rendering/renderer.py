@@ -64,6 +64,18 @@ class Renderer:
         whose sky is an uploaded image; `features` asks for another program than the scene needs."""
         return Picture(self, scene, stone, width, height, panorama, features)
 
+    def forget(self, panorama: Panorama) -> None:
+        """A sky that no scene shows any more."""
+        self.device.forget(panorama)
+
+    def held(self) -> dict[str, int]:
+        """Bytes of memory, by what takes them: pictures, and the device's copies of skies."""
+        return {"pictures": int(self.pool.managed_bytes), "device_skies": self.device.panorama_bytes()}
+
+    def release(self) -> None:
+        """Give back the memory of pictures that are gone, which is kept for the next ones."""
+        self.pool.free_held()
+
     def describe(self) -> dict[str, str | int]:
         """Device, driver and lanes, for reports."""
         return {

@@ -8,7 +8,7 @@ Getting Rid of Packets, 2008).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,9 +60,19 @@ class _Branch:
         return float(x * y + y * z + z * x)
 
 
-@lru_cache(maxsize=16)
+_TREES: WeakKeyDictionary[Stone, Tree] = WeakKeyDictionary()
+"""Kept as long as their stones: a tree is as large as its mesh."""
+
+
 def tree_of(stone: Stone) -> Tree:
     """The tree of a stone; made once, since stones are immutable."""
+    tree = _TREES.get(stone)
+    if tree is None:
+        tree = _TREES[stone] = _planted(stone)
+    return tree
+
+
+def _planted(stone: Stone) -> Tree:
     corners = stone.vertices[stone.triangles]
     lower, upper = corners.min(axis=1), corners.max(axis=1)
     for by_median in (False, True):
