@@ -9,6 +9,7 @@ memory.
 from __future__ import annotations
 
 import asyncio
+import socket
 from typing import Any
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
@@ -20,6 +21,8 @@ PIECE = 4096
 """Bytes that are taken apart in one turn of the loop: up to 680 frames, 10 ms."""
 FRAMES_PER_SECOND = 100.0
 """Of pings, pongs and fragments. A browser sends a pong every 20 s, and a control message in one frame."""
+UNSENT_BYTES = 16384
+"""That the system keeps for a connection besides what is on its way: 0.5 s at 30 kB/s. Unlimited it keeps megabytes."""
 
 
 class PacedStream(WebSocketsSansIOProtocol):
@@ -31,6 +34,13 @@ class PacedStream(WebSocketsSansIOProtocol):
         self._next: asyncio.Handle | None = None
         self._frames = Bucket(FRAMES_PER_SECOND)
         self._owed: list[bytes] = []
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Have what the line does not take wait here, where a later state or frame replaces it."""
+        super().connection_made(transport)
+        connection = transport.get_extra_info("socket")
+        if connection is not None:
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT_BYTES)
 
     def data_received(self, data: bytes) -> None:
         """Bytes of frames."""
