@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import zmq
 
-from culet.endpoints import FORMS, bind
+from culet.endpoints import FORMS, bind, check_trusted
 from culet.errors import InputError
 
 ABSENT_ADDRESS = "203.0.113.9"
@@ -78,3 +78,19 @@ def test_an_endpoint_is_bound_and_again_after_a_server_that_was_killed(
     bind(router, endpoint, "control")
     assert router.last_endpoint == endpoint.encode()
     bind(router, "tcp://127.0.0.1:*", "control")
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["tcp://0.0.0.0:1", "tcp://*:1", "tcp://192.0.2.7:1", "tcp://[::]:1", "tcp://eth0:1"]
+)
+def test_what_others_can_reach_is_bound_only_on_a_trusted_network(endpoint: str) -> None:
+    with pytest.raises(InputError, match=r"--frames: .*every session that is watched and its id.*--trust-network"):
+        check_trusted(endpoint, "frames", trusted=False)
+    check_trusted(endpoint, "frames", trusted=True)
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["ipc:///tmp/x", "tcp://127.0.0.1:1", "tcp://127.9.9.9:*", "tcp://[::1]:1", "tcp://lo:1"]
+)
+def test_what_only_this_machine_can_reach_needs_no_trust(endpoint: str) -> None:
+    check_trusted(endpoint, "frames", trusted=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import logging
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,9 +15,12 @@ from culet.command.places import check_place, opened
 from culet.command.settings import options_of
 from culet.command.subject import read_subject
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
+from culet.endpoints import check_trusted
 from culet.engine.limits import Limits
 from culet.errors import InputError, SceneError
 from culet.gateway.settings import GatewaySettings
+from culet.logs import configure
+from culet.settings import Settings
 from culet.study.command import study_app
 
 if TYPE_CHECKING:
@@ -204,9 +206,11 @@ def serve(
     """Serve the web page: gateway and engine, restarted when it dies. Stop with Ctrl-C."""
     from culet.gateway.serve import serve as run
 
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
-        Limits.read(given)  # before the child would complain of them
+        limits = Limits.read(given)  # before the child would complain of them
+        configure(limits.log_level, limits.log_format)
+        if frames is not None:
+            check_trusted(frames, "frames", trusted=limits.trust_network)
         run(given, frames=frames, engine_options=[*Limits.words(given)])
 
 
@@ -216,8 +220,9 @@ def gateway(control: Control, frames: Frames, *, given: dict[str, Any]) -> None:
     """Run the web process alone, for an engine that runs elsewhere."""
     from culet.gateway.serve import run_gateway
 
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
+        settings = Settings.read(given)
+        configure(settings.log_level, settings.log_format)
         run_gateway(given, control, frames)
 
 
@@ -234,9 +239,12 @@ def engine(
     """Run the render process alone: sessions, simulation and frames over ZeroMQ."""
     from culet.engine.serve import run
 
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     with errors_in_one_line():
-        run(control, frames, Limits.read(given))
+        limits = Limits.read(given)
+        configure(limits.log_level, limits.log_format)
+        for option, endpoint in (("control", control), *(("frames", endpoint) for endpoint in frames)):
+            check_trusted(endpoint, option, trusted=limits.trust_network)
+        run(control, frames, limits)
 
 
 @app.command()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import re
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,28 @@ def bind(socket: zmq.Socket[Any], endpoint: str, option: str) -> None:
         raise InputError(f"--{option}: cannot listen at {endpoint!r}: {error}", option) from None
     except zmq.ZMQError as error:
         raise InputError(f"--{option}: cannot listen at {endpoint!r}: {_reason(error)}", option) from error
+
+
+def check_trusted(endpoint: str, option: str, *, trusted: bool) -> None:
+    """InputError for an endpoint that others than this machine can reach, unless their network is trusted."""
+    parts = _TCP.fullmatch(endpoint)
+    if trusted or parts is None or _is_loopback(parts["address"]):
+        return
+    raise InputError(
+        f"--{option}: {endpoint!r} can be reached from other machines, and whoever reaches it sees every session that is "
+        "watched and its id, by which it may be changed and deleted; --trust-network permits that, tcp://127.0.0.1:PORT "
+        "serves this machine alone",
+        option,
+    )
+
+
+def _is_loopback(address: str) -> bool:
+    if address in ("localhost", "lo"):
+        return True
+    try:
+        return ip_address(address.strip("[]")).is_loopback
+    except ValueError:  # *, or the name of another interface
+        return False
 
 
 def keep_alive(socket: zmq.Socket[Any]) -> None:

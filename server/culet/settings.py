@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, ByteSize, Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from culet.errors import InputError
+from culet.logs import Format, Level
 from culet.scene.wording import expected
 
 PREFIX = "CULET_"
@@ -42,6 +43,8 @@ class Settings(BaseSettings):
         validate_default=True,
     )
 
+    log_level: Level = Field("info", description="What is told on stderr: events of this level and above.")
+    log_format: Format = Field("text", description="How it is told: as text, or as one JSON object a line.")
     max_sessions: int = Field(64, ge=1, description="Sessions that may be open at once.")
     max_upload_bytes: ByteSize = Field(
         ByteSize(64 * MEBIBYTE), ge=1, description="Size of one uploaded file, such as 64MiB."

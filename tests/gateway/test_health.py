@@ -19,10 +19,10 @@ async def test_metrics_are_prometheus_text_without_a_label_that_grows(gateway: G
         await viewer.frame()
         answer = await gateway.http.get("/metrics")
     assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
-    line = re.compile(r'(# (HELP|TYPE) \w+ .+|\w+(\{status="\d+"\})? -?[0-9.e+-]+)')
+    line = re.compile(r'(# (HELP|TYPE) \w+ .+|\w+(\{(status|code|le)="[\w.+-]+"\})? -?[0-9.e+-]+)')
     assert [text for text in answer.text.splitlines() if not line.fullmatch(text)] == []
     assert session not in answer.text
-    for expected in ("culet_engine_up 1", "culet_sessions 1", "culet_viewers 1"):
+    for expected in ("culet_engine_up 1.0", "culet_sessions 1.0", "culet_viewers 1.0"):
         assert f"\n{expected}\n" in answer.text
     assert (await gateway.engine_status())["frames_rendered"] >= 1
 

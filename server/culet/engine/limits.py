@@ -13,6 +13,11 @@ from culet.settings import Settings
 class Limits(Settings):
     """Configured limits of an engine."""
 
+    trust_network: bool = Field(
+        default=False,
+        description="Let the engine publish frames, and take control, at tcp:// addresses that other machines reach. "
+        "Whoever reaches them sees every session that is watched and its id, by which it may be changed and deleted.",
+    )
     engine_idle_seconds: float = Field(
         3600,
         gt=0,

@@ -12,19 +12,20 @@ from fastapi import FastAPI
 from fastapi.responses import FileResponse, HTMLResponse
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from culet import __version__
 from culet.gateway import catalogue, health, problems, session_routes, stills, upload_routes
+from culet.gateway.access_log import AccessLog
 from culet.gateway.admission import Admission
 from culet.gateway.allowance import Allowance
 from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
 from culet.gateway.methods import Methods
+from culet.gateway.metrics import Metrics
 from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.state import Counters, Gateway
+from culet.gateway.state import Gateway
 from culet.gateway.still_places import StillPlaces
 from culet.gateway.uploads import Uploads
 
@@ -80,7 +81,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
             allow_private_network=True,
         )
     app.add_middleware(SecurityHeaders, settings=settings)
-    app.add_middleware(_CountAnswers, counters=app.state.gateway.counters)
+    app.add_middleware(AccessLog, metrics=app.state.gateway.metrics)
     return app
 
 
@@ -109,28 +110,19 @@ def _log_failure(task: asyncio.Task[None]) -> None:
 def _gateway(settings: GatewaySettings) -> Gateway:
     link = EngineLink(settings)
     uploads = Uploads(link, settings.max_kept_upload_bytes)
+    sessions, metrics = Sessions(settings, link, uploads), Metrics()
+    metrics.watch("culet_engine_up", "1 while the engine's heartbeats come.", link.ready.is_set)
+    metrics.watch("culet_engine_processes", "Engine processes seen.", lambda: link.instances, counts=True)
+    metrics.watch("culet_frames_received", "Frames from the engine.", lambda: link.frames_received, counts=True)
+    metrics.watch("culet_sessions", "Sessions open.", sessions.__len__)
+    metrics.watch("culet_viewers", "Viewers connected.", lambda: sessions.viewers)
+    metrics.watch("culet_upload_bytes_kept", "Bytes of uploads kept.", lambda: uploads.kept_bytes)
     return Gateway(
         settings,
         link,
         uploads,
-        Sessions(settings, link, uploads),
+        sessions,
         ClientBuckets(settings.client_messages_per_second),
         StillPlaces(settings.max_client_stills),
-        Counters(),
+        metrics,
     )
-
-
-class _CountAnswers:
-    """ASGI middleware that counts answers by status."""
-
-    def __init__(self, app: ASGIApp, counters: Counters) -> None:
-        self._app = app
-        self._counters = counters
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        async def counted(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                self._counters.answers[message["status"]] += 1
-            await send(message)
-
-        await self._app(scope, receive, counted if scope["type"] == "http" else send)

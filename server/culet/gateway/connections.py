@@ -93,7 +93,7 @@ class Guard:
         self.min_bytes = settings.min_body_rate * PROGRESS_SECONDS
         self.limit = connection_limit(settings.max_connections)
         self.limit_of_address = settings.max_connections_per_address
-        self.refused = 0
+        self.ended = 0
         """Connections that were ended for others or for owing too long."""
         self._proxies = proxies
         self._connections: dict[asyncio.BaseTransport, Connection] = {}
@@ -178,7 +178,7 @@ class Guard:
         return max(groups.values(), key=len, default=[])
 
     def _end(self, connection: Connection, why: str | None = None) -> None:
-        self.refused += 1
+        self.ended += 1
         log.info("ended a connection of %s: %s", connection.address or "a proxy", why or "others need its place")
         self.forget(connection.protocol.transport)
         if why is None:

@@ -51,12 +51,20 @@ class Listener:
         self.url = f"http://{shown}:{self._socket.getsockname()[1]}/"
         app = create_app(settings)
         self.gateway: Gateway = app.state.gateway
+        guard = Guard(settings, proxies)
+        metrics = self.gateway.metrics
+        metrics.watch("culet_connections", "Connections open.", guard.__len__)
+        metrics.watch(
+            "culet_connections_ended", "Ended for others, or for owing too long.", lambda: guard.ended, counts=True
+        )
         self._server = _Server(
             GuardedConfig(
                 app,
-                Guard(settings, proxies),
+                guard,
                 lifespan="on",
-                log_level="warning",
+                log_config=None,
+                log_level="error",
+                access_log=False,  # the gateway has its own
                 ws_max_size=MAX_WEBSOCKET_MESSAGE,
                 ws_per_message_deflate=False,  # frames are compressed already
                 forwarded_allow_ips=trusted_hosts(proxies),

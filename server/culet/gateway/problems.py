@@ -11,8 +11,10 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from culet.errors import CuletError, InputError
+from culet.gateway.departure import ClientLeftError
 from culet.scene.model import field_of
 from culet.scene.wording import expected
 from culet_protocol.messages import PatchScene, SessionEvent, SetScene, ViewerEvent
@@ -57,7 +59,9 @@ def problem_of(error: CuletError) -> JSONResponse:
 def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """What OpenAPI should say about a route's errors: those that its user will meet, and that any other is alike."""
     content = {MEDIA_TYPE: {"schema": PROBLEM_SCHEMA}}
-    known = {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
+    known: dict[int | str, dict[str, Any]] = {
+        status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses
+    }
     return {**known, "default": {"description": "Another error", "content": content}}
 
 
@@ -104,6 +108,7 @@ def install(app: FastAPI) -> None:
     app.exception_handler(CuletError)(_of_culet)
     app.exception_handler(RequestValidationError)(_of_validation)
     app.exception_handler(HTTPException)(_of_http)
+    app.exception_handler(ClientDisconnect)(_of_leaving)
     app.exception_handler(Exception)(_of_bug)
 
 
@@ -133,6 +138,10 @@ async def _of_http(_request: Request, error: HTTPException) -> JSONResponse:
         return problem(InputError.status, InputError.title, f"the body is not JSON: {unreadable}")
     title = HTTPStatus(error.status_code).phrase.lower()
     return problem(error.status_code, title, error.detail, None, error.headers)
+
+
+async def _of_leaving(_request: Request, _error: ClientDisconnect) -> JSONResponse:
+    return problem_of(ClientLeftError("the client left before it had sent its body"))
 
 
 async def _of_bug(_request: Request, _error: Exception) -> JSONResponse:

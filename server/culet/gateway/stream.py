@@ -136,7 +136,7 @@ class _Stream:
             if frame is not None:
                 if not await self._in_time(frame):
                     return
-                self._gateway.counters.frame_sent(len(frame))
+                self._gateway.metrics.frame_sent(len(frame))
                 continue  # notices may have come, and another frame
             until = viewer.sleep_until()
             with contextlib.suppress(TimeoutError):

@@ -58,7 +58,7 @@ function listed(path, method, operation) {
     return fetch(`${target}${query.size > 0 ? `?${query}` : ""}`, options);
   }
 
-  const errors = Object.keys(operation.responses).filter((status) => status >= "400").join(", ");
+  const errors = Object.keys(operation.responses).filter((status) => /^[45]/.test(status)).join(", ");
   return element("details", {},
     element("summary", {}, element("span", { className: "method" }, method.toUpperCase()), " ", element("code", {}, path)),
     element("p", {}, operation.description ?? operation.summary ?? "", errors && ` Errors: ${errors}.`),
