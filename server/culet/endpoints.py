@@ -42,9 +42,8 @@ def check_trusted(endpoint: str, option: str, *, trusted: bool) -> None:
     if trusted or parts is None or _is_loopback(parts["address"]):
         return
     raise InputError(
-        f"--{option}: {endpoint!r} can be reached from other machines, and whoever reaches it sees every session that is "
-        "watched and its id, by which it may be changed and deleted; --trust-network permits that, tcp://127.0.0.1:PORT "
-        "serves this machine alone",
+        f"--{option}: other machines reach {endpoint!r}, and whoever does sees every session that is watched and its id, "
+        "by which it may be changed and deleted; --trust-network permits that, tcp://127.0.0.1:PORT serves this machine",
         option,
     )
 

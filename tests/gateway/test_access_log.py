@@ -42,7 +42,7 @@ async def test_each_answer_and_stream_is_a_line_without_the_sessions_id(
         await viewer.frame()
     assert await logged(caplog, f"WS /api/sessions/{session[:6]}.../stream opened")
     assert await logged(caplog, f"WS /api/sessions/{session[:6]}.../stream closed after", "1000 by the viewer")
-    assert session not in caplog.text
+    assert not any(session in line for line in lines(caplog))
 
 
 async def test_refused_viewers_appear_with_the_reason(caplog: pytest.LogCaptureFixture) -> None:
@@ -105,11 +105,8 @@ def test_a_line_of_json_has_the_fields_that_the_text_has(capsys: pytest.CaptureF
 
 
 def test_a_histogram_of_the_engine_is_one_of_prometheus() -> None:
-    status = {
-        "frames": 3,
-        "frame_seconds": {"bounds": [0.1, 1], "counts": [2, 3, 1], "sum": 4.5},
-        "device": {"name": "x"},
-    }
+    seconds = {"bounds": [0.1, 1], "counts": [2, 3, 1], "sum": 4.5}
+    status = {"frames": 3, "frame_seconds": seconds, "device": {"name": "x"}}
     gauge_of = {family.name: family for family in EngineStatus(status).collect()}
     assert set(gauge_of) == {"culet_engine_frames", "culet_engine_frame_seconds"}
     samples = {(s.name, s.labels.get("le")): s.value for s in gauge_of["culet_engine_frame_seconds"].samples}

@@ -54,9 +54,7 @@ class Listener:
         guard = Guard(settings, proxies)
         metrics = self.gateway.metrics
         metrics.watch("culet_connections", "Connections open.", guard.__len__)
-        metrics.watch(
-            "culet_connections_ended", "Ended for others, or for owing too long.", lambda: guard.ended, counts=True
-        )
+        metrics.watch("culet_connections_ended", "Ended for owing, or for others.", lambda: guard.ended, counts=True)
         self._server = _Server(
             GuardedConfig(
                 app,
