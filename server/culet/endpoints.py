@@ -42,8 +42,9 @@ def check_trusted(endpoint: str, option: str, *, trusted: bool) -> None:
     if trusted or parts is None or _is_loopback(parts["address"]):
         return
     raise InputError(
-        f"--{option}: other machines reach {endpoint!r}, and whoever does sees every session that is watched and its id, "
-        "by which it may be changed and deleted; --trust-network permits that, tcp://127.0.0.1:PORT serves this machine",
+        f"--{option}: other machines reach {endpoint!r}, and whoever does sees every session that is watched and its "
+        "id, by which it may be changed and deleted; --trust-network permits that, tcp://127.0.0.1:PORT serves this "
+        "machine alone",
         option,
     )
 
