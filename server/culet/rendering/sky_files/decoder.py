@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -115,12 +116,15 @@ def _reason_of_exr(data: bytes) -> str:
     """Why a file has no header of pixels that can be read, by OpenEXR itself."""
     try:
         with OpenEXR.File(io.BytesIO(data), header_only=True) as file:
-            for channel in file.header()["channels"]:
+            header = file.header()
+            windows = [(high - low + 1).tolist() for low, high in (header["displayWindow"], header["dataWindow"])]
+            for channel in header["channels"]:
                 if (channel.xSampling, channel.ySampling) != (1, 1):
                     return f"its channel {channel.name[:40]} has fewer pixels than others (sampling)"
     except Exception as error:  # the library raises what it likes
         return _one_line(error, "")
-    return "its header cannot be read"
+    width, height = max(windows, key=math.prod)
+    return f"it may be too large: a window of {width} x {height} pixels" if windows else "its header cannot be read"
 
 
 def _one_line(complaint: object, path: str) -> str:
