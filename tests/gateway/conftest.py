@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,8 @@ from gateway.running import Endpoints, Gateway, engine_process, gateway_before
 @pytest.fixture(scope="session")
 def engine() -> Iterator[Endpoints]:
     """The endpoints of an engine process."""
-    with engine_process(engine_command) as endpoints:
+    room = ("--max-sessions", "1000")  # the tests' web servers come and go, and leave their sessions to it
+    with engine_process(partial(engine_command, options=room)) as endpoints:
         yield endpoints
 
 

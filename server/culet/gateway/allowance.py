@@ -12,12 +12,23 @@ from culet.gateway.bucket import ClientBuckets
 from culet.gateway.client_address import client_of
 from culet.gateway.problems import problem
 
-REQUEST_COST = 10
-"""Messages of a stream that cost as much: 30 us each, against some 0.3 ms for the way through the application."""
-SESSION_COST = 40
+FREE = frozenset({"/healthz", "/readyz"})
+"""Whoever looks after the server asks these, and is never refused."""
+FILE_COST = 1
+"""For the page and its files, in messages of a stream, which take some 30 us each."""
+REQUEST_COST = 5
+"""For a request that the application or the engine answers."""
+SESSION_COST = 20
 """For a new session, whose stone and sky are made in the engine."""
-LIMITED = "/api/"
-"""Paths that begin so. The page, its files, health and metrics are cheap, and whoever is over the limit needs them."""
+STREAM_COST = 10
+"""For a new stream, which is told the scene and given a frame."""
+
+
+def cost_of(method: str, path: str) -> int:
+    """Of an HTTP request."""
+    if path == "/api/sessions" and method == "POST":
+        return SESSION_COST
+    return REQUEST_COST if path.startswith("/api/") or path in ("/metrics", "/docs", "/openapi.json") else FILE_COST
 
 
 class Allowance:
@@ -28,7 +39,7 @@ class Allowance:
         self._clients = clients
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http" or not scope["path"].startswith(LIMITED):
+        if scope["type"] != "http" or scope["path"] in FREE:
             await self._app(scope, receive, send)
             return
         now, client = time.monotonic(), client_of(scope)
@@ -39,6 +50,5 @@ class Allowance:
             detail = f"{client} asks for more than its share of this server; try again in {headers['Retry-After']} s"
             await problem(BusyError.status, BusyError.title, detail, headers=headers)(scope, receive, send)
             return
-        opens = scope["method"] == "POST" and scope["path"] == "/api/sessions"
-        bucket.spend(SESSION_COST if opens else REQUEST_COST, now)
+        bucket.spend(cost_of(scope["method"], scope["path"]), now)
         await self._app(scope, receive, send)

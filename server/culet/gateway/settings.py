@@ -81,8 +81,8 @@ class GatewaySettings(Settings):
     client_messages_per_second: float = Field(
         1200,
         gt=0,
-        description="The same for all viewers of one client together; a request to /api counts as 10, a new session "
-        "as 40, and too many of these get 429.",
+        description="The same for all viewers of one client together; a new stream counts as 10, a request as 1 to 5, "
+        "a new session as 20. Requests that are too many get 429.",
     )
     max_body_bytes: ByteSize = Field(
         ByteSize(MEBIBYTE), ge=1024, description="Size of a request's body that is not an upload."

@@ -17,6 +17,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
 from culet.errors import BusyError, CuletError, InputError, NotFoundError
+from culet.gateway.allowance import STREAM_COST
 from culet.gateway.bucket import Bucket
 from culet.gateway.client_address import client_of
 from culet.gateway.origins import may_enter
@@ -54,6 +55,11 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     """Serve one viewer until it leaves."""
     offered: list[str] = websocket.scope["subprotocols"]
     await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in offered else None)
+    client = client_of(websocket.scope)
+    bucket = gateway.clients.of(client, time.monotonic())
+    while (wait := bucket.overdrawn_for(time.monotonic())) > 0:  # noqa: ASYNC110 - time is what is waited for
+        await asyncio.sleep(wait)
+    bucket.spend(STREAM_COST, time.monotonic())
     if not may_enter(websocket.scope, gateway.settings.allow_origin):
         await websocket.close(
             CloseCode.FORBIDDEN_ORIGIN, f"pages of {websocket.headers['origin'][:60]} may not open streams here"
@@ -64,7 +70,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
         return
     try:
         session = gateway.sessions.get(session_id)
-        viewer = gateway.sessions.join(session, client_of(websocket.scope))
+        viewer = gateway.sessions.join(session, client)
     except NotFoundError:
         await websocket.close(CloseCode.UNKNOWN_SESSION, "no such session; it may have expired")
         return
@@ -74,7 +80,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     try:
         hello = Hello(protocol=VERSION, session=session.id, viewer=viewer.number)
         await websocket.send_text(hello.model_dump_json())
-        await _Stream(websocket, gateway, session, viewer).run()
+        await _Stream(websocket, gateway, session, viewer, bucket).run()
     except (WebSocketDisconnect, RuntimeError):  # starlette raises either for a send after the viewer left
         pass
     finally:
@@ -84,14 +90,17 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
 class _Stream:
     """The two tasks of one viewer."""
 
-    def __init__(self, websocket: WebSocket, gateway: Gateway, session: Session, viewer: Viewer) -> None:
+    def __init__(
+        self, websocket: WebSocket, gateway: Gateway, session: Session, viewer: Viewer, client: Bucket
+    ) -> None:
         self._websocket = websocket
         self._gateway = gateway
         self._session = session
         self._viewer = viewer
         self._messages = Bucket(gateway.settings.viewer_messages_per_second)
         """What the viewer may still say."""
-        self._client = gateway.clients.of(viewer.client, time.monotonic())
+        self._client = client
+        """What its client may still ask for."""
         self._under_way: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:

@@ -54,8 +54,9 @@ class Viewer:
         self._next_state_at = -float("inf")
 
     def watches(self, now: float) -> bool:
-        """Whether frames are wanted: it can be seen, and it said its size or had the time to."""
-        return self.visible and (self.size is not None or now - self._joined_at >= SETTLING_SECONDS)
+        """Whether frames are wanted: it can be seen, takes them, and said its size or had the time to."""
+        settled = self.size is not None or now - self._joined_at >= SETTLING_SECONDS
+        return self.visible and settled and not self.credit.stalled(now)
 
     def resize(self, width: int, height: int) -> None:
         """The size it would like, in pixels."""
