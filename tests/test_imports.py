@@ -9,6 +9,7 @@ import pytest
 
 NOT_LOADED = {
     "culet.gateway.serve": ("pyopencl", "culet.rendering", "culet.engine"),
+    "culet.service.serve": ("pyopencl", "culet.rendering", "culet.engine", "fastapi", "uvicorn"),
     "culet.engine.serve": ("fastapi", "uvicorn"),
     "culet.engine.upload_reader": ("pyopencl",),
     "culet_client.view": ("culet", "pyopencl", "numpy", "fastapi"),

@@ -29,6 +29,8 @@ class OpenSession(Message):
     session: SessionId
     scene: dict[str, Any]
     snapshot: dict[str, Any] | None = None
+    client: str | None = None
+    """Who opened it, as the gateway calls it; only told to the next gateway."""
 
 
 class CloseSession(Message):
@@ -43,6 +45,12 @@ class GetSession(Message):
 
     type: Literal["get_session"] = "get_session"
     session: SessionId
+
+
+class ListSessions(Message):
+    """Ask for all sessions, each as GetSession answers it: what a gateway needs that takes over from one that died."""
+
+    type: Literal["list_sessions"] = "list_sessions"
 
 
 class Control(Message):
@@ -139,7 +147,19 @@ class Status(Message):
     type: Literal["status"] = "status"
 
 
-Request = OpenSession | CloseSession | GetSession | Control | Demand | Render | PutMesh | PutSky | Cancel | Status
+Request = (
+    OpenSession
+    | CloseSession
+    | GetSession
+    | ListSessions
+    | Control
+    | Demand
+    | Render
+    | PutMesh
+    | PutSky
+    | Cancel
+    | Status
+)
 EngineRequest = Annotated[Request, Field(discriminator="type")]
 
 
@@ -155,8 +175,8 @@ class Reply(Message):
 
 
 class SessionState(Message):
-    """Told unasked: on every edit, once a second while the stone moves, and when it has fallen asleep; what a new
-    engine needs to go on."""
+    """Told unasked: on every edit, and when the stone has fallen asleep or was woken; what a new engine needs to go
+    on."""
 
     type: Literal["session_state"] = "session_state"
     session: SessionId
@@ -167,6 +187,15 @@ class SessionState(Message):
     pinned: bool = False
     edited: bool
     snapshot: dict[str, Any]
+
+
+class SessionMotion(Message):
+    """Told unasked, 20 times a second while a session that is watched moves or is refined: the parts of its snapshot
+    that differ from those told before."""
+
+    type: Literal["session_motion"] = "session_motion"
+    session: SessionId
+    moved: dict[str, Any]
 
 
 class SessionProblem(Message):
@@ -186,7 +215,11 @@ class Heartbeat(Message):
     instance: str
 
 
-EngineMessage = Annotated[Reply | SessionState | SessionProblem | Heartbeat, Field(discriminator="type")]
+EngineMessage = Annotated[
+    Reply | SessionState | SessionMotion | SessionProblem | Heartbeat, Field(discriminator="type")
+]
 
 engine_request: TypeAdapter[Request] = TypeAdapter(EngineRequest)
-engine_message: TypeAdapter[Reply | SessionState | SessionProblem | Heartbeat] = TypeAdapter(EngineMessage)
+engine_message: TypeAdapter[Reply | SessionState | SessionMotion | SessionProblem | Heartbeat] = TypeAdapter(
+    EngineMessage
+)

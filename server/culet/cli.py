@@ -200,18 +200,25 @@ def serve(
             metavar="ENDPOINT", help="Publish frames for native viewers here too, such as tcp://127.0.0.1:5556."
         ),
     ] = None,
+    spare: Annotated[
+        bool,
+        typer.Option(
+            envvar="CULET_SPARE",
+            help="Keep a second engine ready to take over when the first dies; takes some 200 MB of memory.",
+        ),
+    ] = True,
     *,
     given: dict[str, Any],
 ) -> None:
-    """Serve the web page: gateway and engine, restarted when it dies. Stop with Ctrl-C."""
-    from culet.gateway.serve import serve as run
+    """Serve the web page: gateway and engine, each restarted when it dies. Stop with Ctrl-C."""
+    from culet.service.serve import serve as run
 
     with errors_in_one_line():
         limits = Limits.read(given)  # before the child would complain of them
         configure(limits.log_level, limits.log_format)
         if frames is not None:
             check_trusted(frames, "frames", trusted=limits.trust_network)
-        run(given, frames=frames, engine_options=[*Limits.words(given)])
+        run(given, frames=frames, engine_options=[*Limits.words(given)], spare=spare)
 
 
 @app.command()
@@ -233,6 +240,9 @@ def engine(
     frames: Annotated[
         list[str], typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames; repeatable, for several at once.")
     ],
+    stand_by: Annotated[
+        bool, typer.Option("--stand-by", help="Get ready, and begin with a line on the standard input.")
+    ] = False,
     *,
     given: dict[str, Any],
 ) -> None:
@@ -244,7 +254,7 @@ def engine(
         configure(limits.log_level, limits.log_format)
         for option, endpoint in (("control", control), *(("frames", endpoint) for endpoint in frames)):
             check_trusted(endpoint, option, trusted=limits.trust_network)
-        run(control, frames, limits)
+        run(control, frames, limits, stand_by=stand_by)
 
 
 @app.command()

@@ -58,6 +58,17 @@ def _is_loopback(address: str) -> bool:
         return False
 
 
+def check_free(endpoint: str, option: str) -> None:
+    """InputError if nothing can be bound there."""
+    with zmq.Context() as context, context.socket(zmq.XPUB) as socket:
+        bind(socket, endpoint, option)
+
+
+def reachable(endpoint: str) -> str:
+    """The endpoint to connect to, for one that was bound on every interface."""
+    return endpoint.replace("tcp://*:", "tcp://127.0.0.1:").replace("tcp://0.0.0.0:", "tcp://127.0.0.1:")
+
+
 def keep_alive(socket: zmq.Socket[Any]) -> None:
     """Have the kernel look after a socket's tcp connections; without effect on those of one machine (ipc)."""
     for option, value in KEEP_ALIVE:

@@ -77,7 +77,7 @@ class Server:
         self.until("engine_uptime_seconds", self.metrics()["engine_uptime_seconds"] + seconds)
 
     def engine_pid(self) -> int:
-        """Process id of the engine, a child of the server that was started here."""
+        """Process id of the engine that works: the eldest, as the one that stands by was started after it."""
         for pid in _children(self._process.pid):
             if b"engine" in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
                 return pid
@@ -85,7 +85,7 @@ class Server:
 
     def cpu_seconds(self) -> float:
         """Processor time of the server and its engine so far."""
-        return sum(_cpu_seconds(pid) for pid in (self._process.pid, self.engine_pid()))
+        return sum(_cpu_seconds(pid) for pid in (self._process.pid, *_children(self._process.pid)))
 
     def _announced(self) -> str:
         """The URL that it prints once it is ready."""

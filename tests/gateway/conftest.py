@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from culet.gateway.supervisor import engine_command
+from culet.service.command_lines import engine_command
 from gateway.running import Endpoints, Gateway, engine_process, gateway_before
 
 

@@ -23,6 +23,9 @@ class Limits(Settings):
         gt=0,
         description="A session that nobody watched or touched for so long makes room when the engine is full.",
     )
+    orphan_seconds: float = Field(
+        600, gt=0, description="Sessions are kept for so long while no gateway is there to serve them."
+    )
     max_stills: int = Field(8, ge=1, description="Stills that wait or are being rendered.")
     max_still_edge: int = Field(8192, ge=1, le=8192, description="Pixels of a still's longer side.")
     max_still_pixels: int = Field(

@@ -46,6 +46,9 @@ LEAST_LIVE_SIZE = (160, 90)
 LONG_EVENTS = frozenset({"patch_scene", "set_scene", "toggle_fall", "toggle_walls", "push"})
 """They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
 
+MOTION_SECONDS = 0.05
+"""Between reports of a session that moves. If this engine dies, so much of the motion is lost at most."""
+
 Answer = tuple[dict[str, Any], bytes | None]
 
 
@@ -59,7 +62,7 @@ class Requests:
         limits: Limits,
         device: dict[str, Any],
         *,
-        tell: Callable[[protocol.SessionState], None],
+        tell: Callable[[protocol.SessionState | protocol.SessionMotion], None],
         memory: Memory,
         forget_sky: Callable[[SkyPicture], object],
     ) -> None:
@@ -80,6 +83,11 @@ class Requests:
         self._touched: dict[str, float] = {}
         self._awaited: set[Still] = set()
         """Stills that somebody waits for."""
+        self._clients: dict[str, str] = {}
+        """Who opened the sessions."""
+        self._told: dict[str, tuple[int, int]] = {}
+        """What of each session was told last: its step and frame."""
+        self._reporting: set[str] = set()
         self._subscriptions: set[bytes] = set()
         self._started = time.monotonic()
 
@@ -92,6 +100,8 @@ class Requests:
                 return self._close(request.session), None
             case protocol.GetSession():
                 return described(self._live(request.session)), None
+            case protocol.ListSessions():
+                return {"sessions": [self._described(live) for live in self._painter.pictures.values()]}, None
             case protocol.Control():
                 return await self._control(request), None
             case protocol.Demand():
@@ -121,15 +131,37 @@ class Requests:
         if subscribed:
             self._painter.show_again(live)
 
-    def report_motion(self) -> None:
-        """Tell the state of every session whose stone moves for somebody, or has just fallen asleep or woken."""
-        for live in self._painter.pictures.values():
-            session = live.session
-            if session.lock.locked():
-                continue
-            if (live.watched and session.moving) or session.asleep != live.told_asleep:
-                live.told_asleep = session.asleep
-                self._tell(session.report(edited=False))
+    async def report_motion(self) -> None:
+        """Tell of every session that changes by itself, often, what another engine needs to go on; for ever."""
+        async with asyncio.TaskGroup() as tasks:
+            while True:
+                for live in self._painter.pictures.values():
+                    if live.session.name not in self._reporting and self._has_moved(live):
+                        self._reporting.add(live.session.name)
+                        tasks.create_task(self._report_motion(live))
+                await asyncio.sleep(MOTION_SECONDS)
+
+    def _has_moved(self, live: LivePicture) -> bool:
+        session = live.session
+        return session.asleep != live.told_asleep or self._told.get(session.name) != _numbers(session)
+
+    async def _report_motion(self, live: LivePicture) -> None:
+        session = live.session
+        try:
+            async with session.lock:  # or a step could be taken between the parts of the snapshot
+                self._told[session.name] = _numbers(session)
+                if session.asleep != live.told_asleep:
+                    live.told_asleep = session.asleep
+                    self._tell(session.report(edited=False))
+                else:
+                    self._tell(protocol.SessionMotion(session=session.name, moved=session.snapshot().moving_part()))
+        finally:
+            self._reporting.discard(session.name)
+
+    def close_unwatched(self) -> None:
+        """Forget the sessions that nobody watches."""
+        for name in [name for name, live in self._painter.pictures.items() if not live.watched]:
+            self._close(name)
 
     def status(self) -> dict[str, Any]:
         """Counters and device."""
@@ -166,9 +198,14 @@ class Requests:
             session = Session(request.session, scene, stone, sky=sky, history=history)
         else:
             session = Session.restored(request.session, scene, stone, snapshot, sky=sky, history=history)
+        if request.client is not None:
+            self._clients[request.session] = request.client
         pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
         self._painter.wake()
         return described(self._live(request.session))
+
+    def _described(self, live: LivePicture) -> dict[str, Any]:
+        return described(live) | {"client": self._clients.get(live.session.name)}
 
     def _make_room(self) -> None:
         pictures, now = self._painter.pictures, time.monotonic()
@@ -215,6 +252,8 @@ class Requests:
         self._live(session)
         del self._painter.pictures[session]
         del self._touched[session]
+        self._told.pop(session, None)
+        self._clients.pop(session, None)
         self._painter.wake()
         return {}
 
@@ -322,6 +361,11 @@ def history_length(limits: Limits, budget: int) -> int:
 def picture_bytes(width: int, height: int) -> int:
     """Of a picture while it is rendered: two sums of four float32, and three bytes that are shown, for each pixel."""
     return 35 * width * height
+
+
+def _numbers(session: Session) -> tuple[int, int]:
+    """What changes whenever another engine would have to be told something."""
+    return session.shown.step, session.sequence
 
 
 def _file(data: bytes | None) -> bytes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import signal
+import sys
 from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
@@ -20,6 +21,7 @@ from culet.engine.painter import Painter
 from culet.engine.requests import Requests
 from culet.engine.sockets import Peers, bind_control, bind_frames
 from culet.engine.still import StillQueue
+from culet.engine.watchdog import Watchdog
 from culet.errors import CuletError, InputError
 from culet.scene.model import scene_error
 from culet_protocol import engine as protocol
@@ -29,12 +31,24 @@ log = logging.getLogger(__name__)
 HEARTBEAT_SECONDS = 1.0
 
 
-def run(control: str, frames: Sequence[str], limits: Limits | None = None) -> None:
+def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, stand_by: bool = False) -> None:
     """Serve until SIGTERM or SIGINT: control at one endpoint, frames at each of some.
 
+    With `stand_by` it gets everything ready but its sockets, and then waits for a line on the standard input.
     DeviceError without a working device, InputError for a bad endpoint.
     """
-    asyncio.run(serve(control, frames, limits or Limits(), open_renderer, encode_still))
+    start = asyncio.Event()
+    asyncio.run(_run(control, frames, limits or Limits(), start, stand_by=stand_by))
+
+
+async def _run(control: str, frames: Sequence[str], limits: Limits, start: asyncio.Event, *, stand_by: bool) -> None:
+    if stand_by:
+        asyncio.get_running_loop().add_reader(sys.stdin, start.set)
+    else:
+        start.set()
+    await serve(control, frames, limits, open_renderer, encode_still, start)
+    if stand_by:
+        asyncio.get_running_loop().remove_reader(sys.stdin)
 
 
 def open_renderer() -> Renderer:
@@ -42,9 +56,15 @@ def open_renderer() -> Renderer:
 
     It is imported here, so that whatever only speaks to an engine never loads it.
     """
+    import culet.rendering.files  # so that the first still needs not wait for it  # noqa: F401
     from culet.rendering.renderer import Renderer as OpenClRenderer
 
-    return OpenClRenderer(background_compile=True)
+    renderer = OpenClRenderer(background_compile=True)
+    try:
+        renderer.prepare()
+    except CuletError as error:  # what needs these programs says so itself, and other work goes on
+        log.error("%s", error)
+    return renderer
 
 
 def encode_still(picture: Picture, file_format: str) -> bytes:
@@ -62,8 +82,9 @@ async def serve(
     limits: Limits,
     renderer_of: Callable[[], Renderer],
     encode: Callable[[Picture, str], bytes],
+    start: asyncio.Event | None = None,
 ) -> None:
-    """Serve with a renderer that is made and used on the render thread."""
+    """Serve with a renderer that is made and used on the render thread, once `start` is set."""
     loop = asyncio.get_running_loop()
     stopping = asyncio.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -72,11 +93,22 @@ async def serve(
     context = zmq.asyncio.Context()
     try:
         renderer = await loop.run_in_executor(render_thread, renderer_of)
+        if start is not None and not await _first(start, stopping):
+            return
         engine = Engine(context, control, frames, limits, renderer, render_thread, encode)
         await engine.run_until(stopping)
     finally:
         render_thread.shutdown(wait=False, cancel_futures=True)
         context.destroy(linger=0)
+
+
+async def _first(event: asyncio.Event, other: asyncio.Event) -> bool:
+    """Wait for the first of two events; whether the one is set, and not the other."""
+    waiting = [asyncio.create_task(waited.wait()) for waited in (event, other)]
+    await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+    for task in waiting:
+        task.cancel()
+    return not other.is_set()
 
 
 class Engine:
@@ -102,6 +134,8 @@ class Engine:
         self._painter = Painter(
             renderer, render_thread, stills, send=self._send_frame, report=self._report_problem, encode_still=encode
         )
+        self._watchdog = Watchdog(render_thread)
+        self._orphan_seconds = limits.orphan_seconds
         memory = Memory(limits.memory or default_budget())
         memory.count("pictures", lambda: renderer.held().get("pictures", 0))
         memory.count("device_skies", lambda: renderer.held().get("device_skies", 0))
@@ -115,7 +149,14 @@ class Engine:
         """Serve until told to stop; an error of the engine itself ends it, so that it is started anew."""
         services = [
             asyncio.create_task(service)
-            for service in (self._take_requests(), self._take_subscriptions(), self._beat(), self._painter.run())
+            for service in (
+                self._take_requests(),
+                self._take_subscriptions(),
+                self._beat(),
+                self._requests.report_motion(),
+                self._painter.run(),
+                self._watchdog.run(),
+            )
         ]
         stop = asyncio.create_task(stopping.wait())
         try:
@@ -176,15 +217,20 @@ class Engine:
                 self._requests.watch(message[1:], subscribed=message[0] == 1)
 
     async def _beat(self) -> None:
+        loop = asyncio.get_running_loop()
+        seen_at = loop.time()
         while True:
-            await self._peers.tell(self._heartbeat())
-            self._requests.report_motion()
+            await self._peers.tell(self._heartbeat())  # which forgets those that left
+            if self._peers:
+                seen_at = loop.time()
+            elif loop.time() - seen_at > self._orphan_seconds:
+                self._requests.close_unwatched()
             await asyncio.sleep(HEARTBEAT_SECONDS)
 
     def _heartbeat(self) -> bytes:
         return encoded(protocol.Heartbeat(instance=self._requests.instance))
 
-    def _tell(self, state: protocol.SessionState) -> None:
+    def _tell(self, state: protocol.SessionState | protocol.SessionMotion) -> None:
         self._spawn(self._peers.tell(encoded(state)))
 
     def _report_problem(self, session: str, error: CuletError) -> None:

@@ -11,8 +11,11 @@ from culet.scene import Camera, Environment
 from culet_protocol.messages import BALANCED, Exactness
 
 NUMBER_GAP = 1000
-"""Steps and frames that an engine may have shown after its last snapshot: one second's at the highest rate, 240, and
-then some. A restored session starts beyond, since a number names one picture for ever."""
+"""Steps and frames that an engine may have shown after its last snapshot, many more than come in 0.05 s at the highest
+rate, 240. A restored session starts beyond, since a number names one picture for ever."""
+
+NUMBERS = 2**62
+"""Numbers that there are. A snapshot from outside may claim any: what comes after the last is the first again."""
 
 LARGEST_FRACTION = 1 - 2**-20
 """Just short of the next step, so that putting the time by again never takes that step."""
@@ -36,6 +39,10 @@ class Snapshot(BaseModel):
     step: Annotated[int, Field(ge=1, lt=2**63)]
     sequence: Annotated[int, Field(ge=0, lt=2**63)]
 
+    def moving_part(self) -> dict[str, Any]:
+        """What changes without anybody doing something, as JSON's types."""
+        return self.model_dump(mode="json", include={"simulation", "fraction", "falling", "step", "sequence"})
+
     @classmethod
     def read(cls, data: dict[str, Any]) -> Snapshot:
         """Validate; InputError names the field."""
@@ -49,9 +56,9 @@ class Snapshot(BaseModel):
     @property
     def next_step(self) -> int:
         """A step number that was never used."""
-        return self.step + NUMBER_GAP
+        return (self.step + NUMBER_GAP) % NUMBERS
 
     @property
     def next_sequence(self) -> int:
         """A frame number that was never used."""
-        return self.sequence + NUMBER_GAP
+        return (self.sequence + NUMBER_GAP) % NUMBERS

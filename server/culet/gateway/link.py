@@ -28,6 +28,7 @@ from culet_protocol.engine import (
     Cancel,
     Heartbeat,
     Reply,
+    SessionMotion,
     SessionProblem,
     SessionState,
     engine_message,
@@ -64,9 +65,10 @@ class EngineLink:
         self.frames_received = 0
         self.on_frame: Callable[[Frame, bytes], None] = lambda _frame, _message: None
         self.on_state: Callable[[SessionState], None] = lambda _state: None
+        self.on_motion: Callable[[SessionMotion], None] = lambda _motion: None
         self.on_problem: Callable[[SessionProblem], None] = lambda _problem: None
         self.on_up: Callable[[bool], Awaitable[None]] | None = None
-        """Awaited in a task of its own; the argument says whether this is a new process, which knows nothing."""
+        """Awaited in a task of its own; the argument says whether this is another process than before."""
         self.on_down: Callable[[], None] = lambda: None
         self._settings = settings
         self._last_heard = 0.0
@@ -224,6 +226,8 @@ class EngineLink:
                     self._hear(message.instance)
                 case SessionState():
                     self.on_state(message)
+                case SessionMotion():
+                    self.on_motion(message)
                 case SessionProblem():
                     self.on_problem(message)
                 case Reply():
@@ -238,6 +242,7 @@ class EngineLink:
             return
         if self.ready.is_set():
             self.lose("the render process was replaced")
+        first = self.instance is None
         if new:
             self.instance = instance
             self.instances += 1
@@ -245,7 +250,7 @@ class EngineLink:
         if self.on_up:
             if self._greeting:
                 self._greeting.cancel()
-            self._greeting = asyncio.create_task(self._greet(self.on_up, new))
+            self._greeting = asyncio.create_task(self._greet(self.on_up, new and not first))
 
     async def _greet(self, on_up: Callable[[bool], Awaitable[None]], new: bool) -> None:
         with contextlib.suppress(EngineUnavailableError):  # it went again: the next one is greeted anew

@@ -12,12 +12,13 @@ from typing import Self
 
 import uvicorn
 
-from culet.errors import InputError
+from culet.gateway.address import BACKLOG, listening_socket, url_of
 from culet.gateway.app import create_app
 from culet.gateway.client_address import read_proxies, trusted_hosts
 from culet.gateway.connections import Guard, GuardedConfig
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
+from culet.service.notify import Notice, notify
 from culet.settings import MEBIBYTE
 
 GRACEFUL_SHUTDOWN_SECONDS = 3
@@ -26,29 +27,18 @@ MAX_WEBSOCKET_MESSAGE = MEBIBYTE
 """uvicorn closes the socket above this; below it, and above the control limit, the viewer gets a notice."""
 ACCEPTED_AT_ONCE = 64
 """Connections that are accepted before those that make room for them are closed."""
-WAITING_TO_BE_ACCEPTED = 1024
+ALIVE_SECONDS = 1.0
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Listener:
     """Holds the address from its creation on, so that a taken port is known before anything is started."""
 
-    def __init__(self, settings: GatewaySettings) -> None:
-        host, port = settings.host, settings.port
+    def __init__(self, settings: GatewaySettings, listening: socket.socket | None = None) -> None:
+        """Listen at the settings' address, or on a socket that listens already. InputError if that cannot be."""
         proxies = read_proxies(settings.trusted_proxy)
-        family = socket.AF_INET6 if ":" in host else socket.AF_INET
-        # By IPPROTO_TCP asyncio knows that TCP_NODELAY can be set: else an answer's head and body wait for each other.
-        self._socket = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
-        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            self._socket.bind((host, port))
-        except (OSError, OverflowError) as error:
-            self._socket.close()
-            raise InputError(
-                f"cannot listen on {host} port {port}: {error}; choose another with --port", "port"
-            ) from error
-        shown = f"[{host}]" if family == socket.AF_INET6 else host
-        self.url = f"http://{shown}:{self._socket.getsockname()[1]}/"
+        self._socket = listening or listening_socket(settings.host, settings.port)
+        self.url = url_of(self._socket, settings.host)
         app = create_app(settings)
         self.gateway: Gateway = app.state.gateway
         guard = Guard(settings, proxies)
@@ -73,11 +63,14 @@ class Listener:
         )
 
     async def run(self) -> None:
-        """Serve until a stop signal or `stop`; print the URL once the engine answers too."""
+        """Serve until a stop signal or `stop`."""
         loop = asyncio.get_running_loop()
         for number in STOP_SIGNALS:
             loop.add_signal_handler(number, self.stop)
-        companions = [asyncio.create_task(self._announce()), asyncio.create_task(self._server.config.guard.run())]
+        companions = [
+            asyncio.create_task(self._say_that_it_lives()),
+            asyncio.create_task(self._server.config.guard.run()),
+        ]
         try:
             await self._server.serve(sockets=[self._socket])
         finally:
@@ -90,9 +83,13 @@ class Listener:
         """Close streams, finish answers, leave `run`."""
         self._server.should_exit = True
 
-    async def _announce(self) -> None:
-        await self.gateway.link.ready.wait()
-        print(f"culet is ready: {self.url}", flush=True)
+    async def _say_that_it_lives(self) -> None:
+        """To the supervisor, if there is one: ready once the engine answers, and alive from then on."""
+        await self.gateway.sessions.taken_over.wait()
+        notify(Notice.READY)
+        while True:
+            notify(Notice.ALIVE)
+            await asyncio.sleep(ALIVE_SECONDS)
 
     def __enter__(self) -> Self:
         return self
@@ -112,7 +109,7 @@ class _Server(uvicorn.Server):
         """Listen; asyncio takes one number for what it accepts at once and for what may wait to be accepted."""
         await super().startup(sockets)
         for listening in sockets or ():
-            listening.listen(WAITING_TO_BE_ACCEPTED)
+            listening.listen(BACKLOG)
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:

@@ -8,18 +8,18 @@ import itertools
 import logging
 import secrets
 import time
-from collections import Counter
-from collections.abc import Sequence
+from collections import Counter, OrderedDict
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from culet.errors import BusyError, CuletError, NotFoundError
+from culet.errors import BusyError, CuletError, EngineUnavailableError, NotFoundError
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
 from culet.gateway.viewer import DEFAULT_SIZE, Viewer
 from culet_protocol import engine as to_engine
-from culet_protocol.engine import SessionProblem, SessionState
+from culet_protocol.engine import SessionMotion, SessionProblem, SessionState
 from culet_protocol.frame import Frame
 from culet_protocol.messages import BALANCED, Engine, Message, Notice, Problem, SessionEvent, State, Viewers
 
@@ -27,6 +27,11 @@ log = logging.getLogger(__name__)
 
 TICK_SECONDS = 0.25
 """Between looks at what viewers can take, and at sessions that nobody uses."""
+SETTLING_SECONDS = 8.0
+"""A gateway that has just been started lets viewers wait for so long until it knows its sessions."""
+DELETED = "the session was deleted"
+DELETED_KEPT = 4096
+"""Ids of sessions that were deleted, which nobody can open again."""
 RATE_CHANGE = 0.2
 """A demand that changes by a smaller part is not worth a message."""
 DEMAND_SECONDS = 0.05
@@ -69,6 +74,12 @@ class Session:
         self.room = asyncio.Semaphore(EVENTS_UNDER_WAY)
         """Held for each event until the engine has answered."""
 
+    def learn(self, described: Mapping[str, Any]) -> None:
+        """What the engine said of the session, as it is now."""
+        self.scene, self.snapshot = described["scene"], described["snapshot"]
+        self.falling, self.asleep = described["falling"], described["asleep"]
+        self.exactness, self.pinned = described["exactness"], described["pinned"]
+
     def state(self) -> State:
         """The notice for viewers."""
         return State(
@@ -101,9 +112,13 @@ class Sessions:
         self._link = link
         self._uploads = uploads
         self._sessions: dict[str, Session] = {}
+        self.taken_over = asyncio.Event()
+        """Set once this gateway knows the sessions that the engine had when it came."""
+        self._deleted: OrderedDict[str, None] = OrderedDict()
         self._viewer_numbers = itertools.count(1)
         link.on_frame = self._on_frame
         link.on_state = self._on_state
+        link.on_motion = self._on_motion
         link.on_problem = self._on_problem
         link.on_down = self._on_down
         link.on_up = self._on_up
@@ -118,20 +133,51 @@ class Sessions:
         return sum(len(session.viewers) for session in self._sessions.values())
 
     def get(self, session: str) -> Session:
-        """The session of that id, which thereby counts as used; NotFoundError."""
+        """The session of that id, which thereby counts as used; NotFoundError, or EngineUnavailableError if this
+        gateway has just been started and does not know yet."""
         found = self._sessions.get(session)
+        if found is None and not self.taken_over.is_set():
+            raise EngineUnavailableError("the server has just been started; try again in a moment")
         if found is None:
             raise NotFoundError(f"no session {session[:64]!r}; it may have expired")
         found.used = time.monotonic()
         return found
 
-    async def open(self, scene: dict[str, Any], client: str = UNKNOWN) -> Session:
+    async def settle(self) -> None:
+        """Wait until it is known which sessions there are, but not for long."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(SETTLING_SECONDS):
+                await self.taken_over.wait()
+
+    async def reopen(
+        self, session: str, scene: dict[str, Any], snapshot: dict[str, Any] | None, client: str = UNKNOWN
+    ) -> Session:
+        """The session of that id, as its viewers say that it was if the server has lost it.
+
+        InputError if they say something that cannot be used, NotFoundError if it was deleted, BusyError at the limit.
+        """
+        if session in self._deleted:
+            raise NotFoundError("that session was deleted")
+        if session in self._sessions:
+            return self.get(session)
+        return await self.open(scene, client, session, snapshot)
+
+    async def open(
+        self,
+        scene: dict[str, Any],
+        client: str = UNKNOWN,
+        name: str | None = None,
+        snapshot: dict[str, Any] | None = None,
+    ) -> Session:
         """A new session in the engine; BusyError at the client's limit, or that of all."""
-        session = Session(secrets.token_hex(16), scene, client)
+        session = Session(name or secrets.token_hex(16), scene, client)
         self._sessions[session.id] = session  # before the engine tells its state, and before others count
         try:
             await self._make_room(session)
-            await self._uploads.request(to_engine.OpenSession(session=session.id, scene=scene))
+            opened, _ = await self._uploads.request(
+                to_engine.OpenSession(session=session.id, scene=scene, snapshot=snapshot, client=client)
+            )
+            session.learn(opened)
         except BaseException:
             self._sessions.pop(session.id, None)
             raise
@@ -163,9 +209,13 @@ class Sessions:
             return True
         return False
 
-    async def close(self, session: Session, why: str = "the session was deleted") -> None:
+    async def close(self, session: Session, why: str = DELETED) -> None:
         """Forget a session here and in the engine; its viewers are told."""
         self._sessions.pop(session.id, None)
+        if why == DELETED:
+            self._deleted[session.id] = None
+            while len(self._deleted) > DELETED_KEPT:
+                self._deleted.popitem(last=False)
         session.tell(Problem(code="session_closed", message=why))
         for viewer in session.viewers:
             viewer.dismiss()
@@ -182,7 +232,7 @@ class Sessions:
     async def describe(self, session: Session) -> dict[str, Any]:
         """What the engine says of the session now."""
         described = await self._ask(session, to_engine.GetSession(session=session.id))
-        session.scene = described.get("scene", session.scene)
+        session.learn(described)
         return described
 
     def join(self, session: Session, client: str = UNKNOWN) -> Viewer:
@@ -321,6 +371,11 @@ class Sessions:
         if state.edited or session.asleep != told_asleep:
             session.tell(session.state())
 
+    def _on_motion(self, motion: SessionMotion) -> None:
+        session = self._sessions.get(motion.session)
+        if session and session.snapshot:
+            session.snapshot = session.snapshot | motion.moved
+
     def _on_problem(self, problem: SessionProblem) -> None:
         session = self._sessions.get(problem.session)
         if session:
@@ -331,22 +386,43 @@ class Sessions:
             session.tell(Engine(status="down"))
 
     async def _on_up(self, new_process: bool) -> None:
-        if new_process:
-            for session in list(self._sessions.values()):
-                try:
-                    await self._reopen(session)
-                except CuletError as error:
-                    session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
+        if not self.taken_over.is_set():
+            await self._take_over()
+        elif new_process:
+            watched_first = sorted(self._sessions.values(), key=lambda session: not session.viewers)
+            await asyncio.gather(*(self._try_to_reopen(session) for session in watched_first))
         for session in self._sessions.values():
             session.tell(Engine(status="up"))
+
+    async def _take_over(self) -> None:
+        """Know the sessions that the engine has: a gateway before this one may have died."""
+        answer, _ = await self._link.request(to_engine.ListSessions())
+        for described in answer["sessions"]:
+            session = Session(described["session"], described["scene"], described["client"] or UNKNOWN)
+            session.learn(described)
+            session.watched = True  # or so it may have been
+            self._sessions.setdefault(session.id, session)
+        if answer["sessions"]:
+            log.info("took over %d sessions", len(answer["sessions"]))
+        self.taken_over.set()
+
+    async def _try_to_reopen(self, session: Session) -> None:
+        try:
+            await self._reopen(session)
+        except CuletError as error:
+            session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
+            log.warning("a session could not be opened again: %s", error)
 
     async def _reopen(self, session: Session) -> None:
         """Give a session, as last heard of, to an engine that does not know it."""
         session.latest = None
         for viewer in session.viewers:
             viewer.restart()
-        await self._uploads.request(
-            to_engine.OpenSession(session=session.id, scene=session.scene, snapshot=session.snapshot)
+        opened, _ = await self._uploads.request(
+            to_engine.OpenSession(
+                session=session.id, scene=session.scene, snapshot=session.snapshot, client=session.owner
+            )
         )
+        session.learn(opened)  # above all the numbers that it goes on with: the next engine must begin beyond them
         session.demand = (0.0, *DEFAULT_SIZE)
         self.update_demand(session)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from pydantic import ByteSize, Field, field_validator
 
+from culet.errors import InputError
 from culet.gateway.origins import Hosts, read_origin
 from culet.settings import MEBIBYTE, Settings, Words
 
@@ -131,3 +134,12 @@ class GatewaySettings(Settings):
             if re.fullmatch(r"\*|https?:|(https?://)?(\*\.)?[\w.-]+(:(\d+|\*))?", text) is None:
                 raise ValueError("expected a site such as https://shop.example")
         return given
+
+
+def settings_of(given: Mapping[str, Any], control: str, frames: str) -> GatewaySettings:
+    """The gateway's settings; InputError for one that cannot be used, or a folder that holds no built page."""
+    settings = GatewaySettings.read(given, control=control, frames=frames)
+    page = settings.web / "index.html"
+    if "web" in settings.model_fields_set and not page.is_file():
+        raise InputError(f"web: expected the folder of a built web client; there is no {page}", "web")
+    return settings

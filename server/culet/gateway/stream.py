@@ -16,7 +16,7 @@ from typing import assert_never
 from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
-from culet.errors import BusyError, CuletError, InputError, NotFoundError
+from culet.errors import BusyError, CuletError, EngineUnavailableError, InputError, NotFoundError
 from culet.gateway.allowance import STREAM_COST
 from culet.gateway.bucket import Bucket
 from culet.gateway.client_address import client_of
@@ -68,11 +68,15 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     if offered and SUBPROTOCOL not in offered:
         await websocket.close(CloseCode.PROTOCOL_ERROR, f"this server speaks {SUBPROTOCOL}; reload the page")
         return
+    await gateway.sessions.settle()
     try:
         session = gateway.sessions.get(session_id)
         viewer = gateway.sessions.join(session, client)
     except NotFoundError:
         await websocket.close(CloseCode.UNKNOWN_SESSION, "no such session; it may have expired")
+        return
+    except EngineUnavailableError as error:
+        await websocket.close(CloseCode.SERVICE_RESTART, str(error))
         return
     except BusyError as error:
         await websocket.close(CloseCode.BUSY, str(error))

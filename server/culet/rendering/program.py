@@ -12,6 +12,7 @@ import pyopencl as cl
 
 import culet_kernels
 from culet.errors import DeviceError
+from culet.rendering.compiling import compiling
 from culet.rendering.device import Device, Real, pocl_cache
 from culet.rendering.features import Features
 from culet.rendering.making import alone
@@ -71,7 +72,8 @@ class Programs:
         kernel = self._ready.get(key)
         if kernel is None:
             with self._compiler:
-                kernel = self._ready.get(key) or self._make(features, variant)
+                with compiling():
+                    kernel = self._ready.get(key) or self._make(features, variant)
                 self._ready[key] = kernel
         return kernel
 

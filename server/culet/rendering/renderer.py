@@ -50,6 +50,10 @@ class Renderer:
         self.fold = Fold(self.device, self.variant)
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
 
+    def prepare(self) -> None:
+        """Make the program that serves most scenes until a special one is ready, so that no picture waits for it."""
+        self.programs.exact(Features().general, self.variant)
+
     def picture(
         self,
         scene: Scene,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from culet.gateway.socket_folder import LOCK, PREFIX, clear_abandoned, socket_folder
+from culet.service.socket_folder import LOCK, PREFIX, clear_abandoned, socket_folder
 
 
 def test_a_folder_is_gone_at_its_end(tmp_path: Path) -> None:

@@ -1,0 +1,1 @@
+"""What starts the processes of `culet serve` and keeps them running."""

@@ -1,0 +1,260 @@
+"""Processes that are started, watched, replaced when they die or hang, and ended with this one however that ends."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ctypes
+import itertools
+import logging
+import os
+import signal
+import socket
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from culet.errors import EngineUnavailableError
+from culet.service.notify import ADDRESS, PATIENCE, Notice
+
+log = logging.getLogger(__name__)
+
+FIRST_BACKOFF_SECONDS = 0.25
+"""Before the second of several restarts in a row; the first comes at once."""
+LONGEST_BACKOFF_SECONDS = 10.0
+STEADY_SECONDS = 20.0
+"""A process that was ready and lived so long had a good start: its death is the first in a row."""
+STARTS_BEFORE_GIVING_UP = 4
+"""Of a process that was never ready: it will not start here at all."""
+START_SECONDS = 180.0
+"""Until a process is ready. A server that is new to its processor first compiles kernels, which takes some 10 s of one
+core, and more where many share it."""
+STOP_SECONDS = 5.0
+"""Between SIGTERM and SIGKILL."""
+SPARE_PAUSE_SECONDS = 3.0
+"""From when a process is ready to the start of its spare, so that its first work comes first."""
+PR_SET_PDEATHSIG = 1
+"""linux/prctl.h: the signal a process gets when its parent dies."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A process that is to be there always."""
+
+    name: str
+    command: Sequence[str]
+    silence_seconds: float
+    """One that is ready and does not say for so long that it lives is replaced."""
+    inherited: tuple[int, ...] = ()
+    """File descriptors that it is given, by the same numbers."""
+    has_spare: bool = False
+    """Another one waits, ready to take over. Such a process begins its work with a line on its standard input."""
+
+
+class Supervisor:
+    """Keeps one process of a part running until told to stop."""
+
+    def __init__(self, part: Part, folder: Path, on_ready: Callable[[], None] = lambda: None) -> None:
+        """`folder` is for the sockets by which processes say that they live; `on_ready` is told whenever one is
+        ready."""
+        self.part = part
+        self.starts = 0
+        self._folder = folder
+        self._on_ready = on_ready
+        self._numbers = itertools.count(1)
+        self._current: _Process | None = None
+        self._spare: _Process | None = None
+        self._making_spare: asyncio.Task[None] | None = None
+        self._stopping = False
+
+    @property
+    def pid(self) -> int | None:
+        """Process id of the one that works now."""
+        return self._current.pid if self._current and self._current.returncode is None else None
+
+    async def run(self) -> None:
+        """Start the process, and another one whenever it ends; raise EngineUnavailableError if it never gets ready."""
+        deaths, ever_ready, name = 0, False, self.part.name
+        while True:
+            began = time.monotonic()
+            process = self._current = await self._next()
+            why = await self._watch(process)
+            ever_ready = ever_ready or process.ready.is_set()
+            if self._stopping:
+                return
+            deaths = 1 if process.ready.is_set() and time.monotonic() - began > STEADY_SECONDS else deaths + 1
+            if deaths >= STARTS_BEFORE_GIVING_UP and not ever_ready:
+                raise EngineUnavailableError(f"the {name} {why}, {deaths} times in a row; its messages are above")
+            pause = 0.0 if deaths == 1 else min(FIRST_BACKOFF_SECONDS * 2 ** (deaths - 2), LONGEST_BACKOFF_SECONDS)
+            log.warning("the %s %s; starting it again%s", name, why, f" in {pause:.2g} s" if pause else "")
+            await asyncio.sleep(pause)
+
+    async def stop(self) -> None:
+        """End the processes: SIGTERM, then SIGKILL for one that does not listen."""
+        self._stopping = True
+        if self._making_spare:
+            self._making_spare.cancel()
+            await asyncio.gather(self._making_spare, return_exceptions=True)
+        if self._spare:
+            self._spare.kill()
+        if self._current:
+            await self._current.stop(self.part.name)
+        if self._spare:
+            await self._spare.wait()
+
+    async def _next(self) -> _Process:
+        """The process that stands by, if one does, and works from now on; or a new one."""
+        spare, self._spare = self._spare, None
+        if spare is not None and spare.returncode is None:
+            spare.let_go()
+            return spare
+        process = await self._start()
+        process.let_go()
+        return process
+
+    async def _start(self) -> _Process:
+        self.starts += 1
+        process = _Process(self._folder / f"{self.part.name}-{next(self._numbers)}", self.part.silence_seconds)
+        await process.start(self.part)
+        return process
+
+    async def _watch(self, process: _Process) -> str:
+        """Until the process has ended, by itself or because it hung; why, in words that follow its name."""
+        ending = asyncio.create_task(process.wait())
+        try:
+            began = time.monotonic()
+            while not process.ready.is_set():
+                await asyncio.wait({ending}, timeout=0.02 if process.heard_at else 0.1)
+                if ending.done():
+                    return f"ended with code {ending.result()}"
+                if time.monotonic() - began > START_SECONDS:
+                    return await self._replace(process, f"was not ready within {START_SECONDS:g} s")
+            self._on_ready()
+            if self.part.has_spare and not self._stopping:
+                self._making_spare = asyncio.create_task(self._make_spare())
+            while True:
+                left = process.heard_at + process.silence_seconds - time.monotonic()
+                if left <= 0:
+                    return await self._replace(process, f"did not say for {process.silence_seconds:g} s that it lives")
+                await asyncio.wait({ending}, timeout=left)
+                if ending.done():
+                    return f"ended with code {ending.result()}"
+        finally:
+            ending.cancel()
+
+    async def _replace(self, process: _Process, why: str) -> str:
+        process.kill()
+        await process.wait()
+        return f"{why} and was killed"
+
+    async def _make_spare(self) -> None:
+        if self._spare is not None and self._spare.returncode is None:
+            return
+        await asyncio.sleep(SPARE_PAUSE_SECONDS)
+        self._spare = await self._start()
+
+
+class _Process:
+    """One process, and what it says of itself."""
+
+    def __init__(self, address: Path, silence_seconds: float) -> None:
+        self.ready = asyncio.Event()
+        self.heard_at = 0.0
+        """s, steady clock: when it last said that it lives."""
+        self.silence_seconds = self._least_silence = silence_seconds
+        """After which it counts as hung; it may ask for more."""
+        self._address = address
+        self._process: asyncio.subprocess.Process
+        self._notices: socket.socket
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def returncode(self) -> int | None:
+        return self._process.returncode
+
+    async def start(self, part: Part) -> None:
+        """Start it. The socket is made anew for each, so that none is taken for another."""
+        self._notices = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self._notices.setblocking(False)
+        self._notices.bind(str(self._address))
+        loop = asyncio.get_running_loop()
+        loop.add_reader(self._notices, self._hear)
+        # A session of its own: Ctrl-C in the terminal reaches this process alone, which stops the others in order.
+        self._process = await asyncio.create_subprocess_exec(
+            *part.command,
+            stdin=asyncio.subprocess.PIPE if part.has_spare else asyncio.subprocess.DEVNULL,
+            env=os.environ | {ADDRESS: str(self._address)},
+            pass_fds=part.inherited,
+            start_new_session=True,
+            preexec_fn=_die_with_parent(),
+        )
+
+    def let_go(self) -> None:
+        """Have it begin its work."""
+        self.heard_at = 0.0
+        if self._process.stdin:
+            with contextlib.suppress(OSError):
+                self._process.stdin.write(b"go\n")
+
+    def kill(self) -> None:
+        """At once."""
+        with contextlib.suppress(ProcessLookupError):
+            self._process.kill()
+
+    async def wait(self) -> int:
+        """Its exit code, once it has ended."""
+        code = await self._process.wait()
+        self._close()
+        return code
+
+    async def stop(self, name: str) -> None:
+        """End it in order, or else at once."""
+        with contextlib.suppress(ProcessLookupError):
+            self._process.terminate()
+        try:
+            async with asyncio.timeout(STOP_SECONDS):
+                await self.wait()
+        except TimeoutError:
+            log.warning("the %s did not stop within %g s and was killed", name, STOP_SECONDS)
+            self.kill()
+            await self.wait()
+
+    def _hear(self) -> None:
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                said = self._notices.recv(256).decode(errors="replace").split("\n")
+                self.heard_at = time.monotonic()
+                if Notice.READY in said:
+                    self.ready.set()
+                for text in said:
+                    name, _, value = text.partition("=")
+                    if name == PATIENCE and value.isdecimal():
+                        self.silence_seconds = max(int(value) / 1e6, self._least_silence)
+
+    def _close(self) -> None:
+        if self._notices.fileno() >= 0:
+            asyncio.get_running_loop().remove_reader(self._notices)
+            self._notices.close()
+            self._address.unlink(missing_ok=True)
+
+
+def _die_with_parent() -> Callable[[], None] | None:
+    """What the child does between fork and exec so that it does not outlive a killed parent (Linux only).
+
+    The library is loaded before the fork: after it, only this one call may be made safely.
+    """
+    if sys.platform != "linux":
+        return None
+    prctl, parent = ctypes.CDLL(None, use_errno=True).prctl, os.getpid()
+
+    def ask_the_kernel() -> None:
+        prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:  # it died before the call: no signal would come
+            os._exit(1)
+
+    return ask_the_kernel
