@@ -123,6 +123,7 @@ NOTICES: tuple[messages.Message, ...] = (
     messages.State(
         scene={"version": 1, "floor": {"kind": "mirror"}}, falling=True, asleep=True, exactness=0.75, pinned=True
     ),
+    messages.Snapshot(snapshot={"step": 12, "simulation": None}),
     messages.Viewers(count=2),
     messages.Problem(
         code="unusable_scene", message="camera.fov_degrees: too large; got 300", field="camera.fov_degrees"

@@ -202,6 +202,14 @@ class State(Message):
     pinned: bool = False
 
 
+class Snapshot(Message):
+    """What a server would need, besides the last `state`, to make the session again if it were lost: told to a viewer
+    that joins, and once a second at most while it changes. Only the server knows what is in it."""
+
+    type: Literal["snapshot"] = "snapshot"
+    snapshot: dict[str, Any]
+
+
 class Viewers(Message):
     """How many watch this session."""
 
@@ -232,8 +240,8 @@ class Pong(Message):
     time: float
 
 
-Notice = Annotated[Hello | State | Viewers | Problem | Engine | Pong, Field(discriminator="type")]
+Notice = Annotated[Hello | State | Snapshot | Viewers | Problem | Engine | Pong, Field(discriminator="type")]
 
 control_event: TypeAdapter[SessionEvent | ViewerEvent] = TypeAdapter(ControlEvent)
 session_event: TypeAdapter[SessionEvent] = TypeAdapter(Annotated[SessionEvent, Field(discriminator="type")])
-notice: TypeAdapter[Hello | State | Viewers | Problem | Engine | Pong] = TypeAdapter(Notice)
+notice: TypeAdapter[Hello | State | Snapshot | Viewers | Problem | Engine | Pong] = TypeAdapter(Notice)

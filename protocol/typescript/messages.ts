@@ -206,6 +206,15 @@ export interface State {
   pinned?: boolean;
 }
 
+/**
+ * What a server would need, besides the last `state`, to make the session again if it were lost: told to a viewer
+ * that joins, and once a second at most while it changes. Only the server knows what is in it.
+ */
+export interface Snapshot {
+  type: "snapshot";
+  snapshot: JsonObject;
+}
+
 /** How many watch this session. */
 export interface Viewers {
   type: "viewers";
@@ -232,7 +241,7 @@ export interface Pong {
   time: number;
 }
 
-export type Notice = Hello | State | Viewers | Problem | Engine | Pong;
+export type Notice = Hello | State | Snapshot | Viewers | Problem | Engine | Pong;
 
 /** What each field of a notice may be. */
 export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {
@@ -244,6 +253,7 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
     exactness: ["number", "absent"],
     pinned: ["boolean", "absent"],
   },
+  snapshot: { snapshot: ["object"] },
   viewers: { count: ["integer"] },
   problem: { code: ["string"], message: ["string"], field: ["string", "null", "absent"] },
   engine: { status: ["down", "up"] },

@@ -10,6 +10,7 @@ import sys
 import time
 
 from culet.gateway.listener import Listener
+from culet.gateway.serve import serve_and_announce
 from culet.gateway.settings import GatewaySettings
 
 
@@ -23,7 +24,7 @@ async def main() -> None:
             print(f"held up for {seconds:g} s", flush=True)
 
         asyncio.get_running_loop().add_reader(sys.stdin, hold)
-        await listener.run()
+        await serve_and_announce(listener)
 
 
 if __name__ == "__main__":

@@ -154,15 +154,24 @@ def engine_process(command: Callable[[str, str], Sequence[str]]) -> Iterator[End
 
 
 @contextlib.asynccontextmanager
-async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gateway]:  # noqa: ANN401
-    """A web server with these settings, in this process, once it hears the engine."""
+async def gateway_before(
+    engine: Endpoints,
+    *,
+    keeps_sessions: bool = False,
+    **limits: Any,  # noqa: ANN401
+) -> AsyncIterator[Gateway]:
+    """A web server with these settings, in this process, once it hears the engine; without the sessions that other
+    tests have left there, unless it is to keep them."""
     settings = GatewaySettings(control=engine.control, frames=engine.frames, port=0, **limits)
     with Listener(settings) as listener:
         serving = asyncio.create_task(listener.run())
         try:
             async with httpx.AsyncClient(base_url=listener.url, timeout=PATIENCE) as http:
+                sessions = listener.gateway.sessions
                 async with asyncio.timeout(PATIENCE):
-                    await listener.gateway.link.ready.wait()
+                    await sessions.taken_over.wait()
+                for session in [] if keeps_sessions else list(sessions):
+                    await sessions.close(session)
                 yield Gateway(listener.url, http, listener.gateway)
         finally:
             listener.stop()

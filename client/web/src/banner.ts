@@ -21,6 +21,10 @@ export function bannerText(connection: Connection, engine: "down" | "up"): strin
 export const WAITING = "Waiting for the first picture\u2026";
 export const WAITING_LONG = `${WAITING}\nA server that is new to its processor first compiles its kernels for it, once.`;
 
+/** What to say of a session that the server had lost. */
+export const REGAINED = "The server had lost this session. It was made again as this page last saw it.";
+export const NOT_REGAINED = "The server has lost this session, and it cannot be made again.";
+
 /** When the next try is, after a pause of so many milliseconds. */
 export function tryingAgainText(delay: number): string {
   return `Trying again in ${Math.max(1, Math.round(delay / 1000))} s\u2026`;

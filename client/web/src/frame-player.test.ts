@@ -5,8 +5,8 @@ import { bytes } from "./testing/fixtures";
 
 const golden = parseFrame(bytes("jpeg.bin"));
 
-function frame(sequence: number, timestamp = sequence): Frame {
-  return { ...golden, sequence, timestamp };
+function frame(sequence: number): Frame {
+  return { ...golden, sequence };
 }
 
 describe("order", () => {
@@ -17,12 +17,17 @@ describe("order", () => {
   });
 
   it("goes on when the sequence wraps", () => {
-    expect(isAfter(frame(0, 5), frame(0xffffffff, 5))).toBe(true);
-    expect(isAfter(frame(0xffffffff, 5), frame(0, 5))).toBe(false);
+    expect(isAfter(frame(0), frame(0xffffffff))).toBe(true);
+    expect(isAfter(frame(0xffffffff), frame(0))).toBe(false);
   });
 
-  it("takes a new engine's frames, which count from 1 again", () => {
-    expect(isAfter(frame(1, 1000), frame(500, 999))).toBe(true);
+  it("does not ask the clock, which may be set back", () => {
+    const [early, late] = [
+      { ...frame(1), timestamp: 1000 },
+      { ...frame(2), timestamp: 999 },
+    ];
+    expect(isAfter(late, early)).toBe(true);
+    expect(isAfter(early, late)).toBe(false);
   });
 });
 

@@ -4,15 +4,11 @@ import { Codec, type Frame } from "@culet/protocol/frame";
 
 const MIME = { [Codec.JPEG]: "image/jpeg", [Codec.PNG]: "image/png" } as const;
 
-export type Order = Pick<Frame, "sequence" | "timestamp">;
+export type Order = Pick<Frame, "sequence">;
 
-/**
- * Whether a frame comes after another one. Sequences wrap after 32 bits; a new engine counts from 1 again, and then the
- * time of encoding tells.
- */
+/** Whether a frame comes after another one of the same engine. Sequences wrap after 32 bits. */
 export function isAfter(frame: Order, other: Order): boolean {
-  const ahead = (frame.sequence - other.sequence) | 0;
-  return ahead > 0 || frame.timestamp > other.timestamp;
+  return ((frame.sequence - other.sequence) | 0) > 0;
 }
 
 export interface Player<Picture> {
@@ -33,6 +29,11 @@ export class FramePlayer<Picture> {
 
   constructor(player: Player<Picture>) {
     this.player = player;
+  }
+
+  /** Whatever comes next is new: it is from another engine, or another connection. */
+  forget(): void {
+    this.newest = null;
   }
 
   /** Take a frame; the promise ends when it is acknowledged. How many wait here is bounded by the gateway's window. */

@@ -2,7 +2,17 @@
 
 import { CloseCode } from "@culet/protocol/messages";
 import type { Action } from "./actions";
-import { Banner, bannerText, Obstacle, obstacleText, tryingAgainText, WAITING, WAITING_LONG } from "./banner";
+import {
+  Banner,
+  bannerText,
+  NOT_REGAINED,
+  Obstacle,
+  obstacleText,
+  REGAINED,
+  tryingAgainText,
+  WAITING,
+  WAITING_LONG,
+} from "./banner";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { framingPatch } from "./framing";
 import { listenToKeys } from "./keys";
@@ -11,6 +21,7 @@ import { element } from "./page";
 import { Panel } from "./panel";
 import { listenToPointers } from "./pointer-input";
 import { expose, header } from "./probe";
+import { OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
 import { imageSky, patchOf, stonePatch } from "./scene-choices";
 import { Screen } from "./screen";
@@ -38,6 +49,7 @@ const announcement = element("announcement", HTMLElement);
 const statusLine = element("status", HTMLElement);
 const PROBLEMS_KEPT = 100;
 const problems: string[] = [];
+const files = new OpenedFiles();
 let session: string | null = null;
 let viewer: Viewer | null = null;
 /** Where the stone is, if the picture does not show it. */
@@ -114,12 +126,14 @@ async function read(file: File, upload: (file: File) => Promise<rest.Upload>): P
 
 async function openMesh(file: File): Promise<void> {
   const mesh = await read(file, rest.uploadMesh);
+  files.keep(mesh.id, file, rest.uploadMesh);
   toasts.finding([`${file.name}:`, ...mesh.findings].join("\n"));
   viewer?.send({ type: "patch_scene", patch: stonePatch(viewer.state.scene, { mesh: mesh.id }) });
 }
 
 async function openSky(file: File): Promise<void> {
   const sky = await read(file, rest.uploadSky);
+  files.keep(sky.id, file, rest.uploadSky);
   const summary = sky.findings.join("\n");
   toasts.finding(`${file.name}:\n${summary}`);
   panel.choices.addSkies([{ name: file.name, summary }], () => sky.id);
@@ -132,10 +146,36 @@ function startAnew(): void {
 
 function connectionChanged(connection: Connection): void {
   showBanner(connection);
-  if (connection.status === "closed")
-    obstacle.show(obstacleText(connection.code, connection.reason), "Start a new session", startAnew);
+  if (connection.status === "closed") {
+    if (connection.code === CloseCode.UNKNOWN_SESSION && session && !viewer?.ended) attempt(regain);
+    else obstacle.show(obstacleText(connection.code, connection.reason), "Start a new session", startAnew);
+  }
   // A gateway that was restarted may not know the session any more, and a proxy may hide its close code.
   if (connection.status === "waiting" && session) void leaveIfUnknown(session);
+}
+
+/** The server does not know the session any more: have it made again as this page last saw it. */
+async function regain(tries = 0): Promise<void> {
+  const scene = viewer?.state.scene;
+  if (!viewer || !session || !scene) {
+    return obstacle.show(obstacleText(CloseCode.UNKNOWN_SESSION, ""), "Start a new session", startAnew);
+  }
+  try {
+    await recover({ id: session, scene, snapshot: viewer.snapshot }, files, rest.reopenSession);
+    obstacle.hide();
+    viewer.stream.open();
+    toasts.finding(REGAINED);
+  } catch (error) {
+    const known = asProblem(error);
+    if (rest.isPassing(known)) later(known.message, tries, regain);
+    else obstacle.show(`${NOT_REGAINED}\n${known.message}`, "Start a new session", startAnew);
+  }
+}
+
+/** The render process was replaced, and lacks files that the server has not got any more. */
+async function giveFilesAgain(): Promise<void> {
+  const scene = viewer?.state.scene;
+  if (session && scene && (await files.giveAgain(scene))) await rest.patchSession(session, {});
 }
 
 /** What is wrong, or else why there is nothing to see. */
@@ -181,6 +221,7 @@ function watch(id: string): void {
     size: () => screen.size,
     connection: connectionChanged,
     state: stateChanged,
+    lacking: () => attempt(giveFilesAgain),
     problem,
   });
   panel.update(viewer.state);
@@ -206,20 +247,25 @@ async function start(tries = 0): Promise<void> {
     watch(wanted.kind === "session" ? wanted.id : await newSession(wanted.preset));
     obstacle.hide();
   } catch (error) {
-    const known = error instanceof rest.ProblemError ? error : new rest.ProblemError(500, String(error));
+    const known = asProblem(error);
     banner.show(null);
     if (wanted.kind === "session" && known.status === 404) {
       return obstacle.show(obstacleText(CloseCode.UNKNOWN_SESSION, ""), "Start a new session", startAnew);
     }
-    if (rest.isPassing(known)) startLater(known.message, tries);
+    if (rest.isPassing(known)) later(known.message, tries, start);
     else obstacle.show(known.message, "Try again", () => attempt(start));
   }
 }
 
-function startLater(why: string, tries: number): void {
+function asProblem(error: unknown): rest.ProblemError {
+  return error instanceof rest.ProblemError ? error : new rest.ProblemError(500, String(error));
+}
+
+/** Try again after a pause, or at once if the user wants to. */
+function later(why: string, tries: number, work: (tries: number) => Promise<void>): void {
   const again = () => {
     clearTimeout(timer);
-    attempt(() => start(tries + 1));
+    attempt(() => work(tries + 1));
   };
   const delay = pauseBefore(tries);
   const timer = setTimeout(again, delay);

@@ -8,10 +8,13 @@ import { object, part } from "./json";
 export class ProblemError extends Error {
   override name = "ProblemError";
   readonly status: number;
+  /** The place in the input, such as `stones.0.mesh`. */
+  readonly field: string | null;
 
-  constructor(status: number, message: string) {
+  constructor(status: number, message: string, field: string | null = null) {
     super(message);
     this.status = status;
+    this.field = field;
   }
 }
 
@@ -49,7 +52,18 @@ async function request(path: string, init?: RequestInit): Promise<Response> {
     throw new ProblemError(0, "The server cannot be reached.");
   }
   if (response.ok) return response;
-  throw new ProblemError(response.status, problemText(response.status, await response.text()));
+  const body = await response.text();
+  throw new ProblemError(response.status, problemText(response.status, body), problemField(body));
+}
+
+/** The place in the input that a problem document names. */
+function problemField(body: string): string | null {
+  try {
+    const { field } = object(JSON.parse(body));
+    return typeof field === "string" ? field : null;
+  } catch {
+    return null; // a proxy's page
+  }
 }
 
 /** What to tell the user of a refusal: the problem's title and detail, or at least its status. */
@@ -74,6 +88,18 @@ export async function createSession(preset?: string): Promise<{ id: string; scen
   const { id, scene } = (await response.json()) as JsonObject;
   if (typeof id !== "string") throw new ProblemError(response.status, "expected the id of a session, got none");
   return { id, scene: object(scene) };
+}
+
+/** What of a session a viewer knows, and can give to a server that has lost it. */
+export interface Lost {
+  id: string;
+  scene: JsonObject;
+  snapshot: JsonObject | null;
+}
+
+/** Have a session that was lost made again, if no other viewer was faster. */
+export async function reopenSession({ id, scene, snapshot }: Lost): Promise<void> {
+  await request("/api/sessions", post(snapshot ? { id, scene, snapshot } : { id, scene }));
 }
 
 /** Change a session's scene by a merge patch. */

@@ -24,6 +24,7 @@ beforeEach(() => {
     size: () => ({ width: 640, height: 360 }),
     connection: () => {},
     state: () => {},
+    lacking: () => problems.push("lacking"),
     problem: (text) => problems.push(text),
   });
   viewer.stream.open();
@@ -61,6 +62,33 @@ describe("a viewer", () => {
     expect(shown).toEqual(["image/jpeg of 297 bytes"]);
     expect(viewer.player.shown).toBe(1);
     expect(viewer.lastFrame && header(viewer.lastFrame)).toMatchObject({ step: 42, sequence: 7, width: 16, height: 8 });
+  });
+
+  it("takes whatever comes after a new engine or connection, though it counts from 1 again", async () => {
+    FakeSocket.last.accept();
+    const notices = [
+      { type: "engine", status: "up" },
+      { type: "hello", protocol: 1, session: "", viewer: 1 },
+    ];
+    FakeSocket.last.say(bytes("jpeg.bin"));
+    for (const notice of notices) {
+      FakeSocket.last.say(bytes("jpeg.bin"));
+      FakeSocket.last.say(notice);
+      FakeSocket.last.say(bytes("jpeg.bin"));
+    }
+    await vi.waitFor(() => expect(sent("ack")).toHaveLength(5));
+    expect(viewer.player.shown).toBe(3);
+  });
+
+  it("keeps what makes its session again if the server loses it, and knows one that ended from a lost one", () => {
+    FakeSocket.last.accept();
+    FakeSocket.last.say({ type: "snapshot", snapshot: { step: 7 } });
+    expect(viewer.snapshot).toEqual({ step: 7 });
+    FakeSocket.last.say({ type: "problem", code: "session_lost", message: "no such mesh" });
+    expect(problems).toEqual(["lacking", "no such mesh"]);
+    expect(viewer.ended).toBe(false);
+    FakeSocket.last.say({ type: "problem", code: "session_closed", message: "the session was deleted" });
+    expect(viewer.ended).toBe(true);
   });
 
   it("follows the state, and keeps its own target", () => {

@@ -1,7 +1,7 @@
 /** One session on this page: stream, frames and state together. */
 
 import type { Frame } from "@culet/protocol/frame";
-import type { ControlEvent, Notice } from "@culet/protocol/messages";
+import type { ControlEvent, JsonObject, Notice } from "@culet/protocol/messages";
 import type { Target } from "./events";
 import type { Arrival } from "./frame-history";
 import { FramePlayer } from "./frame-player";
@@ -15,6 +15,8 @@ export interface ViewerListener {
   size: () => Size;
   connection: (connection: Connection) => void;
   state: (before: ViewState, after: ViewState) => void;
+  /** A new render process lacks what the session needs. */
+  lacking: () => void;
   /** `about`: the field of the scene that was refused, if it was that. */
   problem: (text: string, about?: string) => void;
 }
@@ -24,6 +26,10 @@ export class Viewer {
   readonly rate = new FrameRate();
   readonly player: FramePlayer<ImageBitmap>;
   lastFrame: Frame | null = null;
+  /** What the server needs, besides the scene, to make the session again if it loses it. */
+  snapshot: JsonObject | null = null;
+  /** The server said that the session ends: it is not lost. */
+  ended = false;
   state: ViewState = INITIAL;
   private readonly listener: ViewerListener;
   private decodeMs = 0;
@@ -74,8 +80,13 @@ export class Viewer {
   }
 
   private heard(notice: Notice): void {
-    if (notice.type === "problem") this.listener.problem(notice.message, notice.field ?? undefined);
-    else this.become(withNotice(this.state, notice));
+    if (notice.type === "hello" || notice.type === "engine") this.player.forget();
+    if (notice.type === "snapshot") this.snapshot = notice.snapshot;
+    else if (notice.type === "problem") {
+      this.ended ||= notice.code === "session_closed";
+      if (notice.code === "session_lost") this.listener.lacking();
+      this.listener.problem(notice.message, notice.field ?? undefined);
+    } else this.become(withNotice(this.state, notice));
   }
 
   private become(state: ViewState): void {

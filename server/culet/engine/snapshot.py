@@ -14,8 +14,9 @@ NUMBER_GAP = 1000
 """Steps and frames that an engine may have shown after its last snapshot, many more than come in 0.05 s at the highest
 rate, 240. A restored session starts beyond, since a number names one picture for ever."""
 
-NUMBERS = 2**62
-"""Numbers that there are. A snapshot from outside may claim any: what comes after the last is the first again."""
+NUMBERS = 2**53
+"""Numbers that there are: those that JavaScript holds exactly. A snapshot from outside may claim any; what comes after
+the last is the first again."""
 
 LARGEST_FRACTION = 1 - 2**-20
 """Just short of the next step, so that putting the time by again never takes that step."""

@@ -45,6 +45,7 @@ class Listener:
         metrics = self.gateway.metrics
         metrics.watch("culet_connections", "Connections open.", guard.__len__)
         metrics.watch("culet_connections_ended", "Ended for owing, or for others.", lambda: guard.ended, counts=True)
+        self._stopping: asyncio.Task[None] | None = None
         self._server = _Server(
             GuardedConfig(
                 app,
@@ -81,6 +82,12 @@ class Listener:
 
     def stop(self) -> None:
         """Close streams, finish answers, leave `run`."""
+        if self._stopping is None:
+            self._stopping = asyncio.create_task(self._stop())
+
+    async def _stop(self) -> None:
+        self.gateway.stopping.set()
+        await self.gateway.sessions.farewell()
         self._server.should_exit = True
 
     async def _say_that_it_lives(self) -> None:

@@ -20,10 +20,12 @@ def run_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     """
     settings = settings_of(given, reachable(control), reachable(frames))
     with Listener(settings) as listener:
-        asyncio.run(_serve(listener))
+        asyncio.run(serve_and_announce(listener))
 
 
-async def _serve(listener: Listener) -> None:
+async def serve_and_announce(listener: Listener) -> None:
+    """Serve until a stop signal; print the URL once the engine answers."""
+
     async def announce() -> None:
         await listener.gateway.link.ready.wait()
         print(f"culet is ready: {listener.url}", flush=True)

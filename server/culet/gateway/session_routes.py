@@ -28,6 +28,20 @@ class SessionRequest(Model):
 
     scene: Scene | None = None
     preset: Annotated[str, Field(description="A name from /api/presets.")] | None = None
+    id: (
+        Annotated[
+            str,
+            Field(
+                pattern="^[0-9a-f]{32}$",
+                description="Of a session that the server has lost: it is made again, with the scene that it had. If "
+                "there is such a session, the answer is about that one.",
+            ),
+        ]
+        | None
+    ) = None
+    snapshot: (
+        Annotated[dict[str, Any], Field(description="The last one that a viewer of the lost session was told.")] | None
+    ) = None
 
     model_config = Model.model_config | {"json_schema_extra": {"examples": [{"preset": "matte"}]}}
 
@@ -35,6 +49,10 @@ class SessionRequest(Model):
     def _one_of_them(self) -> Self:
         if self.scene is not None and self.preset is not None:
             raise ValueError("expected a scene or a preset, got both")
+        if self.id is not None and self.scene is None:
+            raise ValueError("expected the scene of the session that was lost, got none")
+        if self.snapshot is not None and self.id is None:
+            raise ValueError("expected the id of the session that the snapshot is of, got none")
         return self
 
 
@@ -71,7 +89,12 @@ async def create_session(
     """Make a session."""
     request = request or SessionRequest()
     scene = request.scene or (preset(request.preset) if request.preset is not None else Scene())
-    session = await gateway.sessions.open(scene.model_dump(mode="json"), client_of(http.scope))
+    shown, client = scene.model_dump(mode="json"), client_of(http.scope)
+    if request.id is None:
+        session = await gateway.sessions.open(shown, client)
+    else:
+        finite(request.snapshot)
+        session = await gateway.sessions.reopen(request.id, shown, request.snapshot, client)
     response.headers["Location"] = f"/api/sessions/{session.id}"
     return _answer(session)
 

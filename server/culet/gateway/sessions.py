@@ -9,7 +9,7 @@ import logging
 import secrets
 import time
 from collections import Counter, OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from culet.errors import BusyError, CuletError, EngineUnavailableError, NotFoundError
@@ -17,21 +17,25 @@ from culet.gateway.client_address import UNKNOWN
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
-from culet.gateway.viewer import DEFAULT_SIZE, Viewer
+from culet.gateway.viewer import DEFAULT_SIZE, Standing, Viewer
 from culet_protocol import engine as to_engine
 from culet_protocol.engine import SessionMotion, SessionProblem, SessionState
 from culet_protocol.frame import Frame
-from culet_protocol.messages import BALANCED, Engine, Message, Notice, Problem, SessionEvent, State, Viewers
+from culet_protocol.messages import BALANCED, Engine, Message, Notice, Problem, SessionEvent, Snapshot, State, Viewers
 
 log = logging.getLogger(__name__)
 
 TICK_SECONDS = 0.25
 """Between looks at what viewers can take, and at sessions that nobody uses."""
+FAREWELL_SECONDS = 1.0
+"""For streams to say why they end."""
 SETTLING_SECONDS = 8.0
 """A gateway that has just been started lets viewers wait for so long until it knows its sessions."""
 DELETED = "the session was deleted"
 DELETED_KEPT = 4096
 """Ids of sessions that were deleted, which nobody can open again."""
+SNAPSHOT_BYTES_PER_SECOND = 4000
+"""To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
 RATE_CHANGE = 0.2
 """A demand that changes by a smaller part is not worth a message."""
 DEMAND_SECONDS = 0.05
@@ -58,6 +62,8 @@ class Session:
         self.falling = self.asleep = False
         self.exactness, self.pinned = BALANCED, False
         self.snapshot: dict[str, Any] | None = None
+        self.snapshot_told: dict[str, Any] | None = None
+        self.next_snapshot_at = -float("inf")
         self.viewers: list[Viewer] = []
         self.latest: tuple[Frame, bytes] | None = None
         self.used = time.monotonic()
@@ -79,6 +85,15 @@ class Session:
         self.scene, self.snapshot = described["scene"], described["snapshot"]
         self.falling, self.asleep = described["falling"], described["asleep"]
         self.exactness, self.pinned = described["exactness"], described["pinned"]
+
+    def tell_snapshot(self, now: float) -> None:
+        """Tell the viewers the snapshot, if it is another one and they can do with it now."""
+        if self.snapshot is self.snapshot_told or self.snapshot is None or now < self.next_snapshot_at:
+            return
+        notice = Snapshot(snapshot=self.snapshot)
+        size = len(notice.model_dump_json())
+        self.snapshot_told, self.next_snapshot_at = self.snapshot, now + max(1.0, size / SNAPSHOT_BYTES_PER_SECOND)
+        self.tell(notice)
 
     def state(self) -> State:
         """The notice for viewers."""
@@ -126,6 +141,9 @@ class Sessions:
 
     def __len__(self) -> int:
         return len(self._sessions)
+
+    def __iter__(self) -> Iterator[Session]:
+        return iter(self._sessions.values())
 
     @property
     def viewers(self) -> int:
@@ -235,6 +253,16 @@ class Sessions:
         session.learn(described)
         return described
 
+    async def farewell(self) -> None:
+        """End all streams, since the server stops; returns when they have ended, or did not in time."""
+        for session in self._sessions.values():
+            for viewer in session.viewers:
+                viewer.dismiss(Standing.STOPPING)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(FAREWELL_SECONDS):
+                while self.viewers:  # noqa: ASYNC110 - each leaves by itself
+                    await asyncio.sleep(0.01)
+
     def join(self, session: Session, client: str = UNKNOWN) -> Viewer:
         """A new viewer, told who it is and what it sees; BusyError at the limit."""
         limit, strangers = self._settings.max_viewers, sum(one.client != session.owner for one in session.viewers)
@@ -245,6 +273,8 @@ class Sessions:
         session.viewers.append(viewer)
         session.watched = True
         viewer.tell(session.state())
+        if session.snapshot is not None:
+            viewer.tell(Snapshot(snapshot=session.snapshot))
         viewer.tell(Viewers(count=len(session.viewers)))  # the others are told of many that come and go at once
         if not self._link.ready.is_set():
             viewer.tell(Engine(status="down"))
@@ -308,6 +338,7 @@ class Sessions:
                 if session.viewers:
                     session.used = time.monotonic()
                     self.update_demand(session)
+                    session.tell_snapshot(time.monotonic())
                 if session.viewers_told != len(session.viewers):
                     session.viewers_told = len(session.viewers)
                     session.tell(Viewers(count=session.viewers_told))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import asyncio
+from dataclasses import dataclass, field
 
 from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
@@ -25,3 +26,5 @@ class Gateway:
     """What each client may still ask for."""
     stills: StillPlaces
     metrics: Metrics
+    stopping: asyncio.Event = field(default_factory=asyncio.Event)
+    """Set when the server was told to stop."""

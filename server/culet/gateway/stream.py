@@ -131,6 +131,8 @@ class _Stream:
         match self._viewer.standing:
             case Standing.DISMISSED:
                 return CloseCode.UNKNOWN_SESSION, "the session has ended"
+            case Standing.STOPPING:
+                return CloseCode.SERVICE_RESTART, "the server is stopping, or being restarted"
             case Standing.OVERRUN | Standing.ATTENDING:  # a send took too long
                 return CloseCode.TOO_SLOW, "this viewer does not read what it is sent"
             case _:
@@ -143,7 +145,7 @@ class _Stream:
             while (notice := viewer.next_notice(time.monotonic())) is not None:
                 if not await self._in_time(notice.model_dump_json()):
                     return
-            if viewer.standing is Standing.DISMISSED:
+            if viewer.standing in (Standing.DISMISSED, Standing.STOPPING):
                 return
             frame = viewer.next_frame(time.monotonic())
             if frame is not None:

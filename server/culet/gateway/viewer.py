@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from enum import Enum, auto
-from typing import assert_never
+from typing import Literal, assert_never
 
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.credit import Credit
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Engine, Hello, Message, Notice, Pong, Problem, State, Viewers
+from culet_protocol.messages import Engine, Hello, Message, Notice, Pong, Problem, Snapshot, State, Viewers
 
 NOTICES_WAITING = 256
 """A viewer that has so many unread ones does not read at all."""
@@ -22,13 +22,15 @@ STATE_SECONDS = 0.04
 
 
 class Standing(Enum):
-    """How a viewer's stream is. Of the two that end it the first counts."""
+    """How a viewer's stream is. Of those that end it the first counts."""
 
     ATTENDING = auto()
     OVERRUN = auto()
     """More notices are waiting than a reading viewer would leave: the stream ends at once."""
     DISMISSED = auto()
     """The session is gone: the stream ends once the notices are out."""
+    STOPPING = auto()
+    """The server stops: likewise."""
 
 
 class Viewer:
@@ -69,10 +71,10 @@ class Viewer:
         self.visible = visible
         self.wake.set()
 
-    def dismiss(self) -> None:
+    def dismiss(self, standing: Literal[Standing.DISMISSED, Standing.STOPPING] = Standing.DISMISSED) -> None:
         """End the stream."""
         if self.standing is Standing.ATTENDING:
-            self.standing = Standing.DISMISSED
+            self.standing = standing
         self.wake.set()
 
     def acknowledge(self, sequence: int, now: float) -> None:
@@ -93,7 +95,7 @@ class Viewer:
         """Queue a notice. Of those that say how something is, only the latest waits; of equal ones, only one."""
         key: object
         match notice:
-            case State() | Viewers() | Engine():
+            case State() | Snapshot() | Viewers() | Engine():
                 key = type(notice)
             case Problem():
                 key = notice

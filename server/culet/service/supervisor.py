@@ -67,7 +67,7 @@ class Supervisor:
         self._current: _Process | None = None
         self._spare: _Process | None = None
         self._making_spare: asyncio.Task[None] | None = None
-        self._stopping = False
+        self._stopping = asyncio.Event()
 
     @property
     def pid(self) -> int | None:
@@ -80,29 +80,39 @@ class Supervisor:
         while True:
             began = time.monotonic()
             process = self._current = await self._next()
+            if self._stopping.is_set():  # it was told to stop before there was a process
+                await process.stop(name)
+                return
             why = await self._watch(process)
             ever_ready = ever_ready or process.ready.is_set()
-            if self._stopping:
+            if self._stopping.is_set():
                 return
             deaths = 1 if process.ready.is_set() and time.monotonic() - began > STEADY_SECONDS else deaths + 1
             if deaths >= STARTS_BEFORE_GIVING_UP and not ever_ready:
                 raise EngineUnavailableError(f"the {name} {why}, {deaths} times in a row; its messages are above")
             pause = 0.0 if deaths == 1 else min(FIRST_BACKOFF_SECONDS * 2 ** (deaths - 2), LONGEST_BACKOFF_SECONDS)
             log.warning("the %s %s; starting it again%s", name, why, f" in {pause:.2g} s" if pause else "")
-            await asyncio.sleep(pause)
+            if await self._stopped_within(pause):
+                return
 
     async def stop(self) -> None:
         """End the processes: SIGTERM, then SIGKILL for one that does not listen."""
-        self._stopping = True
+        self._stopping.set()
         if self._making_spare:
-            self._making_spare.cancel()
-            await asyncio.gather(self._making_spare, return_exceptions=True)
+            await self._making_spare
         if self._spare:
             self._spare.kill()
         if self._current:
             await self._current.stop(self.part.name)
         if self._spare:
             await self._spare.wait()
+
+    async def _stopped_within(self, seconds: float) -> bool:
+        """Wait; whether it is to stop."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(seconds):
+                await self._stopping.wait()
+        return self._stopping.is_set()
 
     async def _next(self) -> _Process:
         """The process that stands by, if one does, and works from now on; or a new one."""
@@ -132,7 +142,7 @@ class Supervisor:
                 if time.monotonic() - began > START_SECONDS:
                     return await self._replace(process, f"was not ready within {START_SECONDS:g} s")
             self._on_ready()
-            if self.part.has_spare and not self._stopping:
+            if self.part.has_spare and (self._making_spare is None or self._making_spare.done()):
                 self._making_spare = asyncio.create_task(self._make_spare())
             while True:
                 left = process.heard_at + process.silence_seconds - time.monotonic()
@@ -152,8 +162,8 @@ class Supervisor:
     async def _make_spare(self) -> None:
         if self._spare is not None and self._spare.returncode is None:
             return
-        await asyncio.sleep(SPARE_PAUSE_SECONDS)
-        self._spare = await self._start()
+        if not await self._stopped_within(SPARE_PAUSE_SECONDS):
+            self._spare = await self._start()
 
 
 class _Process:

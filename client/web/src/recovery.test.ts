@@ -1,0 +1,70 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import { lacksFile, OpenedFiles, recover } from "./recovery";
+import { type Lost, ProblemError } from "./rest";
+
+const MESH = "ab".repeat(16);
+const SKY = "cd".repeat(16);
+const lost: Lost = {
+  id: "0".repeat(32),
+  scene: { stones: [{ mesh: MESH }], environment: { kind: "image", image: SKY } },
+  snapshot: { step: 7 },
+};
+const lacking = new ProblemError(422, "no such mesh", "scene.stones.0.mesh");
+
+describe("a session that the server has lost", () => {
+  let asked: Lost[];
+  let given: string[];
+  let files: OpenedFiles;
+
+  beforeEach(() => {
+    asked = [];
+    given = [];
+    files = new OpenedFiles();
+  });
+
+  const give = async (file: File) => {
+    given.push(file.name);
+    return { id: "", findings: [] };
+  };
+  const answers = (...refusals: (ProblemError | null)[]) => {
+    return async (what: Lost) => {
+      asked.push(what);
+      const refusal = refusals.shift();
+      if (refusal) throw refusal;
+    };
+  };
+
+  it("is made again from what the page knows", async () => {
+    await recover(lost, files, answers(null));
+    expect(asked).toEqual([lost]);
+  });
+
+  it("gets the files again that its scene names, and no others", async () => {
+    files.keep(MESH, new File([], "stone.obj"), give);
+    files.keep(SKY, new File([], "sky.hdr"), give);
+    files.keep("ef".repeat(16), new File([], "other.obj"), give);
+    await recover(lost, files, answers(lacking, null));
+    expect(asked).toEqual([lost, lost]);
+    expect(given.sort()).toEqual(["sky.hdr", "stone.obj"]);
+  });
+
+  it("stays lost, with the reason, if its files are not here", async () => {
+    await expect(recover(lost, files, answers(lacking))).rejects.toBe(lacking);
+    expect(asked).toHaveLength(1);
+  });
+
+  it("stays lost if it is refused for another reason", async () => {
+    files.keep(MESH, new File([], "stone.obj"), give);
+    const busy = new ProblemError(429, "at the limit");
+    await expect(recover(lost, files, answers(busy))).rejects.toBe(busy);
+    expect(given).toEqual([]);
+  });
+
+  it("lacks a file if the field says so", () => {
+    expect(lacksFile(lacking)).toBe(true);
+    expect(lacksFile(new ProblemError(422, "", "environment.image"))).toBe(true);
+    expect(lacksFile(new ProblemError(422, "", "stones.0.cut"))).toBe(false);
+    expect(lacksFile(new ProblemError(422, ""))).toBe(false);
+    expect(lacksFile(new ProblemError(404, "", "mesh"))).toBe(false);
+  });
+});
