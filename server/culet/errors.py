@@ -9,6 +9,7 @@
     ├── BusyError               a queue or a number of sessions is at its limit
     ├── EngineUnavailableError  the render process does not answer
     └── DeviceError             no OpenCL device that works, or a kernel that does not build
+        └── KernelCacheError    the driver cannot write the programs that it compiles
 
 Each class knows its HTTP status and the title of its problem document (RFC 9457).
 """
@@ -77,3 +78,10 @@ class DeviceError(CuletError):
 
     status = 500
     title = "no working OpenCL device"
+
+
+class KernelCacheError(DeviceError):
+    """The driver cannot write the programs that it compiles; says which folder, why, and what to do."""
+
+    status = 503
+    title = "cannot compile"

@@ -29,6 +29,8 @@ from culet_protocol import engine as protocol
 log = logging.getLogger(__name__)
 
 HEARTBEAT_SECONDS = 1.0
+RETRY_SECONDS = 10.0
+"""Until a picture is tried again that something passing was in the way of."""
 
 
 def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, stand_by: bool = False) -> None:
@@ -57,8 +59,11 @@ def open_renderer() -> Renderer:
     It is imported here, so that whatever only speaks to an engine never loads it.
     """
     import culet.rendering.files  # so that the first still needs not wait for it  # noqa: F401
+    from culet.rendering import kernel_cache
     from culet.rendering.renderer import Renderer as OpenClRenderer
 
+    if not kernel_cache.has_plenty_of_room() and (fault := kernel_cache.complaint()):
+        log.error("%s", fault)  # said first: the compiler may end this process
     renderer = OpenClRenderer(background_compile=True)
     try:
         renderer.prepare()
@@ -234,11 +239,20 @@ class Engine:
         self._spawn(self._peers.tell(encoded(state)))
 
     def _report_problem(self, session: str, error: CuletError) -> None:
+        if error.status == 503:  # it may be gone by itself, as the lack of room for a program
+            self._spawn(self._try_again(session))
         problem = protocol.SessionProblem(session=session, title=error.title, detail=str(error))
         self._spawn(self._peers.tell(encoded(problem)))
         live = self._painter.pictures.get(session)
         if live is not None:  # its stone may have stopped
             self._tell(live.session.report(edited=True))
+
+    async def _try_again(self, session: str) -> None:
+        await asyncio.sleep(RETRY_SECONDS)
+        live = self._painter.pictures.get(session)
+        if live is not None:
+            live.refused = None
+            self._painter.wake()
 
     def _send_frame(self, message: bytes) -> None:
         self._spawn(self._send(message))

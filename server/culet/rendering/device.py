@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +14,7 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.errors import DeviceError
+from culet.rendering import kernel_cache
 from culet.rendering.panoramas import check_panorama
 
 Real = type[np.float32] | type[np.float64]
@@ -128,24 +127,11 @@ def open_device() -> Device:
 def remedy(found: Sequence[Any]) -> str:
     """What to do if none of the devices found works. Without a folder for its machine code PoCL 3.1 offers none, and
     does not say why."""
-    folder = pocl_cache()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            if found:
-                return "clinfo shows what there is; CULET_DEVICE chooses among it by name"
-            return "on Debian: apt-get install pocl-opencl-icd"
-    except OSError as error:
-        return f"PoCL cannot write to its cache {folder} ({error.strerror}); name another folder by POCL_CACHE_DIR"
-
-
-def pocl_cache() -> Path:
-    """As PoCL's `pocl_cache_init_topdir` finds it."""
-    if own := os.environ.get("POCL_CACHE_DIR"):
-        return Path(own)
-    if cache := os.environ.get("XDG_CACHE_HOME"):
-        return Path(cache, "pocl", "kcache")
-    return Path(os.environ.get("HOME", "/tmp"), ".cache", "pocl", "kcache")  # noqa: S108 - PoCL's choice
+    if found_fault := kernel_cache.complaint():
+        return found_fault
+    if found:
+        return "clinfo shows what there is; CULET_DEVICE chooses among it by name"
+    return "on Debian: apt-get install pocl-opencl-icd"
 
 
 def _probe(context: Any, queue: Any) -> None:  # noqa: ANN401 - pyopencl has no types

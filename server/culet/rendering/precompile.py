@@ -25,24 +25,25 @@ COMMAND = ("nice", "-n", str(NICENESS), sys.executable, "-m", __name__)
 """The process, which takes the order as its argument."""
 
 
-def precompile(features: Features, variant: Variant) -> None:
-    """Start a process that makes the program, and wait for it; DeviceError if it does not end.
+def precompile(features: Features, variant: Variant) -> bool:
+    """Start a process that makes the program, and wait for it; whether it did. DeviceError if it does not end.
 
     If it fails, the caller's own build will say why.
     """
     order = {"features": asdict(features), "variant": {**asdict(variant), "real": np.dtype(variant.real).name}}
     command = [*COMMAND, json.dumps(order)]
     try:
-        subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
     except subprocess.TimeoutExpired:
         raise DeviceError(f"the compiler did not end within {MOST_SECONDS:g} s") from None
+    return done.returncode == 0
 
 
 def main() -> None:
     """Entry of that process."""
     order = json.loads(sys.argv[1])
     variant = Variant(**{**order["variant"], "real": np.dtype(order["variant"]["real"]).type})
-    Programs(open_device()).exact(Features(**order["features"]), variant)
+    Programs(open_device(), own_process=True).exact(Features(**order["features"]), variant)
 
 
 if __name__ == "__main__":

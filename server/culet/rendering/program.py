@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
+import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +13,10 @@ import numpy as np
 import pyopencl as cl
 
 import culet_kernels
-from culet.errors import DeviceError
+from culet.errors import DeviceError, KernelCacheError
+from culet.rendering import kernel_cache
 from culet.rendering.compiling import compiling
-from culet.rendering.device import Device, Real, pocl_cache
+from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
 from culet.rendering.making import alone
 from culet.rendering.parameters import layout
@@ -22,6 +25,9 @@ log = logging.getLogger(__name__)
 
 FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 
+
+RETRY_SECONDS = 30.0
+"""Until a program is tried again that could not be written."""
 
 TILE = 32
 """Pixels on each side of what a core renders at a time."""
@@ -45,10 +51,21 @@ class Variant:
 
 
 def build(device: Device, name: str, options: list[str]) -> Any:  # noqa: ANN401 - pyopencl has no types
-    """Compile one source file; DeviceError carries the compiler's words."""
-    try:
+    """Compile one source file; DeviceError carries the compiler's words, KernelCacheError those about its folder."""
+
+    def built() -> Any:  # noqa: ANN401
         return cl.Program(device.context, culet_kernels.source(name)).build([*FLAGS, *options])
+
+    try:
+        try:
+            return built()
+        except cl.Error:
+            if not kernel_cache.restore():
+                raise
+            return built()
     except cl.Error as error:
+        if fault := kernel_cache.complaint():
+            raise KernelCacheError(fault) from error
         raise DeviceError(f"{name} does not build with {' '.join(options)}:\n{error}") from error
 
 
@@ -59,11 +76,13 @@ class Programs:
     been launched once.
     """
 
-    def __init__(self, device: Device) -> None:
+    def __init__(self, device: Device, *, own_process: bool = False) -> None:
+        """`own_process`: this one is there for nothing else than to make a program."""
         self._device = device
+        self._own_process = own_process
         self._ready: dict[tuple[Features, Variant], Any] = {}
-        self._begun: set[tuple[Features, Variant]] = set()
-        """Made in the background, or tried in vain."""
+        self._next_try: dict[tuple[Features, Variant], float] = {}
+        """s, steady clock: of those made in the background, or tried in vain, when they may be tried again."""
         self._compiler = threading.Lock()
 
     def exact(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
@@ -80,15 +99,16 @@ class Programs:
     def best(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
         """The kernel for these features if it is ready; else the general one, while the special one is made.
 
-        That is tried once: where it fails, the general one goes on serving.
+        That is tried once: where it fails, the general one goes on serving; but tried again later where the driver
+        could not write what it compiles.
         """
         key = features, variant
         kernel = self._ready.get(key)
         if kernel is not None:
             return kernel
         general = self.exact(features.general, variant)
-        if key not in self._begun:
-            self._begun.add(key)
+        if self._next_try.get(key, -math.inf) <= time.monotonic():
+            self._next_try[key] = math.inf
             threading.Thread(target=self._make_ready, args=key, name="culet-compile", daemon=True).start()
         return general
 
@@ -98,16 +118,28 @@ class Programs:
         try:
             precompile(features, variant)
             self.exact(features, variant)
+        except KernelCacheError as error:
+            self._next_try[features, variant] = time.monotonic() + RETRY_SECONDS
+            log.error("the general program goes on serving: %s", error)
         except Exception:  # drivers fail in every way; another try with each frame would fail as well
             log.exception("the general program goes on serving: the special one cannot be made (%s)", features)
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+        if not self._own_process and not kernel_cache.has_plenty_of_room():
+            self._make_in_a_process_of_its_own(features, variant)
         options = [*variant.options, *features.options]
-        with alone(pocl_cache(), f"{culet_kernels.source('render.cl')} {options}"):
+        with alone(kernel_cache.folder(), f"{culet_kernels.source('render.cl')} {options}"):
             program = build(self._device, "render.cl", options)
             kernel = cl.Kernel(program, "render")
             warm_up(self._device, kernel)
         return cl.Kernel(program, "render")
+
+    def _make_in_a_process_of_its_own(self, features: Features, variant: Variant) -> None:
+        """Where there is little room the compiler may end its process: not this one. Then what is made is there."""
+        from culet.rendering.precompile import precompile  # as above
+
+        if not precompile(features, variant) and (fault := kernel_cache.complaint()):
+            raise KernelCacheError(fault)
 
 
 def warm_up(device: Device, kernel: Any) -> None:  # noqa: ANN401
