@@ -109,7 +109,7 @@ def _log_failure(task: asyncio.Task[None]) -> None:
 
 def _gateway(settings: GatewaySettings) -> Gateway:
     link = EngineLink(settings)
-    uploads = Uploads(link, settings.max_kept_upload_bytes)
+    uploads = Uploads(link, settings.max_kept_upload_bytes, settings.uploads_folder)
     sessions, metrics = Sessions(settings, link, uploads), Metrics()
     metrics.watch("culet_engine_up", "1 while the engine's heartbeats come.", link.ready.is_set)
     metrics.watch("culet_engine_processes", "Engine processes seen.", lambda: link.instances, counts=True)

@@ -27,6 +27,8 @@ log = logging.getLogger(__name__)
 
 TICK_SECONDS = 0.25
 """Between looks at what viewers can take, and at sessions that nobody uses."""
+REOPENED_AT_ONCE = 4
+"""Sessions, in a new engine: some of them need files that are read by processes."""
 FAREWELL_SECONDS = 1.0
 """For streams to say why they end."""
 SETTLING_SECONDS = 8.0
@@ -421,7 +423,8 @@ class Sessions:
             await self._take_over()
         elif new_process:
             watched_first = sorted(self._sessions.values(), key=lambda session: not session.viewers)
-            await asyncio.gather(*(self._try_to_reopen(session) for session in watched_first))
+            turn = asyncio.Semaphore(REOPENED_AT_ONCE)
+            await asyncio.gather(*(self._try_to_reopen(session, turn) for session in watched_first))
         for session in self._sessions.values():
             session.tell(Engine(status="up"))
 
@@ -437,9 +440,10 @@ class Sessions:
             log.info("took over %d sessions", len(answer["sessions"]))
         self.taken_over.set()
 
-    async def _try_to_reopen(self, session: Session) -> None:
+    async def _try_to_reopen(self, session: Session, turn: asyncio.Semaphore) -> None:
         try:
-            await self._reopen(session)
+            async with turn:
+                await self._reopen(session)
         except CuletError as error:
             session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
             log.warning("a session could not be opened again: %s", error)

@@ -104,6 +104,11 @@ class GatewaySettings(Settings):
         description="Size of all uploads that are kept to be given to an engine again; those that sessions do not use "
         "go first, oldest first.",
     )
+    uploads_folder: Path | None = Field(
+        None,
+        description="Folder where accepted uploads are kept too, so that a gateway that is started after one that died "
+        "has them; one gateway's alone. culet serve has one for as long as it runs.",
+    )
     request_seconds: float = Field(
         10, gt=0, description="An engine that lives but does not answer a small request for so long is unavailable."
     )

@@ -6,16 +6,18 @@ names the upload; it is given that, and asked once more.
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import Any, Self, get_args
 
 from culet.errors import BusyError, InputError
 from culet.gateway.form import UploadedFile
 from culet.gateway.link import EngineLink
+from culet.gateway.upload_folder import UploadFolder
 from culet_protocol.engine import MeshType, PutMesh, PutSky, SkyType
 from culet_protocol.messages import Message
 
@@ -54,8 +56,7 @@ class _Upload:
     def of(cls, kind: Kind, file: UploadedFile) -> Self:
         """The upload of a file, named by what is in it and what it is taken for; InputError for another ending."""
         file_type = kind.file_type(file.name)
-        name = hashlib.sha256(file_type.encode() + b"\0" + file.digest).hexdigest()[:32]
-        return cls(kind, file_type, file.data, name)
+        return cls(kind, file_type, file.data, id_of(file_type, file.digest))
 
     async def give(self, link: EngineLink) -> dict[str, Any]:
         """What the engine says about it."""
@@ -68,12 +69,19 @@ class _Upload:
 class Uploads:
     """The bytes of accepted uploads, the latest used last; bounded in sum. What sessions use is not forgotten."""
 
-    def __init__(self, link: EngineLink, max_bytes: int) -> None:
+    def __init__(self, link: EngineLink, max_bytes: int, folder: Path | None = None) -> None:
+        """Those that a gateway before this one kept in the folder are there at once."""
         self.used: Callable[[], Set[str]] = frozenset
         """Ids that sessions name, maybe among other words."""
         self._link = link
         self._max_bytes = max_bytes
         self._kept: OrderedDict[str, _Upload] = OrderedDict()
+        self._giving: dict[str, asyncio.Task[dict[str, Any]]] = {}
+        self._folder = UploadFolder(folder) if folder else None
+        for stored in self._folder.read() if self._folder else ():
+            kind = {MESH.name: MESH, SKY.name: SKY}.get(stored.kind)
+            if kind is not None and stored.id == id_of(stored.file_type, hashlib.sha256(stored.data).digest()):
+                self._kept[stored.id] = _Upload(kind, stored.file_type, stored.data, stored.id)
 
     @property
     def kept_bytes(self) -> int:
@@ -95,6 +103,8 @@ class Uploads:
             )
         described = await upload.give(self._link)
         self._keep(upload)
+        if self._folder:
+            await asyncio.to_thread(self._folder.write, upload.id, kind.name, upload.file_type, upload.data)
         return upload.id, described
 
     async def request(
@@ -109,9 +119,17 @@ class Uploads:
                 if not lacking:
                     raise
             for upload in lacking:
-                await upload.give(self._link)
+                await self._give_again(upload)
                 self._keep(upload)
         return await self._link.request(message, patient=patient)
+
+    async def _give_again(self, upload: _Upload) -> None:
+        """Once for all who ask for it at the same time."""
+        giving = self._giving.get(upload.id)
+        if giving is None:
+            giving = self._giving[upload.id] = asyncio.create_task(upload.give(self._link))
+            giving.add_done_callback(lambda _: self._giving.pop(upload.id, None))
+        await asyncio.shield(giving)
 
     def _lacking(self, field: str, named: set[str], about: set[str]) -> list[_Upload]:
         """Those of the kind that the field names; the message's own last, in case the engine keeps only few."""
@@ -127,6 +145,13 @@ class Uploads:
             if self.kept_bytes <= self._max_bytes:
                 break
             del self._kept[name]
+            if self._folder:
+                self._folder.remove(name)
+
+
+def id_of(file_type: str, digest: bytes) -> str:
+    """By what a scene names an upload: what it is taken for, and the SHA-256 of its bytes."""
+    return hashlib.sha256(file_type.encode() + b"\0" + digest).hexdigest()[:32]
 
 
 def words(document: object) -> set[str]:
