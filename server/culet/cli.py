@@ -204,7 +204,7 @@ def serve(
         bool,
         typer.Option(
             envvar="CULET_SPARE",
-            help="Keep a second engine ready to take over when the first dies; takes some 200 MB of memory.",
+            help="Keep another engine and gateway ready to take over when one dies; they take some 250 MB of memory.",
         ),
     ] = True,
     *,

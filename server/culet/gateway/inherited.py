@@ -15,7 +15,9 @@ from culet.logs import configure
 
 
 def main() -> None:
-    """Serve until SIGTERM."""
+    """Wait for a line on the standard input, with everything loaded, then serve until SIGTERM."""
+    if not sys.stdin.readline():  # whoever was to say it has gone
+        return
     listening = socket.socket(fileno=int(sys.argv[1]))
     settings = GatewaySettings.model_validate_json(sys.argv[2])
     configure(settings.log_level, settings.log_format)

@@ -36,7 +36,7 @@ def restore() -> bool:
         return False
     with contextlib.suppress(OSError):
         folder().mkdir(parents=True, exist_ok=True)
-        log.warning("the folder of compiled programs was gone, and was made again: %s", folder())
+        log.warning("the folder of compiled programs was missing, and was made: %s", folder())
     return folder().is_dir()
 
 

@@ -40,7 +40,7 @@ def serve(
 
     `given` are the gateway's settings by field, `engine_options` words of the engine's command line. `frames`, such as
     `tcp://127.0.0.1:5556`, is where the engine publishes frames for native viewers too; without it they stay on this
-    machine. With `spare` a second engine stands by. Raises InputError for a setting that cannot be used or an address
+    machine. With `spare` another one of each stands by. Raises InputError for a setting that cannot be used or an address
     that cannot be listened on, and EngineUnavailableError if one of the two dies again and again before it was ever
     ready.
     """
@@ -55,7 +55,7 @@ def serve(
         with listening_socket(settings.host, settings.port) as listening:
             number = listening.fileno()
             words = gateway_command(number, settings.model_dump_json())
-            gateway = Part("gateway", words, GATEWAY_SILENCE_SECONDS, inherited=(number,))
+            gateway = Part("gateway", words, GATEWAY_SILENCE_SECONDS, inherited=(number,), has_spare=spare)
             asyncio.run(_serve(folder, gateway, engine, url_of(listening, settings.host)))
 
 
