@@ -40,9 +40,10 @@ def serve(
 
     `given` are the gateway's settings by field, `engine_options` words of the engine's command line. `frames`, such as
     `tcp://127.0.0.1:5556`, is where the engine publishes frames for native viewers too; without it they stay on this
-    machine. With `spare` another one of each stands by. Raises InputError for a setting that cannot be used or an address
-    that cannot be listened on, and EngineUnavailableError if one of the two dies again and again before it was ever
-    ready.
+    machine. With `spare` another one of each stands by.
+
+    Raises InputError for a setting that cannot be used or an address that cannot be listened on, and
+    EngineUnavailableError if one of the two dies again and again before it was ever ready.
     """
     if frames:
         check_free(frames, "frames")
