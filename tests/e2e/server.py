@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -82,6 +83,18 @@ class Server:
             if b"engine" in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
                 return pid
         raise AssertionError("the server has no engine")
+
+    def gateway_pid(self) -> int:
+        """Process id of the gateway that works, likewise."""
+        for pid in _children(self._process.pid):
+            if b"culet.gateway.inherited" in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
+                return pid
+        raise AssertionError("the server has no gateway")
+
+    def kill_all(self) -> None:
+        """Both processes at once, and those that stand by: what none but the page knows is lost."""
+        for pid in _children(self._process.pid):
+            os.kill(pid, signal.SIGKILL)
 
     def cpu_seconds(self) -> float:
         """Processor time of the server and its engine so far."""

@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import zmq
 from PIL import Image
 
 from culet_protocol.engine import REQUEST_NUMBER
 from culet_protocol.frame import Codec, Flags, Frame
-from engine.peer import SIZE, EngineProcess, connected, running_engine
+from engine.peer import PATIENCE, SIZE, EngineProcess, connected, running_engine
 
 UNKNOWN = "f" * 32
 PLAIN: dict[str, Any] = {
@@ -142,11 +143,15 @@ async def test_a_falling_stone_moves_from_frame_to_frame_in_order(engine: Engine
             assert after.sequence > before.sequence
             assert after.step > before.step
             assert after.simulation_time > before.simulation_time
-        state = await peer.told(
-            lambda told: told["type"] == "session_state" and told["session"] == peer.session and not told["edited"]
+        motion = await peer.told(
+            lambda told: (
+                told["type"] == "session_motion"
+                and told["session"] == peer.session
+                and told["moved"]["step"] >= frames[-1].step
+            )
         )
-        assert state["falling"]
-        assert state["snapshot"]["simulation"]["state"]["time"] > 0
+        assert motion["moved"]["falling"]
+        assert motion["moved"]["simulation"]["state"]["time"] >= frames[-1].simulation_time
 
 
 async def test_no_more_frames_are_made_than_are_asked_for(engine: EngineProcess) -> None:
@@ -278,6 +283,50 @@ async def test_a_session_goes_on_in_another_engine(engine: EngineProcess, tmp_pa
             assert restored["step"] > state["step"]
             again = await peer.result(type="open_session", **session)  # idempotent
             assert again["step"] == restored["step"]
+
+
+async def test_a_gateway_that_comes_is_told_all_sessions(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        opened = [await peer.open(PLAIN, client=client) for client in ("192.0.2.7", None)]
+        described = [await peer.result(type="get_session", session=session) for session in opened]
+    async with connected(engine) as (peer, _):
+        listed = {found["session"]: found for found in (await peer.result(type="list_sessions"))["sessions"]}
+        assert [listed[session].pop("client") for session in opened] == ["192.0.2.7", None]
+        assert [listed[session] for session in opened] == described
+        for session in opened:
+            await peer.result(type="close_session", session=session)
+
+
+async def test_sessions_outlive_their_gateway_for_a_while(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CULET_ORPHAN_SECONDS", "2")
+    with running_engine(tmp_path) as engine:
+        async with connected(engine) as (peer, _):
+            session = await peer.open(PLAIN)
+        async with connected(engine) as (peer, _):  # at once
+            assert (await peer.ask(type="get_session", session=session))["status"] == 200
+        async with asyncio.timeout(PATIENCE):
+            while True:  # a look is a gateway that comes, so looks are far between
+                await asyncio.sleep(4)
+                async with connected(engine) as (peer, _):
+                    if (await peer.ask(type="get_session", session=session))["status"] == 404:
+                        break
+
+
+async def test_those_who_only_connect_cannot_push_out_who_asks(engine: EngineProcess) -> None:
+    """65 probes did, when all peers were one list."""
+    async with connected(engine) as (peer, _):
+        await peer.status()
+        context = zmq.Context()
+        probes = [context.socket(zmq.DEALER) for _ in range(200)]
+        for probe in probes:
+            probe.setsockopt(zmq.LINGER, 0)
+            probe.setsockopt(zmq.PROBE_ROUTER, 1)
+            probe.connect(engine.control)
+        greeted = await asyncio.to_thread(lambda: [probe.poll(10_000) for probe in probes])
+        assert all(greeted)
+        context.destroy(linger=0)
+        heard = len(peer.unasked)
+        await peer.told(lambda told: told["type"] == "heartbeat" and any(told is new for new in peer.unasked[heard:]))
 
 
 async def test_stills_beyond_the_limit_are_refused_and_the_others_done(engine: EngineProcess) -> None:

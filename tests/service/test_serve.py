@@ -24,7 +24,7 @@ from culet.gateway.settings import GatewaySettings
 from culet.service.serve import serve
 from culet.service.supervisor import STARTS_BEFORE_GIVING_UP, Part, Supervisor
 from culet_client import FrameSubscription
-from culet_protocol.frame import Flags
+from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Orbit, ToggleFall
 from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, announced, eventually, png
 
@@ -172,7 +172,7 @@ async def test_without_its_engine_the_gateway_says_so(served: Served) -> None:
 
 @pytest.mark.timed
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches(
+async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches_and_a_still_is_made(
     served: Served, number: signal.Signals
 ) -> None:
     session = (await served.http.post("/api/sessions")).json()["id"]
@@ -180,12 +180,24 @@ async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches(
     assert engine
     async with served.viewer(session) as viewer:
         await viewer.frame()
+        scene = {"sampling": {"samples_per_pixel": 512}}
+        picture = {"scene": scene, "width": 2048, "height": 1024}
+        still = asyncio.create_task(served.http.post("/api/render", json=picture))
+
+        async def under_way() -> bool:
+            return "culet_engine_stills_waiting 1" in (await served.http.get("/metrics")).text
+
+        await eventually(under_way)
         began = time.monotonic()
         served.process.send_signal(number)
         assert await asyncio.to_thread(served.process.wait, PATIENCE) == 0
         assert time.monotonic() - began < 8, "measured: 0.5 s"
         await viewer.websocket.wait_closed()
         assert viewer.websocket.close_code == 1012, "service restart"
+        assert viewer.websocket.close_reason == "the server is stopping, or being restarted"
+        refused = await still
+        assert (refused.status_code, refused.json()["title"]) == (503, "engine unavailable")
+        assert "retry-after" in refused.headers
     assert not alive(engine)
 
 
@@ -334,3 +346,24 @@ async def test_an_engine_that_stands_still_is_replaced(served: Served) -> None:
 
         await eventually(replaced)
         assert (await viewer.frame()).session.hex() == session
+
+
+async def test_a_resting_session_never_uses_a_number_again_however_often_the_engine_dies(served: Served) -> None:
+    session = (await served.http.post("/api/sessions", json={"preset": "matte"})).json()["id"]
+    async with served.viewer(session) as viewer:
+        await viewer.final()
+
+        async def shown_anew() -> list[Frame]:
+            count = len(viewer.frames)
+            await viewer.until(lambda: Flags.FINAL in viewer.frames[-1].flags and len(viewer.frames) > count)
+            return viewer.frames[count:]
+
+        for _ in range(2):
+            last, engine = viewer.frames[-1], served.engine()
+            assert engine
+            os.kill(engine, signal.SIGKILL)
+            assert (await viewer.notice("engine"))["status"] == "down"
+            assert (await viewer.notice("engine"))["status"] == "up"
+            after = [frame for frame in await shown_anew() if frame.sequence != last.sequence]
+            assert min(frame.sequence for frame in after) > last.sequence
+            assert min(frame.step for frame in after) > last.step

@@ -1,0 +1,60 @@
+"""The web process dies while somebody watches; then both do."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+from e2e.server import Server
+from e2e.view import View
+
+MADE_AGAIN = "The server had lost this session."
+
+
+def remember_this_page(view: View) -> None:
+    """So that a page that was loaded anew is told from this one."""
+    view.page.evaluate("() => { window.sameAsBefore = true; }")
+
+
+def comes_back(view: View) -> None:
+    """The stream is open again, and shows what is new."""
+    shown = view.number("framesShown")
+    view.until("shown => culet.connection === 'open' && culet.framesShown > shown + 3", shown)
+    assert view.page.evaluate("() => window.sameAsBefore"), "without a reload"
+    assert view.number("outOfOrder") == 0
+
+
+def test_the_page_goes_on_where_it_was_when_the_gateway_is_back(bouncing: View, server: Server) -> None:
+    view = bouncing
+    view.change_by("ArrowLeft")
+    remember_this_page(view)
+    before, scene, gateway = view.look().frame, view.scene, server.gateway_pid()
+    os.kill(gateway, signal.SIGKILL)
+    view.until("() => culet.connection !== 'open'")
+    comes_back(view)
+    assert server.gateway_pid() != gateway
+    assert view.scene == scene
+    assert view.state["falling"]
+    after = view.look().frame
+    assert after["simulationTime"] >= before["simulationTime"]
+    assert after["step"] > before["step"]
+
+
+def test_a_session_that_both_have_lost_is_made_again_by_its_page_which_says_so(bouncing: View, server: Server) -> None:
+    view = bouncing
+    view.change_by("ArrowLeft")
+    remember_this_page(view)
+    view.until("time => culet.lastFrame.simulationTime > time + 1.5", view.look().frame["simulationTime"])
+    before, scene, address = view.look().frame, view.scene, view.page.url
+    server.kill_all()
+    view.until("() => culet.connection !== 'open'")
+    view.until(
+        "text => [...document.querySelectorAll('.toast')].some(toast => toast.textContent.startsWith(text))", MADE_AGAIN
+    )
+    comes_back(view)
+    assert view.page.url == address, "whoever has the address still finds the session"
+    assert view.scene == scene
+    assert view.state["falling"]
+    after = view.look().frame
+    assert after["simulationTime"] > before["simulationTime"] - 2, "its viewers are told where it is once a second"
+    assert after["step"] > before["step"]

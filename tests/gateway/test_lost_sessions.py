@@ -1,0 +1,143 @@
+"""Sessions that the server has lost are made again from what their viewers know, which may be anything."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from culet_protocol.messages import Orbit, ToggleFall
+from gateway.running import Gateway
+
+UNKNOWN = "c0" * 16
+LIVELY: dict[str, Any] = {
+    "floor": {"kind": "matte"},
+    "simulation": {"restitution": 1, "tangential_damping": 1, "angular_damping": 1, "random_torque": 0},
+}
+
+
+async def test_a_lost_session_is_made_again_as_a_viewer_saw_it_last(gateway: Gateway) -> None:
+    session = await gateway.session(LIVELY)
+    async with gateway.viewer(session) as viewer:
+        await viewer.say(Orbit(yaw=0.3, pitch=0.1))
+        await viewer.say(ToggleFall())
+        await viewer.until(lambda: bool(viewer.frames) and viewer.frames[-1].simulation_time > 0.2)
+        await viewer.say(ToggleFall())
+        await viewer.until(
+            lambda: any(notice["type"] == "state" and not notice["falling"] for notice in viewer.notices[-3:])
+        )
+        viewer.notices = [notice for notice in viewer.notices if notice["type"] == "state"]
+        state, snapshot = viewer.notices[-1], (await viewer.notice("snapshot"))["snapshot"]
+        last = viewer.frames[-1]
+    # As after the loss of both processes: nobody knows the session any more.
+    await gateway.parts.sessions.close(gateway.parts.sessions.get(session), "lost")
+    assert (await gateway.http.get(f"/api/sessions/{session}")).status_code == 404
+
+    lost = {"id": session, "scene": state["scene"], "snapshot": snapshot}
+    made = await gateway.http.post("/api/sessions", json=lost)
+    assert made.status_code == 201, made.text
+    assert made.json()["id"] == session
+    assert made.json()["scene"] == state["scene"]
+    async with gateway.viewer(session) as viewer:
+        frame = await viewer.frame()
+    assert frame.simulation_time == last.simulation_time
+    assert frame.sequence > last.sequence, "no number is used again"
+    assert frame.step > last.step
+
+    second = await gateway.http.post("/api/sessions", json=lost | {"scene": {}})
+    assert second.json()["scene"] == state["scene"], "of several viewers the first one makes it"
+    await gateway.http.delete(f"/api/sessions/{session}")
+
+
+async def test_a_session_that_was_deleted_stays_so(gateway: Gateway) -> None:
+    session = await gateway.session()
+    await gateway.http.delete(f"/api/sessions/{session}")
+    refused = await gateway.http.post("/api/sessions", json={"id": session, "scene": {}})
+    assert (refused.status_code, refused.json()["detail"]) == (404, "that session was deleted")
+
+
+async def snapshot_of(gateway: Gateway, scene: dict[str, Any]) -> dict[str, Any]:
+    """The snapshot of a new session."""
+    session = await gateway.session(scene)
+    found = gateway.parts.sessions.get(session).snapshot
+    await gateway.http.delete(f"/api/sessions/{session}")
+    assert found
+    return found
+
+
+@pytest.mark.parametrize(
+    ("wrong", "field"),
+    [
+        ({"step": -1}, "snapshot.step"),
+        ({"step": 2**63}, "snapshot.step"),
+        ({"sequence": "many"}, "snapshot.sequence"),
+        ({"fraction": 1}, "snapshot.fraction"),
+        ({"home": {"position": [0, 0, 0]}}, None),
+        ({"simulation": {"version": 2}}, "version"),
+        ({"simulation": []}, "snapshot.simulation"),
+        ({"environment": {"kind": "lava"}}, "snapshot.environment"),
+        ({"more": 1}, "snapshot.more"),
+    ],
+)
+async def test_what_is_no_snapshot_is_refused_by_its_field(
+    gateway: Gateway, wrong: dict[str, Any], field: str | None
+) -> None:
+    snapshot = await snapshot_of(gateway, LIVELY) | wrong
+    refused = await gateway.http.post("/api/sessions", json={"id": UNKNOWN, "scene": LIVELY, "snapshot": snapshot})
+    assert refused.status_code == 422, refused.text
+    if field:
+        assert refused.json()["field"].startswith(field)
+    assert (await gateway.http.get(f"/api/sessions/{UNKNOWN}")).status_code == 404
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"position": [1e30, 1e30, 1e30]},
+        {"momentum": [1e30, -1e30, 1e30]},
+        {"angular_momentum": [1e30, 1e30, 1e30]},
+        {"position": [0, -0.9, 0], "momentum": [0, -1e9, 0]},
+        {"time": 1e30},
+    ],
+)
+async def test_a_snapshot_of_a_motion_that_no_stone_has_ends_nobody_elses(
+    gateway: Gateway, wrong: dict[str, Any]
+) -> None:
+    snapshot = await snapshot_of(gateway, LIVELY)
+    state = snapshot["simulation"]["state"] | wrong
+    hostile = snapshot | {
+        "falling": True,
+        "step": 2**63 - 1,
+        "sequence": 2**63 - 1,
+        "simulation": snapshot["simulation"] | {"state": state, "previous": state},
+    }
+    made = await gateway.http.post("/api/sessions", json={"id": UNKNOWN, "scene": LIVELY, "snapshot": hostile})
+    assert made.status_code in (201, 422), made.text
+    other = await gateway.session()
+    if made.status_code == 201:
+        async with gateway.viewer(UNKNOWN) as viewer:
+            await viewer.until(lambda: bool(viewer.frames) or any(n["type"] == "problem" for n in viewer.notices))
+        await gateway.http.delete(f"/api/sessions/{UNKNOWN}")
+        gateway.parts.sessions._deleted.clear()
+    async with gateway.viewer(other) as viewer:
+        await viewer.final()
+    await gateway.http.delete(f"/api/sessions/{other}")
+
+
+@pytest.mark.parametrize(
+    ("request_", "field"),
+    [
+        ({"id": UNKNOWN}, None),
+        ({"snapshot": {}}, None),
+        ({"id": "../etc", "scene": {}}, "id"),
+        ({"id": UNKNOWN.upper(), "scene": {}}, "id"),
+        ({"id": UNKNOWN, "scene": {"floor": {"kind": "lava"}}}, "scene.floor.kind"),
+        ({"id": UNKNOWN, "scene": {"stones": [{"mesh": "ab" * 16}]}}, "stones.0.mesh"),
+    ],
+)
+async def test_a_request_for_a_lost_session_says_what_it_lacks(
+    gateway: Gateway, request_: dict[str, Any], field: str | None
+) -> None:
+    refused = await gateway.http.post("/api/sessions", json=request_)
+    assert refused.status_code == 422, refused.text
+    assert refused.json().get("field") == field
