@@ -154,14 +154,9 @@ def engine_process(command: Callable[[str, str], Sequence[str]]) -> Iterator[End
 
 
 @contextlib.asynccontextmanager
-async def gateway_before(
-    engine: Endpoints,
-    *,
-    keeps_sessions: bool = False,
-    **limits: Any,  # noqa: ANN401
-) -> AsyncIterator[Gateway]:
+async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gateway]:  # noqa: ANN401
     """A web server with these settings, in this process, once it hears the engine; without the sessions that other
-    tests have left there, unless it is to keep them."""
+    tests have left there."""
     settings = GatewaySettings(control=engine.control, frames=engine.frames, port=0, **limits)
     with Listener(settings) as listener:
         serving = asyncio.create_task(listener.run())
@@ -170,7 +165,7 @@ async def gateway_before(
                 sessions = listener.gateway.sessions
                 async with asyncio.timeout(PATIENCE):
                     await sessions.taken_over.wait()
-                for session in [] if keeps_sessions else list(sessions):
+                for session in list(sessions):
                     await sessions.close(session)
                 yield Gateway(listener.url, http, listener.gateway)
         finally:
