@@ -15,6 +15,7 @@ from culet.errors import NotFoundError
 from culet.gateway import connections
 from culet.gateway.connections import RESERVED_FILES, connection_limit
 from culet.gateway.sessions import Sessions
+from culet.gateway.uploads import Uploads
 from gateway.running import PATIENCE, Gateway, eventually, gateway_alone
 
 HALF_AN_UPGRADE = b"GET /api/sessions/x/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
@@ -62,6 +63,7 @@ def quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connections, "LOOK_SECONDS", 0.02)
     monkeypatch.setattr(connections, "PROGRESS_SECONDS", 0.2)
     monkeypatch.setattr(connections, "LINGER_SECONDS", 0.2)
+    monkeypatch.setattr(connections, "UNREAD_SECONDS", 1.0)
 
 
 @pytest.mark.usefixtures("quick_looks")
@@ -189,3 +191,29 @@ async def test_an_answer_is_sent_at_once(monkeypatch: pytest.MonkeyPatch) -> Non
     async with gateway_alone():
         assert made
         assert all(made)
+
+
+@pytest.mark.usefixtures("quick_looks")
+async def test_who_reads_an_answer_slowly_gets_all_of_it_and_who_does_not_read_is_given_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    picture = bytes(range(256)) * 100_000  # more than the buffers of both sides hold
+
+    async def rendered(*_: object, **__: object) -> tuple[dict[str, object], memoryview]:
+        return {}, memoryview(picture)
+
+    monkeypatch.setattr(Uploads, "request", rendered)
+    request = b"GET /api/render.tga HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
+    async with gateway_alone(min_body_rate=1000) as gateway, peers(gateway, request, 2) as (slow, asleep):
+        got = bytearray()
+        async with asyncio.timeout(PATIENCE):
+            while piece := await slow.reader.read(1 << 20):
+                got += piece
+                await asyncio.sleep(0.01)
+        assert got.partition(b"\r\n\r\n")[2] == picture
+
+        async def given_up() -> bool:
+            return "culet_connections_ended_total 1.0\n" in (await gateway.http.get("/metrics")).text
+
+        await eventually(given_up)
+        assert len(await asleep.rest()) < len(picture)

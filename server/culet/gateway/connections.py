@@ -31,7 +31,10 @@ log = logging.getLogger(__name__)
 LOOK_SECONDS = 0.5
 """Between looks at what connections owe."""
 PROGRESS_SECONDS = 10.0
-"""A body, or the reading of an answer, must have made its progress within each span of so long."""
+"""A body must have made its progress within each span of so long."""
+UNREAD_SECONDS = 60.0
+"""The same for the reading of an answer. A kernel whose buffer was full tells of room only when a sixteenth of it, up to
+400 kB, is free again: at 10 kB/s, after 40 s."""
 LINGER_SECONDS = 5.0
 """After an answer that did not wait for the whole body: for the rest of the body, so that the answer is read."""
 RESERVED_FILES = 288
@@ -73,7 +76,9 @@ class Connection:
     received: int = 0
     """Bytes since then."""
     unread: int = 0
-    """Bytes of the answer that the client had not taken then."""
+    """Bytes of the answer that waited for the client to take them then."""
+    taken: int = 0
+    """Bytes that it had taken, of all answers."""
     partial: bool = False
     """Whether something of a head has come."""
 
@@ -151,11 +156,12 @@ class Guard:
                     rate = self.min_bytes / PROGRESS_SECONDS
                     self._end(connection, f"expected at least {rate:g} bytes of the body a second")
                 connection.looked, connection.received = now, 0
-            case Phase.ANSWER if now - connection.looked > PROGRESS_SECONDS:
+            case Phase.ANSWER if now - connection.looked > UNREAD_SECONDS:
                 unread = protocol.transport.get_write_buffer_size()
-                if connection.unread and unread > connection.unread - self.min_bytes:
+                taken = protocol.written() - unread
+                if connection.unread and taken - connection.taken < min(self.min_bytes, connection.unread):
                     self._end(connection)
-                connection.looked, connection.unread = now, unread
+                connection.looked, connection.unread, connection.taken = now, unread, taken
             case _:
                 pass
 
@@ -287,6 +293,11 @@ class GuardedHttp(H11Protocol):
         self.transport.close()
         self.loop.call_later(LINGER_SECONDS, self.transport.abort)  # if the client does not read even that
 
+    def written(self) -> int:
+        """Bytes of answers that the transport was given."""
+        assert isinstance(self.transport, _LingeringTransport)  # noqa: S101 - by `connection_made`
+        return self.transport.written
+
     def is_sending(self) -> bool:
         """Whether the client is in the middle of a body."""
         return self.conn.their_state is h11.SEND_BODY and not self.conn.they_are_waiting_for_100_continue
@@ -319,6 +330,7 @@ class _LingeringTransport(asyncio.Transport):
         self._transport = transport
         self._protocol = protocol
         self._lingering = False
+        self.written = 0
 
     def close(self) -> None:
         if self._lingering or self._transport.is_closing() or not self._protocol.is_sending():
@@ -337,6 +349,7 @@ class _LingeringTransport(asyncio.Transport):
 
     def write(self, data: bytes | bytearray | memoryview[Any]) -> None:
         if not self._lingering:
+            self.written += len(data)
             self._transport.write(data)
 
     def write_eof(self) -> None:

@@ -73,7 +73,7 @@ class EngineLink:
         self._settings = settings
         self._last_heard = 0.0
         self._numbers = 0
-        self._pending: dict[int, asyncio.Future[tuple[Reply, bytes]]] = {}
+        self._pending: dict[int, asyncio.Future[tuple[Reply, bytes | memoryview]]] = {}
         self._greeting: asyncio.Task[None] | None = None
         self._context: zmq.asyncio.Context
         self._control: zmq.asyncio.Socket | None = None
@@ -146,7 +146,7 @@ class EngineLink:
 
     async def request(
         self, message: Message, payload: bytes | bytearray | None = None, *, patient: bool = False
-    ) -> tuple[dict[str, Any], bytes]:
+    ) -> tuple[dict[str, Any], bytes | memoryview]:
         """The engine's result and bytes for a request. `patient` ones may take as long as the engine lives.
 
         Raises what the engine answered as the error of that status, and EngineUnavailableError if it does not answer.
@@ -158,7 +158,7 @@ class EngineLink:
         parts: list[bytes | bytearray] = [REQUEST_NUMBER.pack(number), message.model_dump_json().encode()]
         if payload is not None:
             parts.append(payload)
-        answer: asyncio.Future[tuple[Reply, bytes]] = asyncio.get_running_loop().create_future()
+        answer: asyncio.Future[tuple[Reply, bytes | memoryview]] = asyncio.get_running_loop().create_future()
         self._pending[number] = answer
         try:
             # Copying an upload of 64 MiB would hold the streams up for some 70 ms.
@@ -214,10 +214,10 @@ class EngineLink:
 
     async def _read_control(self, socket: zmq.asyncio.Socket) -> None:
         while True:
-            parts: list[bytes] = await socket.recv_multipart()
+            parts: list[zmq.Frame] = await socket.recv_multipart(copy=False)  # a large still takes long to copy
             try:
-                (number,) = REQUEST_NUMBER.unpack(parts[0])
-                message = engine_message.validate_json(parts[1])
+                (number,) = REQUEST_NUMBER.unpack(parts[0].bytes)
+                message = engine_message.validate_json(parts[1].bytes)
             except (IndexError, ValueError, ValidationError) as error:
                 log.warning("dropped what is not an engine's message: %s", error)
                 continue
@@ -233,7 +233,7 @@ class EngineLink:
                 case Reply():
                     answer = self._pending.get(number)
                     if answer and not answer.done():
-                        answer.set_result((message, parts[2] if len(parts) > 2 else b""))
+                        answer.set_result((message, parts[2].buffer if len(parts) > 2 else b""))
 
     def _hear(self, instance: str) -> None:
         self._last_heard = asyncio.get_running_loop().time()

@@ -11,6 +11,7 @@ from culet.gateway import stream as streaming
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
+from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers, check_numbers, finite
 from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
@@ -190,7 +191,7 @@ async def _frame(
         result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
     kind = "attachment" if file_format == "tga" else "inline"  # no browser shows a TGA
     disposition = f'{kind}; filename="culet-{result["step"]}.{file_format}"'
-    return Response(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
+    return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
 
 
 def _answer(session: Session) -> SessionAnswer:

@@ -57,7 +57,7 @@ class GatewaySettings(Settings):
     )
     head_seconds: float = Field(10, gt=0, description="Time for the head of a request to arrive.")
     min_body_rate: float = Field(
-        1024, ge=0, description="Bytes a second that a request's body, or the reading of an answer, must make."
+        1024, ge=0, description="Bytes a second that a request's body must make, and the reading of an answer."
     )
     session_idle_seconds: float = Field(
         900, gt=0, description="A session that nobody watched or asked about for so long is forgotten."

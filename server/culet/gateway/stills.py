@@ -10,6 +10,7 @@ from pydantic import Field
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
+from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
@@ -107,4 +108,4 @@ async def _picture(
     message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format, client=client)
     with gateway.stills.place(client):
         _, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
-    return Response(data, media_type=MEDIA_TYPES[file_format])
+    return PictureResponse(data, media_type=MEDIA_TYPES[file_format])

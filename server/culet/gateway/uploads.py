@@ -109,7 +109,7 @@ class Uploads:
 
     async def request(
         self, message: Message, *about: dict[str, Any] | None, patient: bool = False
-    ) -> tuple[dict[str, Any], bytes]:
+    ) -> tuple[dict[str, Any], bytes | memoryview]:
         """As `EngineLink.request`; the engine is given what it lacks of the uploads that `message` or `about` name."""
         for _ in KIND_OF_FIELD:  # a scene can lack one of each kind
             try:
