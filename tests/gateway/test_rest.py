@@ -134,7 +134,7 @@ async def test_a_scene_that_cannot_be_used_is_refused_by_field(gateway: Gateway,
         ("height=100000", 422, "height"),
         ("width=nan", 422, "width"),
         ("widht=640", 422, "widht"),
-        ("preset=ruby", 404, None),
+        ("preset=coal", 404, None),
     ],
 )
 async def test_a_query_that_cannot_be_used_is_refused_by_field(
@@ -178,7 +178,7 @@ async def test_a_session_without_a_body_shows_the_default_scene(gateway: Gateway
 @pytest.mark.parametrize(
     ("body", "status", "field"),
     [
-        ({"preset": "ruby"}, 404, None),
+        ({"preset": "coal"}, 404, None),
         ({"preset": "matte", "scene": {}}, 422, None),
         ({"scene": {"lights": 7}}, 422, "scene.lights"),
     ],
