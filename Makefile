@@ -16,14 +16,19 @@ export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 # Kernels compiled for tests are kept here, apart from the user's own.
 test check-kernels validate soak: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve test check check-python check-kernels check-protocol check-web format validate soak bench study compose-test opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak bench study compose-test opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(WEB_BUILD)
-	@echo "Ready. make serve | test | check | validate | soak | bench | study | compose-test"
+	@echo "Ready. make serve | wheel | test | check | validate | soak | bench | study | compose-test"
 
 serve: opencl $(WEB_BUILD)
 	@exec $(BIN)/culet serve $(ARGS)
+
+# One file that `pip install` makes a server with its page of.
+wheel: $(DONE)/base $(WEB_BUILD)
+	$(BIN)/pip wheel --quiet --no-deps --wheel-dir dist .
+	@ls -1 dist/culet-*.whl
 
 test: $(DONE)/dev opencl browser $(WEB_BUILD)
 	.ci/test $(ARGS)

@@ -16,7 +16,7 @@ from pydantic import Field, TypeAdapter
 from culet_protocol.messages import BALANCED, Exactness, Message, SessionEvent
 
 REQUEST_NUMBER = struct.Struct("<Q")
-Format = Literal["tga", "png", "jpeg", "exr"]
+Format = Literal["tga", "png", "jpeg", "webp", "exr"]
 MeshType = Literal["obj", "off", "stl", "ply", "glb"]
 SkyType = Literal["exr", "hdr", "png"]
 SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]

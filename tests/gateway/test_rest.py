@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 import httpx
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -50,6 +51,7 @@ async def test_without_parameters_the_picture_is_640_by_360(gateway: Gateway) ->
         ("tga", "image/x-tga", b"\0\0\2"),
         ("png", "image/png", b"\x89PNG"),
         ("jpeg", "image/jpeg", b"\xff\xd8"),
+        ("webp", "image/webp", b"RIFF"),
         ("exr", "image/x-exr", b"\x76\x2f\x31\x01"),
     ],
 )
@@ -60,6 +62,38 @@ async def test_a_scene_renders_in_every_format(
     assert answer.status_code == 200, answer.text
     assert answer.headers["content-type"] == media_type
     assert answer.content.startswith(magic)
+
+
+@pytest.mark.parametrize(
+    ("ending", "media_type", "name"),
+    [
+        ("png", "image/png", "PNG"),
+        ("jpg", "image/jpeg", "JPEG"),
+        ("webp", "image/webp", "WEBP"),
+        ("tga", "image/x-tga", "TGA"),
+    ],
+)
+async def test_an_address_ends_as_the_picture_that_it_answers_with(
+    gateway: Gateway, ending: str, media_type: str, name: str
+) -> None:
+    """What `<img src>` of a page can show; without loss but for JPEG, so the same picture."""
+    query: dict[str, str | int] = {**SMALL, "preset": "matte", "samples": 1}
+    answer = await gateway.http.get(f"/api/render.{ending}", params=query)
+    assert (answer.status_code, answer.headers["content-type"]) == (200, media_type)
+    picture = Image.open(io.BytesIO(answer.content))
+    assert (picture.format, picture.size) == (name, (64, 36))
+    reference = Image.open(io.BytesIO((await gateway.http.get("/api/render.png", params=query)).content))
+    difference = np.abs(np.asarray(picture, np.int16) - np.asarray(reference, np.int16))
+    assert difference.max() <= (60 if ending == "jpg" else 0)  # measured 22 of JPEG at a checker's edge
+    session = await gateway.session()
+    frame = await gateway.http.get(f"/api/sessions/{session}/frame.{ending}", params=SMALL)
+    assert (frame.status_code, frame.headers["content-type"]) == (200, media_type)
+    kind = "attachment" if ending == "tga" else "inline"
+    assert frame.headers["content-disposition"] == f'{kind}; filename="culet-0.{ending}"'
+
+
+async def test_an_address_of_another_ending_is_not_found(gateway: Gateway) -> None:
+    assert_problem(await gateway.http.get("/api/render.bmp"), 404)
 
 
 async def test_every_preset_is_a_scene_that_renders(gateway: Gateway) -> None:
@@ -271,7 +305,8 @@ async def test_the_description_says_of_what_kind_every_picture_is(gateway: Gatew
     session = "/api/sessions/{session_id}/frame"
     for operation, kinds in (
         (paths["/api/render.tga"]["get"], {"image/x-tga"}),
-        (paths["/api/render"]["post"], {"image/x-tga", "image/png", "image/jpeg", "image/x-exr"}),
+        (paths["/api/render.webp"]["get"], {"image/webp"}),
+        (paths["/api/render"]["post"], {"image/x-tga", "image/png", "image/jpeg", "image/webp", "image/x-exr"}),
         (paths[f"{session}.tga"]["get"], {"image/x-tga"}),
         (paths[f"{session}.png"]["get"], {"image/png"}),
     ):

@@ -33,10 +33,9 @@ log = logging.getLogger(__name__)
 
 PARTS = (stills, session_routes, catalogue, upload_routes, health)
 DOCS_FOLDER = Path(__file__).with_name("docs")
-NOT_BUILT = """<!doctype html><meta charset="utf-8"><title>culet</title>
-<h1>culet runs, but its page is not built</h1>
-<p>Build the web client with <code>npm install &amp;&amp; npm run build</code> in <code>client/web</code>, then reload.
-Meanwhile there is a picture at <a href="/api/render.tga">/api/render.tga</a>, and the <a href="/docs">API</a>."""
+NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
+<h1>culet runs without its page</h1>
+<p>The <a href="/docs">REST interface</a> is here, for instance <a href="/api/render.png">a picture</a>."""
 
 
 def create_app(settings: GatewaySettings) -> FastAPI:
@@ -65,8 +64,8 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     else:
 
         @app.get("/", include_in_schema=False)
-        async def not_built() -> HTMLResponse:
-            return HTMLResponse(NOT_BUILT, 503)
+        async def no_page() -> HTMLResponse:
+            return HTMLResponse(NO_PAGE, 404)
 
     # The last one is the first that a request meets.
     app.add_middleware(Methods, routes=[*app.routes, *(route for part in PARTS for route in part.router.routes)])

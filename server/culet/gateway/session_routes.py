@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 from fastapi import APIRouter, Body, Query, Request, Response, WebSocket
 from pydantic import Field, model_validator
@@ -15,10 +15,10 @@ from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers, check_numbers, finite
 from culet.gateway.sessions import Session
 from culet.gateway.state import Gateway
-from culet.gateway.stills import MEDIA_TYPES, Height, PngResponse, TargaResponse, Width
+from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Height, Width, response_class_of
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
-from culet_protocol.engine import Render
+from culet_protocol.engine import Format, Render
 from culet_protocol.messages import PatchScene, SessionEvent
 
 router = APIRouter(tags=["sessions"])
@@ -151,20 +151,28 @@ async def delete_session(session_id: str, gateway: ThisGateway) -> None:
 FRAME = "/api/sessions/{session_id}/frame"
 
 
-@router.get(f"{FRAME}.tga", response_class=TargaResponse, responses=answers(404, 422, 429, 503))
-async def frame_tga(
-    http: Request, session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway
-) -> Response:
-    """What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a pixel."""
-    return await _frame(http, session_id, query, gateway, "tga")
+def _offer_frame(ending: str, file_format: Format) -> None:
+    """Make GET .../frame.ENDING a route."""
+
+    async def frame(
+        http: Request, session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway
+    ) -> Response:
+        return await _frame(http, session_id, query, gateway, ending, file_format)
+
+    router.add_api_route(
+        f"{FRAME}.{ending}",
+        frame,
+        methods=["GET"],
+        summary=f"Frame as {ending.upper()}",
+        description="What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a "
+        "pixel.",
+        response_class=response_class_of(file_format),
+        responses=answers(404, 422, 429, 503),
+    )
 
 
-@router.get(f"{FRAME}.png", response_class=PngResponse, responses=answers(404, 422, 429, 503))
-async def frame_png(
-    http: Request, session_id: str, query: Annotated[FrameQuery, Query()], gateway: ThisGateway
-) -> Response:
-    """The same picture as a PNG, which a browser shows."""
-    return await _frame(http, session_id, query, gateway, "png")
+for _ending, _format in ENDINGS.items():
+    _offer_frame(_ending, _format)
 
 
 @router.websocket("/api/sessions/{session_id}/stream")
@@ -174,7 +182,7 @@ async def stream(websocket: WebSocket, session_id: str, gateway: ThisGateway) ->
 
 
 async def _frame(
-    http: Request, session_id: str, query: FrameQuery, gateway: Gateway, file_format: Literal["tga", "png"]
+    http: Request, session_id: str, query: FrameQuery, gateway: Gateway, ending: str, file_format: Format
 ) -> Response:
     session = gateway.sessions.get(session_id)
     session.watched = True
@@ -189,8 +197,8 @@ async def _frame(
     )
     with gateway.stills.place(client):
         result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
-    kind = "attachment" if file_format == "tga" else "inline"  # no browser shows a TGA
-    disposition = f'{kind}; filename="culet-{result["step"]}.{file_format}"'
+    kind = "attachment" if file_format in {"tga", "exr"} else "inline"  # which no browser shows
+    disposition = f'{kind}; filename="culet-{result["step"]}.{ending}"'
     return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,8 +14,12 @@ from culet.errors import InputError
 from culet.gateway.origins import Hosts, read_origin
 from culet.settings import MEBIBYTE, Settings, Words
 
-BUILT_CLIENT = Path(__file__).parents[3] / "client" / "web" / "dist"
-"""Where the web client's build lies in a checkout."""
+log = logging.getLogger(__name__)
+
+_IN_WHEEL = Path(__file__).parents[1] / "page"
+_IN_CHECKOUT = Path(__file__).parents[3] / "client" / "web" / "dist"
+BUILT_CLIENT = _IN_WHEEL if _IN_WHEEL.is_dir() else _IN_CHECKOUT
+"""Where the web client's build lies."""
 
 
 class GatewaySettings(Settings):
@@ -142,9 +147,15 @@ class GatewaySettings(Settings):
 
 
 def settings_of(given: Mapping[str, Any], control: str, frames: str) -> GatewaySettings:
-    """The gateway's settings; InputError for one that cannot be used, or a folder that holds no built page."""
+    """The gateway's settings; InputError for one that cannot be used, or a named folder that holds no built page."""
     settings = GatewaySettings.read(given, control=control, frames=frames)
     page = settings.web / "index.html"
     if "web" in settings.model_fields_set and not page.is_file():
         raise InputError(f"web: expected the folder of a built web client; there is no {page}", "web")
+    if not page.is_file():
+        log.warning(
+            "there is no page to serve, only the REST interface: expected %s; build it by `make serve` or `make "
+            "wheel`, or name its folder by --web",
+            page,
+        )
     return settings

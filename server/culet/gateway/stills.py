@@ -1,4 +1,4 @@
-"""GET /api/render.tga and POST /api/render: one picture for one answer."""
+"""GET /api/render.png and its like, and POST /api/render: one picture for one answer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,15 @@ from culet_protocol.engine import Format, Render
 
 router = APIRouter(tags=["pictures"])
 
-MEDIA_TYPES: dict[Format, str] = {"tga": "image/x-tga", "png": "image/png", "jpeg": "image/jpeg", "exr": "image/x-exr"}
+MEDIA_TYPES: dict[Format, str] = {
+    "tga": "image/x-tga",
+    "png": "image/png",
+    "jpeg": "image/jpeg",
+    "webp": "image/webp",
+    "exr": "image/x-exr",
+}
+ENDINGS: dict[str, Format] = {"png": "png", "jpg": "jpeg", "webp": "webp", "tga": "tga", "exr": "exr"}
+"""Of the addresses that answer with a picture of that format."""
 DEFAULT_WIDTH, DEFAULT_HEIGHT = 640, 360
 
 Width = Annotated[int, Field(ge=1, le=8192, description="Pixels; width x height is at most 33.5 million.")]
@@ -70,22 +78,30 @@ class StillRequest(Model):
     }
 
 
-class TargaResponse(Response):
-    """For OpenAPI: bytes of a TGA."""
-
-    media_type = MEDIA_TYPES["tga"]
-
-
-class PngResponse(Response):
-    """For OpenAPI: bytes of a PNG."""
-
-    media_type = MEDIA_TYPES["png"]
+def response_class_of(file_format: Format) -> type[Response]:
+    """For OpenAPI: a response that holds a picture of that format."""
+    return type(f"{file_format.capitalize()}Response", (Response,), {"media_type": MEDIA_TYPES[file_format]})
 
 
-@router.get("/api/render.tga", response_class=TargaResponse, responses=answers(404, 422, 429, 503))
-async def render_tga(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
-    """Render a preset as a 24-bit TGA."""
-    return await _picture(http, gateway, query.scene(), query.width, query.height, "tga")
+def _offer(ending: str, file_format: Format) -> None:
+    """Make GET /api/render.ENDING a route."""
+
+    async def render_preset(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
+        return await _picture(http, gateway, query.scene(), query.width, query.height, file_format)
+
+    router.add_api_route(
+        f"/api/render.{ending}",
+        render_preset,
+        methods=["GET"],
+        summary=f"Render Preset as {ending.upper()}",
+        description="A preset, rendered" + (" as linear radiance." if file_format == "exr" else "."),
+        response_class=response_class_of(file_format),
+        responses=answers(404, 422, 429, 503),
+    )
+
+
+for _ending, _format in ENDINGS.items():
+    _offer(_ending, _format)
 
 
 @router.post(

@@ -109,7 +109,7 @@ def _bytes(number: object) -> int:
     return number
 
 
-def _at(document: dict[str, Any], kind: str, index: int) -> dict[str, Any]:
+def _at(document: dict[str, Any], kind: str, index: object) -> dict[str, Any]:
     """An entry of one of the document's lists."""
     entries = document.get(kind, [])
     if not isinstance(index, int) or not 0 <= index < len(entries):
