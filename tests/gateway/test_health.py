@@ -43,6 +43,15 @@ async def test_the_documentation_lists_every_route_and_loads_nothing_from_elsewh
         assert path in paths
 
 
+async def test_the_documentation_requires_the_field_that_tells_forms_apart(gateway: Gateway) -> None:
+    schemas = (await gateway.http.get("/openapi.json")).json()["components"]["schemas"]
+    for name, field in (("Orbit", "type"), ("ToggleFall", "type"), ("StudioEnvironment", "kind")):
+        assert field in schemas[name]["required"]
+    session = await gateway.session()
+    without = await gateway.http.post(f"/api/sessions/{session}/events", json={"yaw": 1, "pitch": 0})
+    assert without.status_code == 422
+
+
 async def test_every_example_in_the_documentation_runs(gateway: Gateway) -> None:
     document = (await gateway.http.get("/openapi.json")).json()
     session, ran = await gateway.session(), 0

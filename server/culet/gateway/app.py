@@ -22,6 +22,7 @@ from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
 from culet.gateway.methods import Methods
 from culet.gateway.metrics import Metrics
+from culet.gateway.openapi import Application
 from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
@@ -40,7 +41,7 @@ NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
 
 def create_app(settings: GatewaySettings) -> FastAPI:
     """The application; it connects to the engine when it starts up. `app.state.gateway` holds its parts."""
-    app = FastAPI(
+    app = Application(
         title="culet",
         version=__version__,
         summary="Dispersive gemstones, traced exactly and streamed to thin clients.",

@@ -33,8 +33,8 @@ LOOK_SECONDS = 0.5
 PROGRESS_SECONDS = 10.0
 """A body must have made its progress within each span of so long."""
 UNREAD_SECONDS = 60.0
-"""The same for the reading of an answer. A kernel whose buffer was full tells of room only when a sixteenth of it, up to
-400 kB, is free again: at 10 kB/s, after 40 s."""
+"""The same for the reading of an answer. A kernel whose buffer was full tells of room only when a sixteenth of it is
+free again, up to 400 kB: at 10 kB/s, after 40 s."""
 LINGER_SECONDS = 5.0
 """After an answer that did not wait for the whole body: for the rest of the body, so that the answer is read."""
 RESERVED_FILES = 288
