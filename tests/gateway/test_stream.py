@@ -6,7 +6,7 @@ import asyncio
 import json
 import time
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pytest
 from fastapi import WebSocket
@@ -16,6 +16,7 @@ from websockets.typing import Subprotocol
 
 from culet.gateway import stream as streaming
 from culet.gateway.credit import WINDOW
+from culet.gateway.sessions import EVENTS_UNDER_WAY
 from culet.gateway.stream import MAX_CONTROL_BYTES
 from culet.scene import Scene
 from culet_protocol.close import CloseCode
@@ -288,7 +289,7 @@ class StuckWebSocket:
             await asyncio.Event().wait()
         self.sent.append(text)
 
-    async def receive(self) -> None:
+    async def receive(self) -> Any:  # noqa: ANN401 - as starlette's
         await asyncio.Event().wait()
 
     async def close(self, code: int, reason: str) -> None:
@@ -305,6 +306,32 @@ async def test_a_viewer_that_reads_nothing_is_given_up_even_if_it_cannot_be_told
         await streaming.stream(cast(WebSocket, websocket), gateway.parts, session)
     assert websocket.closes == [(CloseCode.TOO_SLOW, "this viewer does not read what it is sent")]
     assert gateway.parts.sessions.viewers == 0
+
+
+class VanishingWebSocket(StuckWebSocket):
+    """One whose other end sends so many events and is gone before any of them is answered."""
+
+    def __init__(self, events: int) -> None:
+        super().__init__()
+        self.events = events
+
+    async def receive(self) -> Any:  # noqa: ANN401 - as starlette's
+        self.events -= 1
+        if self.events < 0:
+            return {"type": "websocket.disconnect"}
+        return {"type": "websocket.receive", "text": Orbit(yaw=0.1, pitch=0).model_dump_json()}
+
+
+async def test_viewers_that_vanish_with_events_under_way_leave_room_for_those_of_others(gateway: Gateway) -> None:
+    session = await gateway.session()
+    for _ in range(5):
+        websocket = VanishingWebSocket(EVENTS_UNDER_WAY)
+        await streaming.stream(cast(WebSocket, websocket), gateway.parts, session)
+    async with gateway.viewer(session) as viewer:
+        first = await viewer.frame()
+        for _ in range(2 * EVENTS_UNDER_WAY):
+            await viewer.say(Orbit(yaw=0.1, pitch=0))
+        await viewer.until(lambda: viewer.frames[-1].step >= first.step + 2 * EVENTS_UNDER_WAY)
 
 
 async def test_a_viewer_that_vanishes_in_mid_frame_leaves_the_others_alone(gateway: Gateway) -> None:

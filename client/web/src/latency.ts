@@ -3,7 +3,7 @@
 import type { Ping, Pong } from "@culet/protocol/messages";
 
 export class Latency {
-  /** Pings since the last pong. */
+  /** Pings since anything was last heard: on a slow line a pong comes behind the pictures that were sent before it. */
   unanswered = 0;
   /** Milliseconds of the last round trip. */
   milliseconds: number | null = null;
@@ -13,8 +13,11 @@ export class Latency {
     return { type: "ping", time: now };
   }
 
-  pong(pong: Pong, now: number): void {
+  heard(): void {
     this.unanswered = 0;
+  }
+
+  pong(pong: Pong, now: number): void {
     this.milliseconds = Math.max(0, now - pong.time);
   }
 

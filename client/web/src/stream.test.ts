@@ -150,6 +150,18 @@ describe("pings", () => {
   });
 });
 
+describe("a slow line", () => {
+  it("is kept while anything comes of it, though pongs are late", () => {
+    const socket = open();
+    for (let frame = 0; frame < 10; frame += 1) {
+      vi.advanceTimersByTime(PING_MS * (LOST_PINGS - 2));
+      socket.say(bytes("jpeg.bin"));
+    }
+    expect(stream.connection.status).toBe("open");
+    expect(FakeSocket.opened).toHaveLength(1);
+  });
+});
+
 it("closes for good when the page says so", () => {
   const socket = open();
   stream.close(4404, "no such session");

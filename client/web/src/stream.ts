@@ -30,7 +30,7 @@ export function pauseBefore(tries: number): number {
 }
 
 export const PING_MS = 1000;
-/** A connection that leaves so many pings unanswered is dead, whatever the operating system thinks. */
+/** A connection that brings nothing during so many pings is dead, whatever the operating system thinks. */
 export const LOST_PINGS = 8;
 
 export class Stream {
@@ -108,6 +108,7 @@ export class Stream {
   }
 
   private received(data: unknown): void {
+    this.latency.heard();
     try {
       if (data instanceof ArrayBuffer) this.listener.frame(parseFrame(data));
       else this.heard(parseNotice(String(data)));

@@ -25,6 +25,8 @@ GRACEFUL_SHUTDOWN_SECONDS = 3
 """For answers under way at SIGTERM; containers are killed after 10 s."""
 MAX_WEBSOCKET_MESSAGE = MEBIBYTE
 """uvicorn closes the socket above this; below it, and above the control limit, the viewer gets a notice."""
+PONG_SECONDS = 40.0
+"""For the answer to a ping, which on a slow line comes behind two frames: 600 kB each at 30 kB/s."""
 ACCEPTED_AT_ONCE = 64
 """Connections that are accepted before those that make room for them are closed."""
 ALIVE_SECONDS = 1.0
@@ -55,6 +57,7 @@ class Listener:
                 log_level="error",
                 access_log=False,  # the gateway has its own
                 ws_max_size=MAX_WEBSOCKET_MESSAGE,
+                ws_ping_timeout=PONG_SECONDS,
                 ws_per_message_deflate=False,  # frames are compressed already
                 forwarded_allow_ips=trusted_hosts(proxies),
                 server_header=False,

@@ -198,6 +198,9 @@ class Sessions:
                 to_engine.OpenSession(session=session.id, scene=scene, snapshot=snapshot, client=client)
             )
             session.learn(opened)
+            if session.id not in self._sessions:
+                await self.close(session)
+                raise BusyError("others needed the room of this session before it was open; try again")
         except BaseException:
             self._sessions.pop(session.id, None)
             raise

@@ -10,7 +10,6 @@ import asyncio
 import contextlib
 import logging
 import time
-from collections.abc import Coroutine
 from typing import assert_never
 
 from fastapi import WebSocket, WebSocketDisconnect
@@ -199,7 +198,10 @@ class _Stream:
                 continue
             if isinstance(event, SessionEvent):
                 await self._session.room.acquire()
-                self._start(self._apply(event))
+                # Not awaited: events travel in order on the engine's socket without waiting for each other.
+                task = asyncio.create_task(self._apply(event))
+                self._under_way.add(task)
+                task.add_done_callback(self._done)
             else:
                 self._heed(event)
 
@@ -235,11 +237,10 @@ class _Stream:
             case _:
                 assert_never(event)
 
-    def _start(self, work: Coroutine[None, None, None]) -> None:
-        # Not awaited by the reader: events travel in order on the engine's socket without waiting for each other.
-        task = asyncio.create_task(work)
-        self._under_way.add(task)
-        task.add_done_callback(self._under_way.discard)
+    def _done(self, task: asyncio.Task[None]) -> None:
+        # Here and not in the task: one that is cancelled before it began runs no `finally`.
+        self._under_way.discard(task)
+        self._session.room.release()
 
     async def _apply(self, event: SessionEvent) -> None:
         try:
@@ -248,8 +249,6 @@ class _Stream:
             self._refuse("unusable_input", str(error), error.field)
         except CuletError as error:
             self._refuse(error.title.replace(" ", "_"), str(error))
-        finally:
-            self._session.room.release()
 
     def _refuse(self, code: str, message: str, field: str | None = None) -> None:
         self._viewer.tell(Problem(code=code, message=message, field=field))
