@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import random
+import re
 import time
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from culet.gateway.bucket import BURST_SECONDS
 from culet.gateway.link import EngineLink
 from culet.gateway.sessions import TICK_SECONDS, Session, Sessions
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.stream import BYTES_PER_COST, MAX_CONTROL_BYTES
+from culet.gateway.stream import BYTES_PER_COST, EVENT_COST, MAX_CONTROL_BYTES
 from culet.gateway.uploads import Uploads
 from culet_protocol.engine import Demand
 from culet_protocol.messages import Message, Orbit, Ping, Resize
@@ -48,7 +49,8 @@ WAITED_SECONDS = 0.4
 async def test_a_viewers_messages_are_read_at_its_rate_whatever_they_say_and_none_is_lost(
     engine: Endpoints, tmp_path: Path, message: str | bytes
 ) -> None:
-    cost = 1 + min(len(message), MAX_CONTROL_BYTES) / BYTES_PER_COST
+    event = isinstance(message, str) and re.search("orbit|toggle_fall|patch_scene", message) is not None
+    cost = (EVENT_COST if event else 1) + min(len(message), MAX_CONTROL_BYTES) / BYTES_PER_COST
     number = int(RATE * (BURST_SECONDS + WAITED_SECONDS) / cost) + 2  # the last is read when those before are paid for
     async with gateway_before(engine, web=tmp_path, viewer_messages_per_second=RATE) as gateway:
         async with gateway.viewer(await gateway.session(), size=None) as rude:

@@ -40,8 +40,8 @@ SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
 RATE_CHANGE = 0.2
 """A demand that changes by a smaller part is not worth a message."""
-DEMAND_SECONDS = 0.05
-"""Between two demands of a session: each size is another picture, and a window is not dragged faster than one sees."""
+DEMAND_SECONDS = 0.25
+"""Between two demands of a session: each size is another picture, begun anew."""
 UNTOLD = (-1.0, *DEFAULT_SIZE)
 """A demand unlike any, for an engine that may not have heard the last one."""
 EVENTS_UNDER_WAY = 8
@@ -199,7 +199,7 @@ class Sessions:
             )
             session.learn(opened)
             if session.id not in self._sessions:
-                await self.close(session)
+                await self.close(session, "others needed room")
                 raise BusyError("others needed the room of this session before it was open; try again")
         except BaseException:
             self._sessions.pop(session.id, None)
@@ -437,7 +437,8 @@ class Sessions:
         for described in answer["sessions"]:
             session = Session(described["session"], described["scene"], described["client"] or UNKNOWN)
             session.learn(described)
-            session.watched = True  # or so it may have been
+            session.watched = True  # or so it may have been, and its page may be about to come back
+            session.viewer_left = time.monotonic()
             self._sessions.setdefault(session.id, session)
         if answer["sessions"]:
             log.info("took over %d sessions", len(answer["sessions"]))

@@ -83,8 +83,8 @@ class GatewaySettings(Settings):
     viewer_messages_per_second: float = Field(
         300,
         gt=0,
-        description="Messages that one viewer may send, of up to 1 KiB each; more wait in its connection. "
-        "Twice as many may come at once.",
+        description="Messages that one viewer may send, of up to 1 KiB each; what changes the session counts as 2.5. "
+        "More wait in its connection; twice as many may come at once.",
     )
     client_messages_per_second: float = Field(
         1200,

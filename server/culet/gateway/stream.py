@@ -49,6 +49,10 @@ given up may leave half a frame, so the stream is closed."""
 BYTES_PER_COST = 1024
 """So many bytes of a message cost as much as a message: both are what reading one takes, some 30 us."""
 
+EVENT_COST = 2.5
+"""Messages that an event of the session costs its viewer: the engine works for it too. 120 a second are one for each
+picture of the fastest common screens."""
+
 
 async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> None:
     """Serve one viewer until it leaves."""
@@ -197,6 +201,7 @@ class _Stream:
                 self._refuse("unusable_input", str(error), error.field)
                 continue
             if isinstance(event, SessionEvent):
+                self._messages.spend(EVENT_COST - 1, time.monotonic())
                 await self._session.room.acquire()
                 # Not awaited: events travel in order on the engine's socket without waiting for each other.
                 task = asyncio.create_task(self._apply(event))
