@@ -121,6 +121,10 @@ class Peer:
         """The engine's counters."""
         return await self.result(type="status")
 
+    async def status_of_session(self) -> dict[str, Any]:
+        """What there is to know of the session opened last."""
+        return await self.result(type="get_session", session=self.session)
+
     async def told(self, wanted: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         """The first message told unasked that fits, now or later."""
         async with asyncio.timeout(PATIENCE), self._told:

@@ -7,9 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from culet.errors import InputError
 from culet.rendering.device import remedy
+from culet.rendering.renderer import Renderer
+from culet.scene import Scene
 
 CACHES = [
     ({"XDG_CACHE_HOME": "/proc/none"}, "/proc/none/pocl/kcache"),
@@ -72,3 +76,30 @@ def test_a_device_that_is_not_there_is_named() -> None:
     found = complaint(CULET_DEVICE="abacus")
     assert found is not None
     assert "none matches CULET_DEVICE='abacus'" in found
+
+
+def test_a_sky_that_nobody_can_write_to_is_read_where_it_is(renderer: Renderer) -> None:
+    """Of the device that is the processor; another array is copied, so that a picture shows what it was begun with."""
+    device = renderer.device
+    fixed, free = (np.full((4, 8, 3), 0.5, np.float32) for _ in range(2))
+    fixed.flags.writeable = False
+    before = device.panorama_bytes()
+    device.panorama(fixed)
+    assert device.panorama_bytes() - before == (0 if device.shares_memory else fixed.nbytes)
+    device.panorama(free)
+    assert device.panorama_bytes() - before >= free.nbytes
+    for pixels in (fixed, free):
+        assert device.panorama(pixels) is device.panorama(pixels)
+        device.forget(pixels)
+    assert device.panorama_bytes() == before
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -0.5])
+def test_a_panorama_that_no_file_may_have_is_refused_as_from_a_file(renderer: Renderer, value: float) -> None:
+    pixels = np.full((4, 8, 3), 0.5, np.float32)
+    pixels[1, 2, 0] = value
+    scene = Scene.read({"environment": {"kind": "image", "image": "mine"}})
+    with pytest.raises(InputError, match="panorama: expected radiance that is finite and not below 0"):
+        renderer.picture(scene, None, 8, 8, panorama=pixels)
+    with pytest.raises(InputError, match=r"panorama: expected an array of \(height, width, 3\), got \(4, 8\)"):
+        renderer.picture(scene, None, 8, 8, panorama=pixels[..., 0])

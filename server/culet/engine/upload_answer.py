@@ -132,7 +132,7 @@ class Answer:
         }  # fmt: skip
         self._finish(
             MeshHeader(
-                name=stone.name, convex=bool(stone.convex), volume=float(stone.mass.volume),
+                name=_utf_8([stone.name])[0], convex=bool(stone.convex), volume=float(stone.mass.volume),
                 findings=_utf_8(stone.findings), **parts,
             )
         )  # fmt: skip

@@ -19,6 +19,8 @@ from culet.geometry.stone import Stone
 from culet.memory_file import memory_file
 from culet.rendering.sky_files.picture import SkyPicture
 
+PROGRAM = ("-m", NAME)
+"""What the process runs; isolated from the user's own packages and from the folder that it is started in."""
 ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
 """All that the process gets of one: nothing of the engine's."""
 COMPLAINT_BYTES = 4096
@@ -49,7 +51,7 @@ async def read_upload(
             max(BYTES_PER_PIXEL * limits.max_sky_pixels + 2**21, 2 * limits.max_upload_bytes),
         )  # fmt: skip
         process = await asyncio.create_subprocess_exec(
-            sys.executable, "-I", "-m", NAME, *order.words(),
+            sys.executable, "-I", *PROGRAM, *order.words(),
             stdin=asyncio.subprocess.PIPE, stdout=complaint, stderr=complaint, pass_fds=(answer,),
             env=ENVIRONMENT, cwd="/", start_new_session=True,
         )  # fmt: skip
@@ -75,8 +77,8 @@ async def read_upload(
 def _ended(kind: str, error: type[InputError], code: int, last: str, limits: Limits, room: Room) -> Exception:
     """Why a process ended without an answer."""
     if code == -signal.SIGXCPU or (code == -signal.SIGKILL and not last):
-        seconds = limits.read_processor_seconds
-        return error(f"the {kind} takes more than {seconds:g} s of processor time to be read", "file")
+        seconds = math.ceil(limits.read_processor_seconds)
+        return error(f"the {kind} takes more than {seconds} s of processor time to be read", "file")
     if "MemoryError" in last or "bad_alloc" in last or "llocate" in last:
         return _too_large(kind, error, room, 0)
     if code == -signal.SIGXFSZ:

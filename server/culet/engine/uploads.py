@@ -83,6 +83,8 @@ class UploadStore(Mapping[str, T]):
         self._in_use = in_use
         self._forgotten = forgotten
         self._kept: OrderedDict[str, _Kept[T]] = OrderedDict()
+        self._needed = LEAST_TO_READ
+        """What the last file took for which that was too little: the next one may be like it."""
         self._turn = asyncio.Lock()
         self._waiting = 0
         self._memory.count(kind.plural, lambda: sum(kind.size(kept.content) for kept in self._kept.values()))
@@ -136,13 +138,15 @@ class UploadStore(Mapping[str, T]):
             pass
         if len(self._kept) >= limits.max_uploads and name not in self._kept:
             raise BusyError(f"sessions show {len(self._kept)} uploads ({kind.name}), as many as are kept; close one")
-        room = self._room(int(self._memory.make_room(LEAST_TO_READ) * SHARE_TO_READ))
+        free = self._memory.make_room(self._needed)
+        room = self._room(max(self._needed, int(free * SHARE_TO_READ)))
         while True:
             try:
                 content = await self._read_within(room, file_type, data)
                 break
             except TooLittleMemoryError as error:
                 needed = error.needed or 2 * room.memory
+                self._needed = error.needed or self._needed
                 self._memory.make_room(needed)
                 more = self._room(min(needed, self._memory.free))
                 if more.memory < min(needed, limits.max_read_bytes):
@@ -151,6 +155,7 @@ class UploadStore(Mapping[str, T]):
                         f"{more.memory / 2**20:.0f} MiB are free; try again later"
                     ) from None
                 room = more
+        self._needed = min(self._needed, max(LEAST_TO_READ, 2 * kind.size(content)))
         self._kept[name] = _Kept(content, digest)
         self._kept.move_to_end(name)
         return content

@@ -67,7 +67,7 @@ def test_the_colour_that_is_transparent_lets_black_through(colour_type: int, key
     values[0, 0] = 3
     sky = read_sky(png(values, colour_type, 8, (b"tRNS", struct.pack(f">{len(key)}H", *key))), "png")
     assert (sky.pixels[0, 0] == 0).all()
-    assert sky.pixels[1, 1] == pytest.approx([float(linear(np.float64(200 / 255)))] * 3, abs=1e-6)
+    assert sky.pixels[1, 1] == pytest.approx(np.full(3, linear(np.array(200 / 255))), abs=1e-6)
 
 
 def test_gamma_is_applied_as_the_file_has_it() -> None:
