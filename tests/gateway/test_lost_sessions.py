@@ -131,7 +131,7 @@ async def test_a_snapshot_of_a_motion_that_no_stone_has_ends_nobody_elses(
         ({"snapshot": {}}, None),
         ({"id": "../etc", "scene": {}}, "id"),
         ({"id": UNKNOWN.upper(), "scene": {}}, "id"),
-        ({"id": UNKNOWN, "scene": {"floor": {"kind": "lava"}}}, "scene.floor.kind"),
+        ({"id": UNKNOWN, "scene": {"camera": {"fov_degrees": 500}}}, "scene.camera.fov_degrees"),
         ({"id": UNKNOWN, "scene": {"stones": [{"mesh": "ab" * 16}]}}, "stones.0.mesh"),
     ],
 )

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import itertools
 import logging
+import re
 import secrets
 import time
 from collections import Counter, OrderedDict
@@ -33,6 +34,7 @@ FAREWELL_SECONDS = 1.0
 """For streams to say why they end."""
 SETTLING_SECONDS = 8.0
 """A gateway that has just been started lets viewers wait for so long until it knows its sessions."""
+SESSION_ID = re.compile(r"[0-9a-f]{32}")
 DELETED = "the session was deleted"
 DELETED_KEPT = 4096
 """Ids of sessions that were deleted, which nobody can open again."""
@@ -156,15 +158,21 @@ class Sessions:
         """The session of that id, which thereby counts as used; NotFoundError, or EngineUnavailableError if this
         gateway has just been started and does not know yet."""
         found = self._sessions.get(session)
-        if found is None and not self.taken_over.is_set():
+        if found is None and not self._knows(session):
             raise EngineUnavailableError("the server has just been started; try again in a moment")
         if found is None:
             raise NotFoundError(f"no session {session[:64]!r}; it may have expired")
         found.used = time.monotonic()
         return found
 
-    async def settle(self) -> None:
-        """Wait until it is known which sessions there are, but not for long."""
+    def _knows(self, session: str) -> bool:
+        """Whether it is known if there is such a session."""
+        return session in self._sessions or self.taken_over.is_set() or SESSION_ID.fullmatch(session) is None
+
+    async def settle(self, session: str) -> None:
+        """Wait until it is known whether there is such a session, but not for long."""
+        if self._knows(session):
+            return
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(SETTLING_SECONDS):
                 await self.taken_over.wait()

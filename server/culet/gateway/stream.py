@@ -71,7 +71,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     if offered and SUBPROTOCOL not in offered:
         await websocket.close(CloseCode.PROTOCOL_ERROR, f"this server speaks {SUBPROTOCOL}; reload the page")
         return
-    await gateway.sessions.settle()
+    await gateway.sessions.settle(session_id)
     try:
         session = gateway.sessions.get(session_id)
         viewer = gateway.sessions.join(session, client)
