@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from culet.gateway.allowance import FREE
 from culet.gateway.bucket import BURST_SECONDS
 from culet.gateway.link import EngineLink
 from culet.gateway.sessions import TICK_SECONDS, Session, Sessions
@@ -145,6 +146,14 @@ async def test_requests_over_a_clients_share_are_told_when_to_come_again_and_oth
             assert 1 <= int(refused[-1].headers["retry-after"]) <= 2
         assert (await gateway.http.patch(path, json={"film": {"exposure": 1}}, headers=other)).status_code == 200
         assert (await gateway.http.get("/healthz", headers=greedy)).status_code == 200
+
+
+async def test_the_interfaces_description_says_of_every_path_that_one_can_ask_too_often(gateway: Gateway) -> None:
+    paths = (await gateway.http.get("/openapi.json")).json()["paths"]
+    silent = {
+        path for path, methods in paths.items() for method in methods.values() if "429" not in method["responses"]
+    }
+    assert silent <= FREE
 
 
 async def test_of_viewers_that_come_and_go_others_are_told_a_few_times_a_second_and_the_last_count(

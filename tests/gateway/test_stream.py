@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import time
 from pathlib import Path
 from typing import Any, cast
 
@@ -88,15 +87,11 @@ async def test_a_viewer_that_never_acknowledges_gets_its_window_and_delays_nobod
     session = await gateway.session({"simulation": {"restitution": 1, "tangential_damping": 1, "angular_damping": 1}})
     async with gateway.viewer(session) as stuck, gateway.viewer(session) as lively:
         stuck.acknowledges = False
-        began = time.monotonic()
         await lively.say(ToggleFall())
         await lively.until(lambda: len(lively.frames) >= 30)
-        took = time.monotonic() - began
         await stuck.say(Ping(time=1))
         await stuck.notice("pong")
-    returned = WINDOW * int(took / 2.0)  # a credit comes back after 2 s without an acknowledgement
-    assert WINDOW <= len(stuck.frames) <= WINDOW + returned
-    assert len(lively.frames) >= 30
+    assert len(stuck.frames) == WINDOW
 
 
 async def test_nobody_watching_means_nothing_rendered(gateway: Gateway) -> None:

@@ -52,7 +52,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     app.state.gateway = _gateway(settings)
     problems.install(app)
     for part in PARTS:
-        app.include_router(part.router)
+        app.include_router(part.router, responses={} if part is health else problems.answers(429))
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> FileResponse:
