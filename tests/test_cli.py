@@ -168,6 +168,22 @@ def test_a_sky_of_odd_proportions_is_used_and_said_so(tmp_path: Path) -> None:
     assert run.stderr.startswith(f"{sky}: 16 x 9 pixels are stretched over all directions")
 
 
+def test_what_a_skys_file_says_of_its_numbers_is_told(tmp_path: Path) -> None:
+    sky = tmp_path / "sky.hdr"
+    sky.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 4 +X 8\n" + bytes([200, 150, 100, 128]) * 32)
+    run = invoke("render", "-o", tmp_path / "gem.png", *TINY, "--sky", sky)
+    assert run.returncode == 0, run.stderr
+    assert run.stderr.startswith(f"{sky}: EXPOSURE says that the picture's radiance was multiplied by 2;")
+
+
+def test_a_damaged_sky_is_refused_in_one_line_whatever_its_decoder_prints(tmp_path: Path) -> None:
+    sky = tmp_path / "sky.png"
+    Image.effect_noise((64, 32), 50).save(sky)
+    sky.write_bytes(sky.read_bytes()[:1000])
+    line = refused(culet("render", "-o", str(tmp_path / "gem.png"), "--sky", str(sky)))
+    assert line.startswith(f"culet: {sky}: the .png picture is damaged or cut off")
+
+
 def test_a_benchmark_that_could_not_be_kept_is_not_begun(tmp_path: Path) -> None:
     assert "cannot write" in refused(invoke("bench", "-o", tmp_path / "missing" / "bench.jsonl"))
 

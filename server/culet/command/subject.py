@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import typer
 
+from culet.command.terminal import libraries_silenced
 from culet.errors import InputError, MeshError, SceneError
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
         data = file.read_bytes()
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}", "sky") from error
-    with _naming(file):
+    with _naming(file), libraries_silenced():
         picture = read_sky(data, file.suffix.lower().lstrip("."))
     _report(file, picture.findings)
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")

@@ -208,6 +208,9 @@ class Requests:
         return described(live) | {"client": self._clients.get(live.session.name)}
 
     def _make_room(self) -> None:
+        """For one more session; BusyError."""
+        with self._memory.reserved("sessions", SESSION_BYTES, "a session"):
+            pass
         pictures, now = self._painter.pictures, time.monotonic()
         if len(pictures) < self._limits.max_sessions:
             return

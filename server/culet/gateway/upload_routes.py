@@ -62,8 +62,8 @@ async def upload_mesh(request: Request, gateway: ThisGateway) -> MeshAnswer:
 
 @router.post(SKIES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
 async def upload_sky(request: Request, gateway: ThisGateway) -> SkyAnswer:
-    """Upload an equirectangular picture of a sky as the form field `file`: .exr or .hdr (linear) or .png (sRGB). The
-    answer says what was found in it."""
+    """Upload an equirectangular picture of a sky as the form field `file`: .exr or .hdr (linear) or .png (sRGB, unless
+    it says otherwise). The answer says what was found in it."""
     name, described = await _taken(SKY, request, gateway)
     return SkyAnswer(id=name, description=DescribedSky.model_validate(described))
 
