@@ -160,6 +160,41 @@ async def test_what_is_being_answered_is_not_ended_for_others(monkeypatch: pytes
         assert [(await peer.rest())[:13] for peer in waiting] == [b"HTTP/1.1 404 "] * 8
 
 
+async def test_behind_a_trusted_proxy_the_address_that_it_forwards_is_the_one_that_counts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    finished, begun = asyncio.Event(), 0
+
+    async def work(*_: object) -> None:
+        nonlocal begun
+        begun += 1
+        await finished.wait()
+        raise NotFoundError("nothing")
+
+    async def all_begun() -> bool:
+        return begun == 8
+
+    def request(forwarded: str) -> bytes:
+        fields = f"Host: localhost\r\nConnection: close\r\nX-Forwarded-For: 198.51.100.7, {forwarded}"
+        return f"GET /api/sessions/x HTTP/1.1\r\n{fields}\r\n\r\n".encode()
+
+    monkeypatch.setattr(Sessions, "get", lambda *_: None)
+    monkeypatch.setattr(Sessions, "describe", work)
+    async with (
+        gateway_alone(max_connections_per_address=8, trusted_proxy=("127.0.0.1",)) as gateway,
+        peers(gateway, HALF_A_HEAD, 20) as half,
+        peers(gateway, request("203.0.113.1"), 8) as waiting,
+    ):
+        await eventually(all_begun)
+        async with peers(gateway, request("203.0.113.1")) as (ninth,):
+            assert (await ninth.rest()).startswith(b"HTTP/1.1 429 ")
+        finished.set()
+        async with peers(gateway, request("203.0.113.2")) as (other,):
+            assert (await other.rest()).startswith(b"HTTP/1.1 404 ")
+        assert [(await peer.rest())[:13] for peer in waiting] == [b"HTTP/1.1 404 "] * 8
+        assert all(peer.open for peer in half), "the proxy itself is no client"
+
+
 @contextlib.contextmanager
 def open_files(soft: int) -> Iterator[None]:
     """With another limit."""

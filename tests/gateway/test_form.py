@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import hashlib
 import time
+import tracemalloc
 from collections.abc import AsyncIterator
 
 import pytest
@@ -73,6 +75,26 @@ async def test_a_file_of_the_limit_is_taken_and_a_byte_more_is_not() -> None:
     assert len((await read(form("a", b"x" * 100), limit=100)).data) == 100
     with pytest.raises(TooLargeError, match="at most 100 bytes, got more"):
         await read(form("a", b"x" * 101), limit=100)
+
+
+async def test_nothing_of_a_form_that_was_broken_off_is_kept() -> None:
+    """A collection of garbage may be long in coming."""
+
+    async def broken_off() -> AsyncIterator[bytes]:
+        yield form("a.obj", b"x" * (8 * MEBIBYTE))[:-100]
+        raise ConnectionResetError
+
+    gc.collect()
+    gc.disable()
+    tracemalloc.start()
+    try:
+        with pytest.raises(ConnectionResetError):
+            await read_form(broken_off(), TYPE, 9 * MEBIBYTE)
+        assert tracemalloc.get_traced_memory()[0] < MEBIBYTE
+        assert tracemalloc.get_traced_memory()[1] > 8 * MEBIBYTE
+    finally:
+        tracemalloc.stop()
+        gc.enable()
 
 
 async def test_reading_stops_as_soon_as_there_is_too_much() -> None:

@@ -49,13 +49,16 @@ async def read_form(chunks: AsyncIterable[bytes], content_type: str | None, limi
     """
     form, came = Form(content_type, limit), 0
     loop = asyncio.get_running_loop()
-    async for chunk in chunks:
-        came += len(chunk)
-        if came > limit + ENVELOPE_BYTES:
-            raise TooLargeError(f"file: expected at most {limit} bytes, got more", "file")
-        for at in range(0, len(chunk), CHUNK_BYTES):
-            await loop.run_in_executor(_THREAD, form.write, chunk[at : at + CHUNK_BYTES])
-    return form.file()
+    try:
+        async for chunk in chunks:
+            came += len(chunk)
+            if came > limit + ENVELOPE_BYTES:
+                raise TooLargeError(f"file: expected at most {limit} bytes, got more", "file")
+            for at in range(0, len(chunk), CHUNK_BYTES):
+                await loop.run_in_executor(_THREAD, form.write, chunk[at : at + CHUNK_BYTES])
+        return form.file()
+    finally:
+        form.forget()
 
 
 class Form:
@@ -109,6 +112,10 @@ class Form:
         if self._name is None:
             raise InputError("file: expected a form field named file with the upload in it", "file")
         return UploadedFile(self._name, self._data, self._digest.digest())
+
+    def forget(self) -> None:
+        """Let go of what was kept: the parser and this know each other, and would hold it until the next collection."""
+        self._data = bytearray()
 
     def _on_part_begin(self) -> None:
         self._parts += 1
