@@ -13,7 +13,7 @@ from concurrent.futures import Executor
 from culet.rendering import compiling
 from culet.service.notify import Notice, notify, notify_patience
 
-HANG_SECONDS = 15.0
+HANG_SECONDS = 20.0
 """Of standing still. Pieces of rendering take 0.1 s, on a loaded machine some more; shorter, and a machine that is busy
 with something else for a while would lose its engine, longer, and viewers wait."""
 COMPILER_SECONDS = 150.0
