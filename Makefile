@@ -14,9 +14,9 @@ WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix 
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
 # Kernels compiled for tests are kept here, apart from the user's own.
-test check-kernels validate soak: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
+test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak bench study compose-test opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak reliability bench study compose-test opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(WEB_BUILD)
@@ -63,8 +63,12 @@ validate: $(DONE)/validation opencl
 	$(BIN)/pytest -m "validation and not soak" $(ARGS) || [ $$? -eq 5 ]
 
 # What is long by nature, and bounded: load, chaos, whole searches. Not part of .ci/run.
-soak: $(DONE)/dev opencl
+soak: $(DONE)/soak opencl
 	$(BIN)/pytest -m soak $(ARGS)
+
+# Writes what the hostile trials find into the documentation.
+reliability: $(DONE)/soak opencl
+	PYTHONPATH=tests $(BIN)/python -m hostile.reliability --into docs/reliability.md $(ARGS)
 
 bench: opencl
 	$(BIN)/culet bench --against tests/benchmarks/baseline.jsonl $(ARGS)
@@ -86,6 +90,10 @@ $(DONE)/base: pyproject.toml | $(DONE)/venv
 
 $(DONE)/dev: pyproject.toml | $(DONE)/base
 	$(BIN)/pip install --quiet --editable '.[dev]'
+	@touch $@
+
+$(DONE)/soak: pyproject.toml | $(DONE)/dev
+	$(BIN)/pip install --quiet --editable '.[soak]'
 	@touch $@
 
 $(DONE)/study: pyproject.toml | $(DONE)/base

@@ -1,0 +1,132 @@
+"""Processes that die or hang, at once or at random, while people watch."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import shutil
+import signal
+import time
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from hostile.finding import Finding, Group, span
+from hostile.serving import FALLING, Serving
+from hostile.watching import watching
+
+QUIET = 3.0
+"""s between two deaths in a row."""
+HUNG = 25.0
+"""s after which a process that does nothing must have been replaced."""
+
+
+def described(serving: Serving, session: str) -> Any:  # noqa: ANN401 - JSON
+    """What the session is, but for what moves."""
+    answer = serving.http.get(f"/api/sessions/{session}")
+    assert answer.status_code == 200, answer.text
+    scene = answer.json()["scene"]
+    return {name: scene[name] for name in ("floor", "walls", "environment", "optics")}
+
+
+async def killed(serving: Serving, part: str, times: int, within: float) -> Finding:
+    """kill -9 of the engine or of the gateway, again and again, while a stone falls and one lies still."""
+    sessions = [serving.falling(), serving.session({"floor": {"kind": "matte"}, "walls": {"kind": "mirror"}})]
+    before = [described(serving, session) for session in sessions]
+    seconds: list[float] = []
+    async with watching(serving, sessions) as (watcher, _):
+        for _ in range(times):
+            process, moment = _process(serving, part), time.monotonic()
+            serving.kill(process)
+            seconds.append(await watcher.pause_after(moment))
+            await asyncio.sleep(QUIET)
+    serving.until_ready()
+    same = before == [described(serving, session) for session in sessions]
+    serving.forget(*sessions)
+    more = f"; then {span(seconds[1:], 's')}" if times > 1 else ""
+    return Finding(
+        Group.FAULTS,
+        f"kill -9 of the {part}, {times} time{'s' * (times > 1)} in a row",
+        f"viewers see nothing new for {seconds[0]:.1f} s{more}; scenes {'the same' if same else 'changed'}",
+        f"the first time within {within:g} s, all scenes the same",
+        seconds[0] <= within and same,
+    )
+
+
+async def hung(serving: Serving, part: str) -> Finding:
+    """A process that is stopped, and never goes on."""
+    session = serving.falling()
+    async with watching(serving, [session]) as (watcher,):
+        process = _process(serving, part)
+        moment = time.monotonic()
+        serving.kill(process, signal.SIGSTOP)
+        try:
+            took = await watcher.pause_after(moment)
+        finally:
+            serving.kill(process, signal.SIGCONT)
+    serving.forget(session)
+    return Finding(
+        Group.FAULTS,
+        f"the {part} hangs (SIGSTOP)",
+        f"replaced; frames again after {took:.1f} s",
+        f"within {HUNG:g} s",
+        took <= HUNG,
+    )
+
+
+async def cache_removed(serving: Serving, cache: Path) -> Finding:
+    """The folder of compiled kernels goes while the engine runs; then scenes that need new programs."""
+    shutil.rmtree(cache)
+    scenes = [{"environment": {"kind": kind}, "floor": {"kind": "matte"}} for kind in ("half", "gradient", "constant")]
+    statuses = []
+    for scene in scenes:
+        answer = await asyncio.to_thread(
+            serving.http.post, "/api/render", json={"scene": scene, "width": 64, "height": 36}
+        )
+        statuses.append(answer.status_code)
+    return Finding(
+        Group.FAULTS,
+        "the folder of compiled kernels is removed under way",
+        f"{len(scenes)} scenes that need new programs: {', '.join(map(str, statuses))}",
+        "200 for all",
+        statuses == [200] * len(scenes),
+    )
+
+
+async def chaos(serving: Serving, viewers: int, sessions: int, seconds: float, between: float, seed: int) -> Finding:
+    """Both processes are killed at random while many watch, and some steer."""
+    dice = random.Random(seed)  # noqa: S311 - which process dies when
+    opened = [serving.session({**FALLING, "walls": {"kind": "matte"}}) for _ in range(sessions)]
+    before = [described(serving, session) for session in opened]
+    deaths = {"engine": 0, "gateway": 0}
+    async with watching(serving, [opened[n % sessions] for n in range(viewers)]) as watchers:
+        for watcher in watchers[:sessions]:
+            await watcher.say({"type": "toggle_fall"})
+        ends = time.monotonic() + seconds
+        while time.monotonic() < ends:
+            await asyncio.sleep(dice.uniform(0.2, 1.8) * between)
+            part = dice.choice(list(deaths))
+            serving.kill(_process(serving, part))
+            deaths[part] += 1
+        last = time.monotonic()
+        back = [await watcher.pause_after(last) for watcher in watchers]
+        gaps = [watcher.longest_gap(ends - seconds, time.monotonic()) for watcher in watchers]
+        backwards = sum(after < first for watcher in watchers for (_, first), (_, after) in pairwise(watcher.seen))
+    serving.until_ready()
+    same = before == [described(serving, session) for session in opened]
+    serving.forget(*opened)
+    return Finding(
+        Group.FAULTS,
+        f"{seconds / 60:.3g} minutes of chaos: engine killed {deaths['engine']} times, gateway {deaths['gateway']} "
+        f"times, at random, {viewers} viewers of {sessions} sessions",
+        f"all {viewers} see frames again, after {span(back, 's')} the last time; longest pause of all {max(gaps):.1f} "
+        f"s; {backwards} frame numbers went back; scenes {'the same' if same else 'changed'}",
+        "all see frames again, no number goes back, all scenes the same, the server lives",
+        serving.alive and same and backwards == 0,
+    )
+
+
+def _process(serving: Serving, part: str) -> psutil.Process:
+    return serving.engine if part == "engine" else serving.gateway

@@ -1,0 +1,231 @@
+"""What honest viewers keep while somebody else takes all that can be had."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import socket
+import sys
+import time
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import AbstractAsyncContextManager
+from pathlib import Path
+from typing import Any
+
+import httpx
+from websockets.asyncio.client import connect
+from websockets.typing import Subprotocol
+
+from culet_protocol import SUBPROTOCOL
+from hostile.finding import Finding, Group, span
+from hostile.serving import FALLING, PATIENCE, Serving
+from hostile.watching import watching
+
+TESTS = str(Path(__file__).parents[1])
+SETTLING = 1.0
+"""s in which a governor finds its size."""
+OTHER_ADDRESS = "127.0.0.2"
+"""Of loopback too: the next visitor, whose connections are counted apart."""
+
+DEAREST: Mapping[str, Any] = {
+    **FALLING,
+    "optics": {"bands": 64, "polarised": True, "cutoff": 1e-9, "max_bounces": 65536},
+    "walls": {"kind": "mirror"},
+    "floor": {"kind": "mirror"},
+    "stones": [{"material": {"ior": [10, 10, 10]}, "position": [0, 4, 0]}],
+}
+"""A scene that asks for everything: a frame of it takes minutes."""
+
+Attack = Callable[[Serving], AbstractAsyncContextManager[str]]
+"""Goes on until it is left; gives a word on what it has done."""
+
+
+async def viewers_of_one_session(serving: Serving, viewers: int, seconds: float) -> Finding:
+    """Many pages on one falling stone."""
+    session = serving.falling()
+    async with watching(serving, [session] * viewers) as watchers:
+        await asyncio.sleep(SETTLING)
+        began = time.monotonic()
+        await asyncio.sleep(seconds)
+        rates = [watcher.rate(began, time.monotonic()) for watcher in watchers]
+    serving.forget(session)
+    return Finding(
+        Group.LOAD,
+        f"{viewers} viewers of one falling stone, 320x180, {seconds:g} s",
+        f"{span(rates, 'frames/s each')}",
+        "the slowest gets at least 0.8 of the fastest",
+        min(rates) >= 0.8 * max(rates) > 0,
+    )
+
+
+async def falling_sessions(serving: Serving, sessions: int, seconds: float, size: tuple[int, int]) -> Finding:
+    """As many stones as sessions, all falling, each watched."""
+    opened = [serving.falling() for _ in range(sessions)]
+    async with watching(serving, opened, size) as watchers:
+        await asyncio.sleep(SETTLING)
+        began = time.monotonic()
+        await asyncio.sleep(seconds)
+        ended = time.monotonic()
+        rates = [watcher.rate(began, ended) for watcher in watchers]
+        gap = max(watcher.longest_gap(began, ended) for watcher in watchers)
+    serving.forget(*opened)
+    return Finding(
+        Group.LOAD,
+        f"{sessions} sessions with a falling stone, one viewer each, pages of {size[0]}x{size[1]}, {seconds:g} s",
+        f"{span(rates, 'frames/s each')}, longest pause {gap:.2f} s",
+        "the slowest gets at least 0.5 of the fastest",
+        min(rates) >= 0.5 * max(rates) > 0,
+    )
+
+
+async def beside(serving: Serving, name: str, attack: Attack, keeps: float, seconds: float) -> Finding:
+    """The rate of a viewer before, during and after an attack of another one."""
+    session = serving.falling()
+    async with watching(serving, [session]) as (watcher,):
+
+        async def measured() -> float:
+            await asyncio.sleep(SETTLING)
+            began = time.monotonic()
+            await asyncio.sleep(seconds)
+            return watcher.rate(began, time.monotonic())
+
+        before = await measured()
+        async with attack(serving) as done:
+            during = await measured()
+        after = await measured()
+    serving.forget(session)
+    share = during / ((before + after) / 2)
+    return Finding(
+        Group.SHARES,
+        f"{name}{done and f' ({done})'}",
+        f"another viewer keeps {100 * share:.0f} % of its rate ({during:.1f} of {(before + after) / 2:.1f} frames/s)",
+        f"at least {100 * keeps:.0f} %",
+        share >= keeps,
+    )
+
+
+@contextlib.asynccontextmanager
+async def dearest_scene(serving: Serving) -> AsyncIterator[str]:
+    """One session of the dearest scene, falling, pinned to its best, on the largest page."""
+    session = serving.session(DEAREST)
+    async with _steering(serving, session) as say:
+        await say({"type": "resize", "width": 2560, "height": 1440})
+        await say({"type": "balance", "exactness": 1, "pinned": True})
+        await say({"type": "toggle_fall"})
+        try:
+            yield ""
+        finally:
+            serving.forget(session)
+
+
+def flood_of(kind: str) -> Attack:
+    """One viewer of another session that sends as fast as it can, in a process of its own."""
+
+    @contextlib.asynccontextmanager
+    async def flood(serving: Serving) -> AsyncIterator[str]:
+        session = serving.session()
+        url = f"{serving.stream_url}/api/sessions/{session}/stream"
+        sender = await asyncio.create_subprocess_exec(
+            "nice", sys.executable, "-m", "hostile.flood", url, kind, env=os.environ | {"PYTHONPATH": TESTS}
+        )
+        try:
+            yield ""
+        finally:
+            sender.terminate()
+            await sender.wait()
+            serving.forget(session)
+
+    return flood
+
+
+resizes = flood_of("resize")
+orbits = flood_of("orbit")
+
+
+@contextlib.asynccontextmanager
+async def dearest_stills(serving: Serving) -> AsyncIterator[str]:
+    """Eight of the largest pictures with the most samples."""
+    still = {
+        "scene": {"sampling": {"samples_per_pixel": 65536}, "optics": {"bands": 64}},
+        "width": 8192,
+        "height": 4096,
+    }
+    async with httpx.AsyncClient(base_url=serving.url, timeout=PATIENCE) as http:
+        tasks = [asyncio.create_task(http.post("/api/render", json=still)) for _ in range(8)]
+        try:
+            yield ""
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def half_sent_requests(serving: Serving, connections: int, within: float) -> Finding:
+    """Requests whose heads never end; then a visitor from another address."""
+    held: list[socket.socket] = []
+    for _ in range(connections):
+        with contextlib.suppress(OSError):
+            one = socket.create_connection(("127.0.0.1", serving.port), timeout=2)
+            held.append(one)
+            one.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ")
+    began = time.monotonic()
+    status = 0
+    async with httpx.AsyncClient(
+        transport=httpx.AsyncHTTPTransport(local_address=OTHER_ADDRESS), timeout=PATIENCE
+    ) as other:
+        with contextlib.suppress(httpx.HTTPError):
+            status = (await other.get(f"{serving.url}/healthz")).status_code
+    took = time.monotonic() - began
+    for one in held:
+        one.close()
+    return Finding(
+        Group.SHARES,
+        f"{connections} half-sent requests from one address",
+        f"the next visitor is answered {status} after {took:.2f} s" if status else "the next visitor is not answered",
+        f"200 within {within:g} s",
+        status == 200 and took < within,
+    )
+
+
+async def form_of_many_parts(serving: Serving, mebibytes: int, within: float) -> Finding:
+    """An upload form that is nothing but delimiters."""
+    body = b"\r\n--a" * (mebibytes * 2**20 // 5) + b"--"
+    headers = {"content-type": "multipart/form-data; boundary=a"}
+    pauses: list[float] = []
+    async with httpx.AsyncClient(base_url=serving.url, timeout=PATIENCE) as http:
+        sending = asyncio.create_task(http.post("/api/meshes", content=body, headers=headers))
+        while not sending.done() or len(pauses) < 5:
+            began = time.monotonic()
+            (await http.get("/healthz")).raise_for_status()
+            pauses.append(time.monotonic() - began)
+        status = (await sending).status_code
+    return Finding(
+        Group.SHARES,
+        f"an upload form of {mebibytes} MiB of empty parts",
+        f"refused with {status}; others wait {1000 * max(pauses):.0f} ms at most",
+        f"refused, and nobody waits over {1000 * within:g} ms",
+        400 <= status < 500 and max(pauses) < within,
+    )
+
+
+@contextlib.asynccontextmanager
+async def _steering(serving: Serving, session: str) -> AsyncIterator[Callable[[Mapping[str, Any]], Any]]:
+    """A viewer that says things, and lets go of what it is sent."""
+    url = f"{serving.stream_url}/api/sessions/{session}/stream"
+    subprotocols = [Subprotocol(SUBPROTOCOL)]
+    async with connect(url, subprotocols=subprotocols, max_size=None, compression=None, proxy=None) as connection:
+
+        async def read() -> None:
+            async for message in connection:
+                if isinstance(message, bytes):
+                    sequence = int.from_bytes(message[24:28], "little")
+                    await connection.send(json.dumps({"type": "ack", "sequence": sequence}))
+
+        reading = asyncio.create_task(read())
+        try:
+            yield lambda message: connection.send(json.dumps(message))
+        finally:
+            reading.cancel()
+            await asyncio.gather(reading, return_exceptions=True)
