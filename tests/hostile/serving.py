@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 PATIENCE = 90.0
 """s until what should come true counts as failed; machines can be slow, kernels must be compiled."""
-OUTLIVING = 15.0
+OUTLIVING = 60.0
 """s that a compiler or a reader under way may take to see that nobody waits for it."""
 MIB = 2**20
 
@@ -81,7 +81,7 @@ class Serving:
         self._folder.cleanup()
         if error is None:
             assert ended == 0, f"told to stop, it ended with {ended}"
-            assert outlived == []
+            assert not outlived, f"processes outlived it: {outlived}"
 
     @property
     def stream_url(self) -> str:
