@@ -12,17 +12,46 @@
 #include "room.cl"
 #include "tile.cl"
 
-static inline realL classic_path(world_t world, vec3L origin, vec3L direction, realL start, int channel, maskL active,
-                                 const radianceL *backdrop, intL *segments) {
+// A packet's paths of one channel, between two meetings.
+typedef struct {
+  rayL ray;
+  realL radiance;
+  maskL active, inside;
+  int meetings; // that were had
+} classic_path_t;
+
+// A tile under way. All of it is kept where a launch ends before the tile does, and taken up by the next one.
+typedef struct {
+  tile_t tile;
+  classic_path_t path; // of the packet and channel that it is at
+  int number;          // of the tile in the picture
+  int packet;          // of its pixels
+  int channel;
+} classic_work_t;
+
+static inline void begin_path(world_t world, classic_path_t *path, primaryL primary, maskL active) {
+  const maskL all = splat(0) < splat(1), none = !all;
+  const rayL ray = {primary.origin, primary.direction, primary.eye, splat(1), unpolarised(primary.direction)};
+  path->ray = ray;
+  path->inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside) ? all : none;
+  if (any_lane(path->inside)) path->ray.origin = along(primary.origin, primary.eye, primary.direction);
+  path->radiance = splat(0);
+  path->active = active;
+  path->meetings = 0;
+}
+
+// Goes on for as many meetings as steps are left; returns whether the paths have ended.
+static inline bool advance_path(world_t world, classic_path_t *path, int channel, const radianceL *backdrop,
+                                intL *segments, int *steps) {
   __constant const parameters_t *scene = world.scene;
   const channels_t channels = {channel, 1};
   const real eta = world.chains[channel].eta;
   const maskL all = splat(0) < splat(1), none = !all;
-  rayL ray = {origin, direction, start, splat(1), unpolarised(direction)};
-  maskL inside = DECIDED(CAMERA_INSIDE, scene->camera_inside) ? all : none;
-  if (any_lane(inside)) ray.origin = along(origin, start, direction);
-  realL radiance = splat(0);
-  for (int meeting = 0; meeting < scene->max_bounces && any_lane(active); meeting++) {
+  rayL ray = path->ray;
+  realL radiance = path->radiance;
+  maskL active = path->active, inside = path->inside;
+  int meeting = path->meetings;
+  for (; meeting < scene->max_bounces && any_lane(active) && *steps > 0; meeting++, --*steps) {
     const maskL last = (maskL)(meeting == scene->max_bounces - 1 ? -1 : 0) & all;
 
     // The nearest of stone and room.
@@ -84,26 +113,44 @@ static inline realL classic_path(world_t world, vec3L origin, vec3L direction, r
     inside = (inside & !refracted) | (refracted & !inside);
     active &= goes_on;
   }
-  return radiance;
+  path->ray = ray;
+  path->radiance = radiance;
+  path->active = active;
+  path->inside = inside;
+  path->meetings = meeting;
+  return meeting >= scene->max_bounces || !any_lane(active);
 }
 
-static inline void classic_tile(world_t world, tile_t *tile, int column, int row, double jitter_x, double jitter_y) {
+static inline void begin_classic_tile(classic_work_t *work, int number) {
+  work->number = number;
+  work->packet = work->channel = work->path.meetings = 0;
+  work->tile.segments = (intL)(0);
+}
+
+// Goes on with a tile for as many steps as are left, each of them a packet's meeting; returns whether the tile is done.
+static inline bool advance_classic_tile(world_t world, classic_work_t *work, int column, int row, double jitter_x,
+                                        double jitter_y, int *steps) {
   __constant const parameters_t *scene = world.scene;
+  tile_t *tile = &work->tile;
   const int columns = shown(column, scene->width), rows = shown(row, scene->height);
-  for (int y = 0; y < rows; y += PACKET_HEIGHT)
-    for (int x = 0; x < columns; x += PACKET_WIDTH) {
-      const primaryL primary = primary_rays(scene, column + x, row + y, jitter_x, jitter_y);
-      const int first = first_pixel(x, y);
-      for (int channel = 0; channel < 3; channel++) {
-        const channels_t channels = {channel, 1};
-        const radianceL behind = backdrop_at(scene, column + x, row + y, jitter_x, jitter_y, channels);
-        store_lanes(classic_path(world, primary.origin, primary.direction, primary.eye, channel,
-                                 in_picture(scene, column + x, row + y),
-                                 DECIDED(BACKDROP, scene->has_backdrop) ? &behind : 0, &tile->segments),
-                    tile->radiance[channel] + first);
-      }
-      store_lanes(splat(0), tile->cut + first);
+  for (; work->packet < PACKETS; work->packet++, work->channel = 0) {
+    const int x = work->packet % PACKETS_ACROSS * PACKET_WIDTH, y = work->packet / PACKETS_ACROSS * PACKET_HEIGHT;
+    if (x >= columns || y >= rows) continue;
+    const int first = first_pixel(x, y);
+    for (; work->channel < 3; work->channel++, work->path.meetings = 0) {
+      if (work->path.meetings == 0)
+        begin_path(world, &work->path, primary_rays(scene, column + x, row + y, jitter_x, jitter_y),
+                   in_picture(scene, column + x, row + y));
+      const channels_t channels = {work->channel, 1};
+      const radianceL behind = backdrop_at(scene, column + x, row + y, jitter_x, jitter_y, channels);
+      if (!advance_path(world, &work->path, work->channel, DECIDED(BACKDROP, scene->has_backdrop) ? &behind : 0,
+                        &tile->segments, steps))
+        return false;
+      store_lanes(work->path.radiance, tile->radiance[work->channel] + first);
     }
+    store_lanes(splat(0), tile->cut + first);
+  }
+  return true;
 }
 
 #endif

@@ -78,11 +78,13 @@ static inline float16 shown(float16 x, int tone_map) {
 
 static inline uchar16 to_bytes(float16 x, int tone_map) { return convert_uchar16_sat_rte(255 * shown(x, tone_map)); }
 
-// A work-item shows BLOCK pixels, of which `earlier` and, if `both`, `later` hold sums of samples. `scale` is the exposure
-// over the number of samples; `inside_gamut` says that no component is negative, or that those that are may be clipped.
+// A work-item shows BLOCK of the pixels from `begin` to before `end`, of which `earlier` and, if `both`, `later` hold sums of
+// samples. `scale` is the exposure over the number of samples; `inside_gamut` says that no component is negative, or that
+// those that are may be clipped.
 __kernel void develop(__global const real4 *earlier, __global const real4 *later, int both, __global uchar *bytes,
-                      int pixels, float scale, int tone_map, int inside_gamut) {
-  const int first = get_global_id(0) * BLOCK, count = min(BLOCK, pixels - first);
+                      int begin, int end, float scale, int tone_map, int inside_gamut) {
+  const int first = begin + get_global_id(0) * BLOCK, count = min(BLOCK, end - first);
+  if (count <= 0) return;
   float linear[3][BLOCK];
   for (int i = 0; i < BLOCK; i++) {
     const int pixel = first + min(i, count - 1);

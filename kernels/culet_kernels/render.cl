@@ -2,22 +2,43 @@
 #include "chain.cl"
 #include "classic.cl"
 
+#if ESTIMATOR == CLASSIC
+typedef classic_work_t work_t;
+#define begin_tile begin_classic_tile
+#define advance_tile advance_classic_tile
+#else
+typedef chain_work_t work_t;
+#define begin_tile begin_chain_tile
+#define advance_tile advance_chain_tile
+#endif
+
+// A sample takes as many launches as it needs: each work-item makes `steps` steps, then keeps the tile that it is at in
+// `kept` and ends, so that no launch lasts long, whatever a pixel costs. The next launch goes on where this one ended: the
+// picture is the same to the last bit.
 __kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
                      __global const real4 *shadows, __global const real *boxes, __global const int *links,
                      __global const real *corners, __global const chain_t *chains, __global const float *panorama,
-                     double jitter_x, double jitter_y, int first_tile, int count, volatile __global uint *dealt,
-                     int accumulate, __global float *tallies) {
+                     double jitter_x, double jitter_y, int count, volatile __global uint *progress, int accumulate,
+                     __global float *tallies, __global work_t *kept, int steps) {
   const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
   const int across = tiles_across(scene);
-  for (int number; (number = deal(dealt, count)) < count;) {
-    const int tile_column = (first_tile + number) % across, tile_row = (first_tile + number) / across;
-    const int column = tile_column * TILE, row = tile_row * TILE;
-    tile_t tile;
-    tile.segments = (intL)(0);
-    if (ESTIMATOR == CLASSIC)
-      classic_tile(world, &tile, column, row, jitter_x, jitter_y);
-    else
-      chain_tile(world, &tile, column, row, jitter_x, jitter_y);
-    write_tile(&tile, image, tallies, scene, tile_column, tile_row, accumulate);
+  volatile __global uint *own = progress + OF_ITEMS + ITEM_NUMBERS * get_global_id(0);
+  int left = steps;
+  work_t work;
+  bool under_way = own[UNDER_WAY];
+  if (under_way) work = kept[get_global_id(0)];
+  while (left > 0) {
+    if (!under_way) {
+      const int number = deal(progress, count);
+      if (number >= count) break;
+      begin_tile(&work, number);
+    }
+    const int tile_column = work.number % across, tile_row = work.number / across;
+    under_way = !advance_tile(world, &work, tile_column * TILE, tile_row * TILE, jitter_x, jitter_y, &left);
+    if (!under_way) write_tile(&work.tile, image, tallies, scene, tile_column, tile_row, accumulate);
   }
+  if (under_way) kept[get_global_id(0)] = work;
+  own[UNDER_WAY] = under_way;
+  own[STEPS_MADE] = steps - left;
+  if (get_global_id(0) == 0) progress[WORK_BYTES] = sizeof(work_t);
 }

@@ -8,6 +8,9 @@
 #define TILE 32
 #endif
 #define TILE_PIXELS (TILE * TILE)
+// Packets of a tile's pixels, row by row.
+#define PACKETS_ACROSS (TILE / PACKET_WIDTH)
+#define PACKETS (TILE_PIXELS / LANES)
 
 typedef struct {
   real radiance[3][TILE_PIXELS]; // by channel
@@ -45,11 +48,22 @@ static inline intL groups_of(int x, int y, int sample) {
 
 static inline int tiles_across(__constant const parameters_t *scene) { return (scene->width + TILE - 1) / TILE; }
 
-// A launch's tiles are dealt out one by one: a work-item stands for a core and takes the next tile until there are no more,
+// How far a sample is, over all of its launches. The host sets it to 0 before the first of them.
+#define TILES_DEALT 0 // so many tiles were taken, maybe more than there are
+#define WORK_BYTES 1  // the size of what a work-item keeps of a tile under way
+#define OF_ITEMS 2    // from here on for each work-item:
+#define UNDER_WAY 0   // whether it keeps a tile that is not done,
+#define STEPS_MADE 1  // and how many steps it has made in the last launch
+#define ITEM_NUMBERS 2
+
+// A sample's tiles are dealt out one by one: a work-item stands for a core and takes the next tile until there are no more,
 // so that cores end together however unequal tiles are (persistent threads: T. Aila and S. Laine, Understanding the
-// efficiency of ray traversal on GPUs, HPG 2009). `dealt` counts them; the host sets it to 0 before each launch, whatever
-// became of the one before. Returns the number of a tile that nobody else has, or `count` if there is none.
-static inline int deal(volatile __global uint *dealt, int count) { return min(atomic_inc(dealt), (uint)count); }
+// efficiency of ray traversal on GPUs, HPG 2009). Returns the number of a tile that nobody else has, or `count` if there
+// is none.
+static inline int deal(volatile __global uint *progress, int count) {
+  if (progress[TILES_DEALT] >= (uint)count) return count; // it grows no further, however many launches look
+  return min(atomic_inc(progress + TILES_DEALT), (uint)count);
+}
 
 // Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.
 static inline void write_tile(const tile_t *tile, __global real4 *image, __global float *tallies,

@@ -32,8 +32,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-BAND_ROWS = 64
-"""Of a picture, between two looks at the progress bar."""
+PROGRESS_SECONDS = 0.1
+"""Between two looks at the progress bar."""
 
 Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")]
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
@@ -84,7 +84,7 @@ def render(
         settings, stone, panorama = read_subject(scene, preset, mesh, sky)
         picture = Renderer().picture(settings, stone, width, height, panorama=panorama)
         with progress_bar(f"rendering {out.name}") as advance:
-            for part in picture.refine_in_bands(samples or settings.sampling.samples_per_pixel, BAND_ROWS):
+            for part in picture.refine_in_pieces(samples or settings.sampling.samples_per_pixel, PROGRESS_SECONDS):
                 advance(part)
         try:
             write(picture, out)

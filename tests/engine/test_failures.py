@@ -47,6 +47,12 @@ class FailingRenderer:
             raise DeviceError("the kernel does not build")
         return self.renderer.picture(scene, stone, width, height, panorama=panorama)
 
+    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+        return self.renderer.is_ready(scene, stone)
+
+    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+        self.renderer.prepare(scene, stone)
+
     def describe(self) -> Mapping[str, Any]:
         return self.renderer.describe()
 

@@ -77,6 +77,12 @@ class World:
         del stone, panorama
         return TimedPicture(self, scene, (width, height))
 
+    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+        return True
+
+    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+        """There is nothing to be made."""
+
     def describe(self) -> dict[str, str]:
         return {}
 
@@ -102,24 +108,27 @@ class TimedPicture:
         self._world, self._size = world, size
 
     def refine(self, samples: int = 1) -> None:
-        for _ in self.refine_in_bands(samples, self._size[1]):
+        for _ in self.refine_in_pieces(samples, math.inf):
             pass
 
-    def refine_in_bands(self, samples: int, rows: int) -> Iterator[None]:
+    def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
         first, full = self.samples == 0, self.scene.optics.polarised
-        bands = math.ceil(self._size[1] / rows)
         part = self._size[0] * self._size[1] / (WANTED[0] * WANTED[1])
-        seconds = samples * part * self._world.full_seconds * (1 if full else LADDER_SHARE * self._rung_cost())
+        in_all = samples * part * self._world.full_seconds * (1 if full else LADDER_SHARE * self._rung_cost())
+        pieces = max(1, math.ceil(in_all / seconds))
         drawn = Drawn(self._world.now, self._size, full)
         if first:
             self._world.drawn.append(drawn)
-        for _ in range(bands):
-            self._world.spend(seconds / bands)
-            yield
+        for piece in range(pieces):
+            self._world.spend(in_all / pieces)
+            yield (piece + 1) / pieces
         self.samples += samples
         self._world.samples = self.samples
-        self.seconds = seconds
+        self.seconds = in_all
         drawn.ended = self._world.now
+
+    def develop_in_pieces(self) -> Iterator[None]:
+        return iter(())
 
     def rgb(self) -> NDArray[np.uint8]:
         return np.zeros((16, 16, 3), np.uint8)
@@ -151,14 +160,17 @@ async def play() -> AsyncIterator[Play]:
         async def paint(world: World, seconds: float, rate: float = 60) -> None:
             if id(world) not in painters:
                 painter = Painter(
-                    world, thread, StillQueue(1),
+                    world, thread, StillQueue(1, 2**25),
                     send=lambda _: None, report=_fail, encode_still=lambda _, __: b"", clock=lambda: world.now,
                 )  # fmt: skip
                 painter.pictures["a"] = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
                 painters[id(world)] = painter
             end = world.now + seconds
             while world.now < end:
-                if not await painters[id(world)].work():
+                worked = await painters[id(world)].work()
+                if (publishing := painters[id(world)].pictures["a"].publishing) is not None:
+                    await publishing  # encoding takes no time of this world
+                if not worked:
                     world.spend(IDLE)
 
         yield lambda world, seconds, **how: asyncio.ensure_future(paint(world, seconds, **how))
@@ -267,7 +279,7 @@ async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(
             world.spend(1.5)
             return await super().acquire()
 
-    def rendered(_: Governor, _plan: Plan, _seconds: float, overhead: float, _rate: float) -> None:
+    def rendered(_: Governor, _plan: Plan, _seconds: float, overhead: float, _rate: float, _share: float) -> None:
         overheads.append(overhead)
 
     monkeypatch.setattr(Governor, "rendered", rendered)

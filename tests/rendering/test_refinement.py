@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from culet.geometry.load import stone_of
+from culet.rendering.pace import Pace
 from culet.rendering.renderer import Renderer, jitter
 from culet.scene import Scene
 from pictures import compared
@@ -36,18 +38,54 @@ def test_every_tile_is_dealt_once_however_many_cores_there_are(renderer: Rendere
     assert picture.segments() == expected.segments()
 
 
-@pytest.mark.parametrize("rows", [1, 32, 40, 64])
-def test_bands_of_rows_make_the_whole_picture(renderer: Renderer, rows: int) -> None:
-    """A band is a whole number of tiles high; the last one may be lower."""
-    size = (70, 90)  # three tiles by three, none of the last ones full
-    whole = take(renderer, SCENE, size=size, samples=2)
-    banded = renderer.picture(SCENE, stone_of(SCENE.stones[0], {}), *size)
-    progress = list(banded.refine_in_bands(2, rows))
-    with compared(banded.linear(), whole.linear()):
-        assert banded.linear().tobytes() == whole.linear().tobytes()
+KINDS: dict[str, dict[str, Any]] = {
+    "default": {},
+    "mirrors": {"walls": {"kind": "mirror"}, "floor": {"kind": "mirror"}},
+    "wavelengths": {"optics": {"bands": 8, "polarised": True}},
+    "roulette": {"optics": {"end": "roulette"}},
+    "classic": {"optics": {"estimator": "classic"}},
+    "inside": {"camera": {"position": [0, 0.3, 0.2], "target": [0, 0, 0]}},
+    "empty": {"stones": []},
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("steps", [1, 37, 1000])
+def test_pieces_make_the_same_picture_to_the_last_bit(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch, kind: str, steps: int
+) -> None:
+    """A launch may end anywhere: among the pixels that are looked at, or in the middle of a chain."""
+    scene = Scene.read(KINDS[kind])
+    size = (20, 18) if steps == 1 else (70, 50)  # six tiles, some of them not full
+    whole = take(renderer, scene, size=size, samples=2)
+    pieced = renderer.picture(scene, stone_of(scene.stones[0], {}) if scene.stones else None, *size)
+    monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: steps)
+    progress = list(pieced.refine_in_pieces(2, 1.0))
+    assert pieced.linear().tobytes() == whole.linear().tobytes()
+    assert pieced.cut_map().tobytes() == whole.cut_map().tobytes()
+    assert pieced.segments() == whole.segments()
     assert progress == sorted(progress)
     assert progress[-1] == 1
-    assert len(progress) == 2 * {1: 3, 32: 3, 40: 2, 64: 2}[rows]
+    assert len(progress) > 2
+
+
+def test_a_launch_of_a_very_dear_scene_ends_when_its_steps_are_made(renderer: Renderer) -> None:
+    """One pixel's chains of 65536 reflections, between mirrors: a sample takes thousands of launches of 50 steps."""
+    scene = Scene.read(
+        {
+            "optics": {"bands": 64, "polarised": True, "cutoff": 1e-9, "max_bounces": 65536},
+            "walls": {"kind": "mirror"}, "floor": {"kind": "mirror"}, "stones": [{"material": {"ior": [10, 10, 10]}}],
+        }
+    )  # fmt: skip
+    picture = renderer.picture(scene, stone_of(scene.stones[0], {}), 1, 1)
+    before, launches = 0.0, []
+    pieces = picture.refine_in_pieces(1, 1e-9)
+    for _ in zip(pieces, range(200), strict=False):
+        launches.append(picture.seconds - before)
+        before = picture.seconds
+    assert len(launches) == 200, "a single launch would have been the whole sample"
+    assert picture.samples == 0
+    assert np.median(launches) < 0.01, "measured 0.0004 s; the sample takes seconds"
 
 
 def test_refining_in_steps_is_refining_at_once(exact: Renderer) -> None:

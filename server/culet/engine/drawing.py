@@ -1,6 +1,6 @@
 """What the engine needs of a renderer; `culet.rendering.renderer.Renderer` is one.
 
-Everything here is called from one thread only, the render thread.
+Everything here is called from one thread only, the render thread, unless it says otherwise.
 """
 
 from __future__ import annotations
@@ -15,10 +15,9 @@ from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 
-BAND_PIXELS = 2**17
-"""Pixels that get one more sample before other work gets its turn: some 10 ms of the default scene on two cores."""
-BAND_ROWS = 32
-"""Rows of the thinnest band: a row of the renderer's tiles."""
+PIECE_SECONDS = 0.025
+"""That a piece of work is meant to hold the render thread: two of them are 50 ms, after which a viewer sees that frames
+are late; and 100 times what it costs to begin one."""
 
 
 class Picture(Protocol):
@@ -39,11 +38,14 @@ class Picture(Protocol):
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel."""
 
-    def refine_in_bands(self, samples: int, rows: int) -> Iterator[Any]:
-        """Add samples to every pixel, some rows at a time for each sample, yielding between them."""
+    def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
+        """Add samples to every pixel, about so many seconds at a time; yields the part that is done, between them."""
+
+    def develop_in_pieces(self) -> Iterator[Any]:
+        """Tone-map, yielding between short pieces of work."""
 
     def rgb(self) -> NDArray[np.uint8]:
-        """(height, width, 3), tone-mapped."""
+        """(height, width, 3), tone-mapped; at once if that was done in pieces."""
 
     def cut(self) -> float:
         """Mean weight of what the cut-off dropped."""
@@ -69,10 +71,11 @@ class Renderer(Protocol):
     def release(self) -> None:
         """Give back the memory of pictures that are gone."""
 
+    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+        """Whether a picture can be begun at once."""
+
+    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+        """Make it so: have programs compiled and trees made, which may take seconds. Called from any thread."""
+
     def describe(self) -> Mapping[str, Any]:
         """Device, driver and lanes."""
-
-
-def band_rows(width: int) -> int:
-    """Rows of a band of BAND_PIXELS."""
-    return max(BAND_ROWS, BAND_PIXELS // width)

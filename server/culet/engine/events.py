@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Literal, assert_never
 
 from pydantic import ValidationError
 
@@ -48,6 +48,8 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
             scene = Scene.read(event.scene)
             stone, sky = stone_for(scene, session, assets), sky_for(scene, session, assets)
             session.replace_stone(scene, stone, home=scene.camera, sky=sky)
+        case _:
+            assert_never(event)
 
 
 def stone_for(scene: Scene, session: Session | None, assets: Assets) -> Stone | None:
@@ -113,6 +115,8 @@ def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | m
             return viewpoint.translate(camera, event.right, event.up)
         case messages.Dolly():
             return viewpoint.dolly(camera, event.forward)
+        case _:
+            assert_never(event)
 
 
 def _with_light_moved(
@@ -129,6 +133,8 @@ def _with_light_moved(
             position = viewpoint.shift_light(light.position, scene.camera, event.right, event.up, 0)
         case messages.Dolly():
             position = viewpoint.shift_light(light.position, scene.camera, 0, 0, event.forward)
+        case _:
+            assert_never(event)
     lights = list(scene.lights)
     lights[number] = Light(position=position, colour=light.colour)
     return scene.model_copy(update={"lights": tuple(lights)})

@@ -35,7 +35,13 @@ MEMORY = 0.2
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
 LEAST_PIXELS = 640 * 360
-"""Of a frame, below which none is scaled unless the viewer asked for less."""
+"""Of a frame, below which none is scaled unless the viewer asked for less, or many share the render thread: then down
+to this times the share, so that all frames together have as many pixels."""
+CROWDED_RATE = 8.0
+"""Frames per second for which a frame is made smaller than that: fewer look like a row of pictures. Frames of the
+cheapest setting at the least size may come oftener, if there is time, but are not made smaller for it."""
+SHRINK = 2**-0.25
+"""Of width and height, each time: a step that is hardly seen."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +108,10 @@ class Governor:
         self._ladder = ladder
         self._errors = errors
         self._rung = 0
+        self._shrunk = 0
+        """How many times frames are made smaller than the cheapest setting has them."""
+        self._easier = 0
+        """Frames that one step larger would have had time to spare."""
         self._unit: float | None = None
         """Expected time of the first rung for one pixel."""
         self._overhead = 0.0
@@ -128,13 +138,21 @@ class Governor:
             "max_bounces": min(scene.optics.max_bounces, setting.max_bounces),
         }
         simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
-        scale = _scale(setting, wanted)
+        scale = _scale(setting, wanted) * (1 if balance.pinned else SHRINK**self._shrunk)
         size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))
         error = self._errors.radiance(scale, simplified.optics.cutoff, simplified.optics.max_bounces)
         return Plan(simplified, size, wanted, setting, error)
 
-    def rendered(self, plan: Plan, seconds: float, overhead: float, frames_per_second: float) -> None:
-        """A moving frame took that long to render, and that long besides; the next ones are to come at that rate.
+    def has_cheaper(self, plan: Plan) -> bool:
+        """Whether frames of that size can be cheaper than planned."""
+        cheapest = self._ladder[worthwhile_rungs(self._ladder, self._errors, plan.wanted)[-1]]
+        return plan.setting is not None and _cost(plan.setting, plan.wanted) > _cost(cheapest, plan.wanted)
+
+    def rendered(
+        self, plan: Plan, seconds: float, overhead: float, frames_per_second: float, share: float = 1.0
+    ) -> None:
+        """A moving frame took that long to render, and that long besides; the next ones are to come at that rate, with
+        that share of the render thread's time.
 
         Chooses the next setting.
         """
@@ -142,13 +160,34 @@ class Governor:
             return
         overhead = min(overhead, 1 / frames_per_second)  # a longer one was a stall, and says nothing of the next frame
         unit = seconds / (plan.size[0] * plan.size[1] * plan.setting.pixel_cost)
-        late = seconds + overhead > LATE / frames_per_second
+        late = seconds + overhead > LATE * share / frames_per_second
         if self._unit is None or (late and unit > self._unit):
             self._unit = unit
         self._unit += MEMORY * (unit - self._unit)
         self._overhead += MEMORY * (overhead - self._overhead)
-        budget = max(SHARE / frames_per_second - self._overhead, LEAST_SHARE / frames_per_second)
-        self._choose(plan.wanted, budget)
+        self._choose(plan.wanted, self._budget(frames_per_second, share))
+        self._shrink(plan.wanted, self._budget(min(frames_per_second, CROWDED_RATE), share), share)
+
+    def _budget(self, frames_per_second: float, share: float) -> float:
+        """For rendering a frame."""
+        interval = share / frames_per_second
+        return max(SHARE * interval - self._overhead, LEAST_SHARE * interval)
+
+    def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
+        """Make frames of the cheapest setting so small that a crowd's rate is held, and larger when there is time."""
+        cost = self._expected(self._rung, wanted)
+        if self._rung != worthwhile_rungs(self._ladder, self._errors, wanted)[-1] or cost <= 0:
+            self._shrunk = 0
+            return
+        most = math.floor(math.log(max(share, 1e-6)) / 2 / math.log(SHRINK))
+        needed = min(most, max(0, math.ceil(math.log(budget / cost) / 2 / math.log(SHRINK))))
+        if needed > self._shrunk:
+            self._shrunk, self._easier = needed, 0
+            return
+        larger = cost * SHRINK ** (2 * (self._shrunk - 1))
+        self._easier = self._easier + 1 if self._shrunk > needed and larger < SPARE * budget else 0
+        if self._easier >= PATIENCE or self._shrunk > most:
+            self._shrunk, self._easier = self._shrunk - 1, 0
 
     def _choose(self, wanted: tuple[int, int], budget: float) -> None:
         cost = self._expected(self._rung, wanted)

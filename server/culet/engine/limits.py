@@ -31,6 +31,14 @@ class Limits(Settings):
     max_still_pixels: int = Field(
         2**25, ge=1, description="Pixels of a still in all; 33.5 million take 0.4 GB of linear colours."
     )
+    max_still_work: float = Field(
+        2**36,
+        gt=0,
+        description="Pixels of a still times its samples times its bands; 7e10 take half an hour of two cores.",
+    )
+    still_seconds: float = Field(
+        1800, gt=0, description="Time of the render thread for one still, after which it is given up."
+    )
     max_live_pixels: int = Field(
         2560 * 1440,
         ge=1,
@@ -66,6 +74,17 @@ def check_still_size(width: int, height: int, limits: Limits) -> None:
             f"width: expected at most {limits.max_still_pixels} pixels in all, "
             f"got {width} x {height} = {width * height}",
             "width",
+        )
+
+
+def check_still_work(width: int, height: int, samples: int, bands: int, limits: Limits) -> None:
+    """InputError if rendering it is more work than one still may make."""
+    work = width * height * samples * bands
+    if work > limits.max_still_work:
+        raise InputError(
+            f"samples: expected at most {limits.max_still_work:g} pixels x samples x bands, "
+            f"got {width} x {height} x {samples} x {bands} = {work:.3g}; ask for less of each",
+            "samples",
         )
 
 

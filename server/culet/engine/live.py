@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from enum import Enum, auto
+from typing import assert_never
 
 from culet.engine.drawing import Picture
+from culet.engine.frame_work import FrameWork, Kind
 from culet.engine.governor import Governor, asked_rate, read_ladder
 from culet.engine.session import Session, Shown
+from culet.engine.shares import Account
+from culet.scene.model import Optics
+from culet_protocol.messages import Balance
 
 NATIVE_RATE = 30.0
 """Frames per second for viewers that only subscribe, and cannot say what they take."""
@@ -27,7 +31,42 @@ than this in full is governed at its first change too, or nothing would be seen 
 REPEAT_SECONDS = 1.0
 """A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
 
+REST_WEIGHT = 0.25
+"""Share of the render thread's time for a picture at rest beside one that moves: it can wait, motion cannot."""
+
+STALE_SECONDS = 0.25
+"""A reduced frame that takes longer is given up for something newer, unless the one before it was."""
+FIRST_LOOK_SECONDS = 0.5
+"""Of work on a picture in full of which nothing is to be seen yet: then a reduced one is made first."""
+DEAREST_SECONDS = 2.0
+"""Of work on one frame of a pinned quality. What takes longer is governed as if it were not pinned: of a stone that
+moves something is to be seen."""
+
+DEAR_SECONDS = 0.4
+"""Of work on one frame that the governor planned. It is given up for a cheaper one, if there is one."""
+
+UNSENT_FRAMES = 2
+"""That may wait to be encoded and sent before no other is begun."""
+
+NEVER = -1e9
+"""s, of a steady clock: when what has not happened yet last happened."""
+
 LADDER = read_ladder()
+
+
+class State(Enum):
+    """What there is of the picture that was drawn last."""
+
+    BLANK = auto()
+    """Nothing, or no longer anything that could be refined."""
+    REDUCED = auto()
+    """As the governor had it: it is to be drawn in full when things have settled."""
+    FULL = auto()
+    """In full, to be refined."""
+    FINAL = auto()
+    """With all its samples."""
+    REFUSED = auto()
+    """It could not be rendered."""
 
 
 @dataclass(eq=False)
@@ -41,38 +80,48 @@ class LivePicture:
     rate: float = 0.0
     """Frames per second that the gateway's viewers can take; 0 if it has none."""
     size: tuple[int, int] = NATIVE_SIZE
+    state: State = State.BLANK
     picture: Picture | None = None
+    """That can be refined."""
     painted: Shown | None = None
-    """What the picture shows."""
+    """What the picture drawn last shows, or what was refused."""
     painted_size: tuple[int, int] = (0, 0)
+    work: FrameWork | None = None
+    """The frame in the making."""
     governor: Governor = field(default_factory=lambda: Governor(LADDER))
-    reduced_until: float | None = None
-    """s, steady clock: from when on a picture that the governor has reduced is to be drawn in full, if nothing moves.
-    None if it is in full."""
-    changed_at: float = -1e9
+    settles_at: float = 0.0
+    """s, steady clock: from when on a reduced picture is to be drawn in full, if nothing moves."""
+    changed_at: float = NEVER
     """s, steady clock: when something new had last been drawn, or been given up for something newer."""
     full_seconds: float = 0.0
-    """Of rendering the first sample of the picture that was last drawn in full."""
-    refinement: Iterator[Any] | None = None
-    """More samples on their way, a band at a time."""
-    refused: Shown | None = None
-    """What could not be rendered; not tried again until something else is to be shown."""
+    """Of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
+    too_dear: tuple[Balance, Optics, tuple[int, int]] | None = None
+    """The pinned balance, optics and size of which a frame took too long."""
+    gave_up: bool = False
+    """The frame begun last was given up for something newer."""
     message: bytes | None = None
     """The frame sent last."""
     told_asleep: bool = False
     """The gateway was told unasked that the stone sleeps."""
-    final: bool = False
-    """The picture has all its samples."""
     sent_at: float = 0.0
     """s, steady clock."""
-    begun_at: float = -1e9
+    begun_at: float = NEVER
     """s, steady clock: when the last frame was begun, or should have been if it was a little late."""
-    served_at: float = -1e9
-    """s, steady clock: when a refinement last got its turn."""
     publishing: asyncio.Task[None] | None = None
-    simulate_seconds: float = 0.0
+    """The frame that was finished last, on its way out."""
+    unsent: int = 0
+    """Frames on their way out."""
+    preparing: asyncio.Task[None] | None = None
+    """What the next picture needs of programs and trees."""
     render_seconds: float = 0.0
     """Of all samples of the picture."""
+    frames: Account = field(init=False)
+    """Of frames that somebody waits for."""
+    rest: Account = field(init=False)
+    """Of what makes a picture at rest better."""
+
+    def __post_init__(self) -> None:
+        self.frames, self.rest = Account(self), Account(self, REST_WEIGHT)
 
     @property
     def frames_per_second(self) -> float:
@@ -89,18 +138,36 @@ class LivePicture:
         """Whether the picture is right until somebody changes something."""
         return self.current and not self.session.moving
 
+    @property
+    def settled(self) -> bool:
+        """Whether the picture is a reduced one of what no longer changes."""
+        return self.state is State.REDUCED and self.at_rest
+
     def due_at(self) -> float | None:
         """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
-        if not self.watched or self.refused is self.session.shown:
+        if not self.watched or self.work is not None or self.preparing is not None or self.unsent >= UNSENT_FRAMES:
             return None
         if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
             return None
-        if self.at_rest:
-            if self.reduced_until is not None:
-                return max(self.reduced_until, self.begun_at + 1 / self.frames_per_second)
-            if self.final or self.picture is not None:
-                return None
-        return self.begun_at + 1 / self.frames_per_second
+        next_at = self.begun_at + 1 / self.frames_per_second
+        match self.state:
+            case State.BLANK:
+                return next_at
+            case State.REDUCED:
+                return max(self.settles_at, next_at) if self.at_rest else next_at
+            case State.FULL | State.FINAL:
+                return None if self.at_rest else next_at
+            case State.REFUSED:  # not tried again until something else is to be shown
+                return None if self.painted is self.session.shown else next_at
+            case _:
+                assert_never(self.state)
+
+    @property
+    def next_account(self) -> Account:
+        """Whose time the next piece of work is."""
+        if self.work is not None:
+            return self.work.account
+        return self.rest if self.at_rest and self.state is not State.BLANK else self.frames
 
     @property
     def governed(self) -> bool:
@@ -111,17 +178,13 @@ class LivePicture:
         again = self.begun_at - self.changed_at < max(SETTLE_SECONDS, 2 / self.frames_per_second)
         return again or self.full_seconds > SETTLE_SECONDS
 
-    def drew(self, picture: Picture | None, shown: Shown, size: tuple[int, int], now: float, *, reduced: bool) -> None:
-        """The first sample of a picture is there; None if it was given up for something newer."""
-        if picture is None or shown is not self.painted:
-            self.changed_at = now
-        if picture is None:
-            return
-        self.picture, self.painted, self.painted_size, self.final = picture, shown, size, REST_SAMPLES <= 1
-        self.render_seconds = picture.seconds
-        self.reduced_until = now + SETTLE_SECONDS if reduced else None
-        if not reduced:
-            self.full_seconds = picture.seconds
+    @property
+    def balance(self) -> Balance:
+        """The session's, but not pinned to what has proven too dear."""
+        balance = self.session.balance
+        if self.too_dear == (balance, self.session.shown.scene.optics, self.size):
+            return balance.model_copy(update={"pinned": False})
+        return balance
 
     def begin(self, now: float) -> None:
         """A frame is begun. One that is late by less than a frame does not make those after it late."""
@@ -129,18 +192,96 @@ class LivePicture:
         little = due is not None and 0 <= now - due < 1 / self.frames_per_second
         self.begun_at = due if due is not None and little else now
 
+    def drew(self, work: FrameWork, now: float) -> None:
+        """A frame is done."""
+        assert work.picture is not None  # noqa: S101 - of a frame that is done
+        if work.shown is not self.painted:
+            self.changed_at = now
+        self.work, self.gave_up = None, False
+        self.painted, self.painted_size, self.render_seconds = work.shown, work.wanted, work.render_seconds
+        self.picture = work.picture
+        match work.kind:
+            case Kind.PLANNED:
+                self.state, self.settles_at = State.REDUCED, now + SETTLE_SECONDS
+            case Kind.FULL:
+                self.state, self.full_seconds = State.FULL, work.render_seconds
+            case Kind.REFINED:
+                self.state = State.FULL
+            case _:
+                assert_never(work.kind)
+        if work.final:
+            self.state, self.picture = State.FINAL, None
+
+    def outdated(self, now: float) -> bool:
+        """Whether the frame in the making is to be given up."""
+        work = self.work
+        if work is None:
+            return False
+        if not self.watched:
+            return True
+        newer = work.shown is not self.session.shown or work.wanted != self.size
+        match work.kind:
+            case Kind.PLANNED:
+                if self._too_dear(work):
+                    return True
+                return newer and now - work.begun_at > STALE_SECONDS and not self.gave_up
+            case Kind.FULL:
+                unseen = self.painted is not work.shown
+                return newer or (unseen and work.spent > FIRST_LOOK_SECONDS)
+            case Kind.REFINED:
+                return newer
+            case _:
+                assert_never(work.kind)
+
+    def give_up(self, now: float) -> None:
+        """Drop the frame in the making."""
+        work, self.work = self.work, None
+        if work is None:
+            return
+        self.changed_at = now
+        match work.kind:
+            case Kind.PLANNED:
+                assert work.plan is not None  # noqa: S101 - of planned work
+                if not self._too_dear(work):
+                    self.gave_up = True
+                elif self.balance.pinned:
+                    self.too_dear = (self.session.balance, work.shown.scene.optics, work.wanted)
+                else:
+                    self.governor.rendered(work.plan, work.expected_seconds, 0.0, self.frames_per_second)
+            case Kind.FULL:
+                self.full_seconds = max(self.full_seconds, work.spent)
+            case Kind.REFINED:  # its sums are neither those of before nor those of after
+                self.picture, self.state = None, State.BLANK
+            case _:
+                assert_never(work.kind)
+
+    def _too_dear(self, work: FrameWork) -> bool:
+        """Whether planned work takes so long that another plan is better."""
+        if self.balance.pinned:
+            return work.spent > DEAREST_SECONDS
+        return work.plan is not None and work.spent > DEAR_SECONDS and self.governor.has_cheaper(work.plan)
+
     def wants_refinement(self) -> bool:
         """Whether more samples would improve what is seen."""
-        in_full = self.reduced_until is None and self.picture is not None
-        return self.watched and self.at_rest and not self.final and in_full
+        return (
+            self.watched and self.at_rest and self.state is State.FULL and self.work is None
+            and self.unsent < UNSENT_FRAMES
+        )  # fmt: skip
+
+    def refuse(self, shown: Shown) -> None:
+        """It cannot be rendered."""
+        self.work, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
 
     def abandon(self) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
-        self.picture = None
-        self.refinement = None
+        self.work, self.picture = None, None
+        self.session.pause()
+        if self.state in (State.REDUCED, State.FULL):
+            self.state = State.BLANK
         if self.painted is not self.session.shown:
             self.painted = None
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
-        return self.sent_at + REPEAT_SECONDS if self.watched and self.current and self.message else None
+        shown = self.watched and self.current and self.state is not State.REFUSED
+        return self.sent_at + REPEAT_SECONDS if shown and self.message else None

@@ -41,9 +41,15 @@ class LiveFrame:
 
     @classmethod
     def developed(
-        cls, picture: Picture, shown: Shown, plan: Plan | None, spent: tuple[float, float], final: bool
+        cls,
+        picture: Picture,
+        shown: Shown,
+        plan: Plan | None,
+        spent: tuple[float, float],
+        develop_seconds: float,
+        final: bool,
     ) -> LiveFrame:
-        """Of a picture that is done, and took that long to simulate and to render.
+        """Of a picture that is done and developed, and took that long to simulate and to render.
 
         Estimating its error costs nothing for the single sample of a moving one.
         """
@@ -56,7 +62,7 @@ class LiveFrame:
             samples=picture.samples,
             simulate_seconds=spent[0],
             render_seconds=spent[1],
-            develop_seconds=time.perf_counter() - started,
+            develop_seconds=develop_seconds + time.perf_counter() - started,
             cut=cut,
             error=error,
             expected_error=math.nan if plan is None else plan.error,

@@ -1,27 +1,33 @@
-"""The render loop: live frames, refinements and stills on one render thread, encoding on another.
+"""The render loop: live frames, refinements and stills on one render thread, encoding on others.
 
 Nobody watching, nothing rendered; at rest a picture is refined to REST_SAMPLES and then costs nothing but being sent
-again once a second.
+again once a second. The loop never waits for anything but one short piece of work of the render thread.
 """
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
+import os
+import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 from culet.engine import jpeg, schedule
-from culet.engine.drawing import Picture, Renderer, band_rows
-from culet.engine.governor import Plan
-from culet.engine.live import REST_SAMPLES, LivePicture
+from culet.engine.drawing import Picture, Renderer
+from culet.engine.frame_work import FrameWork, Kind, Unprepared, proceed
+from culet.engine.histogram import Histogram
+from culet.engine.live import NEVER, REST_SAMPLES, LivePicture
 from culet.engine.live_frame import LiveFrame
 from culet.engine.session import Shown
+from culet.engine.shares import Account, Shares, share
 from culet.engine.still import Still, StillQueue
-from culet.errors import CuletError, DeviceError
+from culet.errors import CuletError, DeviceError, TooLargeError
+from culet.geometry.stone import Stone
 from culet.scene import Scene
 
 log = logging.getLogger(__name__)
@@ -33,7 +39,9 @@ class Counters:
     """Since the engine started."""
 
     frames_rendered: int = 0
-    """Live pictures begun."""
+    """Live pictures drawn."""
+    frames_given_up: int = 0
+    """For something newer, or because they took too long."""
     refinements: int = 0
     frames_sent: int = 0
     frames_repeated: int = 0
@@ -42,6 +50,26 @@ class Counters:
     """Pictures that could not be rendered, stones that could not be moved."""
     render_seconds: float = 0.0
     """Of the render thread."""
+
+
+@dataclass
+class Durations:
+    """Since the engine started, s."""
+
+    render_hold: Histogram = field(default_factory=Histogram)
+    """That a piece of work held the render thread."""
+    frame_wait: Histogram = field(default_factory=Histogram)
+    """From when a frame was due until it was begun."""
+    frame: Histogram = field(default_factory=Histogram)
+    """From when a frame was begun until it was sent."""
+    encode_wait: Histogram = field(default_factory=Histogram)
+    """From when a frame was drawn until it was encoded."""
+    still_wait: Histogram = field(default_factory=Histogram)
+    """From when a still was asked for until it was begun."""
+
+    def as_json(self) -> dict[str, Any]:
+        """By name, of seconds."""
+        return {f"{name}_seconds": histogram.as_json() for name, histogram in vars(self).items()}
 
 
 class Painter:
@@ -56,23 +84,29 @@ class Painter:
         send: Callable[[bytes], None],
         report: Callable[[str, CuletError], None],
         encode_still: Callable[[Picture, str], bytes],
+        still_seconds: float = 3600.0,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`send` puts a frame on the wire, `report` tells of a session that could not go on; neither waits.
 
-        `clock` is a steady one, in seconds.
+        A still may take `still_seconds` of the render thread. `clock` is a steady one, in seconds.
         """
         self.pictures: dict[str, LivePicture] = {}
         self.counters = Counters()
+        self.durations = Durations()
         self._renderer = renderer
         self._render_thread = render_thread
-        self._encode_thread = ThreadPoolExecutor(1, "encode")
+        self._encode_thread = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2), "encode")
+        self._still_thread = ThreadPoolExecutor(1, "encode-still")
+        self._shares = Shares()
         self._stills = stills
+        self._still_seconds = still_seconds
         self._send = send
         self._report = report
         self._encode_still = encode_still
         self._now = clock
         self._changed = asyncio.Event()
+        self._encoding: set[asyncio.Task[None]] = set()
 
     def wake(self) -> None:
         """Something changed: look again for what is due."""
@@ -93,25 +127,30 @@ class Painter:
                     await self._rest()
         finally:
             self._encode_thread.shutdown(wait=False, cancel_futures=True)
+            self._still_thread.shutdown(wait=False, cancel_futures=True)
 
     async def work(self) -> bool:
-        """One frame, one band, one repetition; whether there was anything."""
-        pictures = list(self.pictures.values())
+        """One piece of work, one repetition; whether there was anything."""
+        pictures, now = list(self.pictures.values()), self._now()
         for live in pictures:
+            if live.outdated(now):
+                self.counters.frames_given_up += 1
+                live.give_up(now)
             if not live.watched:
                 live.abandon()
-        frame = schedule.next_frame(pictures, self._now())
-        if frame is not None:
-            await self._begin(frame)
-        background = schedule.next_background(pictures, self._stills.first())
-        if isinstance(background, Still):
-            await self._advance_still(background)
-        elif background is not None:
-            await self._refine(background)
+        chosen = schedule.next_work(pictures, self._stills, self._shares, now)
+        if isinstance(chosen, LivePicture):
+            await self._advance(chosen)
+        elif chosen is not None and (still := chosen.next()) is not None:
+            await self._advance_still(still)
         repeat = schedule.next_repeat(pictures, self._now())
         if repeat is not None and repeat.message is not None:
             self._send_again(repeat, repeat.message)
-        return any(work is not None for work in (frame, background, repeat))
+        return chosen is not None or repeat is not None
+
+    async def prepare(self, scene: Scene, stone: Stone | None) -> None:
+        """Have what a picture of the scene needs compiled, while others are drawn."""
+        await in_daemon_thread(lambda: self._renderer.prepare(scene, stone))
 
     async def _rest(self) -> None:
         try:
@@ -120,125 +159,169 @@ class Painter:
         except TimeoutError:
             pass
 
+    async def _advance(self, live: LivePicture) -> None:
+        """The next piece of a frame or of a refinement, begun if need be."""
+        if live.work is None:
+            if live.wants_refinement():
+                self._begin_refinement(live)
+            else:
+                await self._begin(live)
+        if live.work is not None:
+            await self._go_on(live, live.work)
+
     async def _begin(self, live: LivePicture) -> None:
-        """Simulate up to now and draw the first sample."""
-        live.begin(self._now())
-        session = live.session
-        live.refinement = None
+        """Simulate up to now, and choose how to draw it."""
+        account, now = live.next_account, self._now()
+        if live.begun_at > NEVER and (due_at := live.due_at()) is not None:
+            self.durations.frame_wait.add(max(0.0, now - due_at))
+        live.begin(now)
+        session, settled = live.session, live.settled
         async with session.lock:
-            held_at = self._now()  # waiting for the lock is no work that the next frame has to do again
+            begun_at = self._now()  # waiting for the lock is no work that the next frame has to do again
             started = time.perf_counter()
             try:
-                await self._in_render_thread(session.advance, self._now())
+                await self._in_render_thread(account, session.advance, begun_at, self._share(live))
             except Exception as error:  # one session's failure must not end the others'; its stone has stopped
                 self._tell_problem(live, as_culet_error(error, CuletError, "simulating"))
-            live.simulate_seconds = time.perf_counter() - started
+            simulate_seconds = time.perf_counter() - started
             shown = session.shown
             session.remember(shown)
-        settled = live.reduced_until is not None and live.at_rest
         if live.current and live.picture is not None and not settled:  # the simulation has not moved on
             return
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
-        plan = live.governor.plan(shown.scene, wanted, session.balance) if live.governed else None
-        try:
-            picture = await self._first_sample(live, plan, shown, wanted)
-            live.drew(picture, shown, wanted, self._now(), reduced=plan is not None)
-            if picture is None:
-                return
-            self.counters.frames_rendered += 1
-            frame = await self._develop(live, picture, shown, plan)
-            if plan is not None:
-                overhead = self._now() - held_at - picture.seconds
-                live.governor.rendered(plan, picture.seconds, overhead, live.frames_per_second)
-            await self._publish(live, frame)
-        except Exception as error:  # as above
-            self._refuse(live, shown, error)
+        plan = live.governor.plan(shown.scene, wanted, live.balance) if live.governed else None
+        kind = Kind.FULL if plan is None else Kind.PLANNED
+        live.work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulate_seconds)
+        live.work.spent = self._now() - begun_at
+        live.work.start(self._renderer)
 
-    async def _first_sample(
-        self, live: LivePicture, plan: Plan | None, shown: Shown, wanted: tuple[int, int]
-    ) -> Picture | None:
-        """None if the picture was to be in full and something newer is to be shown before it is done."""
-        if plan is not None:
-            return await self._in_render_thread(self._reduced, plan, shown)
-        picture = await self._in_render_thread(self._empty, shown.scene, shown, wanted)
-        bands = picture.refine_in_bands(1, band_rows(wanted[0]))
-        while await self._in_render_thread(_proceed, bands):
-            if live.session.shown is not shown:
-                return None
-        return picture
-
-    def _reduced(self, plan: Plan, shown: Shown) -> Picture:
-        picture = self._empty(plan.scene, shown, plan.size)
-        picture.refine(1)
-        return picture
-
-    def _empty(self, scene: Scene, shown: Shown, size: tuple[int, int]) -> Picture:
-        return self._renderer.picture(scene, shown.stone, *size, panorama=shown.panorama)
-
-    async def _refine(self, live: LivePicture) -> None:
-        """One band of a refinement that doubles the samples."""
+    def _begin_refinement(self, live: LivePicture) -> None:
+        """As many samples more as the picture has."""
         picture, shown = live.picture, live.painted
-        if picture is None or shown is None:
-            return
-        live.served_at = self._now()
-        if live.refinement is None:
-            samples = min(picture.samples, REST_SAMPLES - picture.samples)
-            live.refinement = picture.refine_in_bands(samples, band_rows(live.painted_size[0]))
+        assert picture is not None  # noqa: S101 - of a picture that wants to be refined
+        assert shown is not None  # noqa: S101 - likewise
+        samples = min(picture.samples, REST_SAMPLES - picture.samples)
+        live.work = FrameWork(
+            Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, samples=samples,
+            final=picture.samples + samples >= REST_SAMPLES, render_seconds=live.render_seconds,
+        )  # fmt: skip
+        live.work.start(self._renderer)
+
+    async def _go_on(self, live: LivePicture, work: FrameWork) -> None:
+        """The next piece; what is done is sent."""
+        started = self._now()
         try:
-            if await self._in_render_thread(_proceed, live.refinement):
-                return
-            live.refinement = None
-            live.render_seconds += picture.seconds
-            self.counters.refinements += 1
-            live.final = picture.samples >= REST_SAMPLES
-            await self._publish(live, await self._develop(live, picture, shown, None))
-            if live.final:
-                live.picture = None
+            more = await self._in_render_thread(work.account, proceed, work.pieces, self._now)
+        except Unprepared:
+            live.work = None
+            live.preparing = asyncio.create_task(self._prepare(live, work))
+            return
         except Exception as error:  # as above
-            self._refuse(live, shown, error)
+            self._refuse(live, work.shown, error)
+            return
+        work.spent += self._now() - started
+        if more or work.frame is None or work.picture is None:
+            return
+        live.drew(work, self._now())
+        if work.kind is Kind.REFINED:
+            self.counters.refinements += 1
+        else:
+            self.counters.frames_rendered += 1
+        if work.plan is not None:
+            seconds = work.picture.seconds
+            live.governor.rendered(
+                work.plan, seconds, work.spent - seconds, live.frames_per_second, self._share(live)
+            )  # fmt: skip
+        self._publish(live, work.frame, work.begun_at)
+
+    async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
+        try:
+            await self.prepare(work.shown.scene if work.plan is None else work.plan.scene, work.shown.stone)
+        except Exception as error:  # as above
+            self._refuse(live, work.shown, error)
+        finally:
+            live.preparing = None
+            self.wake()
+
+    def _share(self, live: LivePicture) -> float:
+        """The part of the render thread's time that a session can have."""
+        others = [account for other in self.pictures.values() for account in (other.frames, other.rest)]
+        return share(live.frames, [*others, self._stills.account], self._now())
 
     async def _advance_still(self, still: Still) -> None:
-        """One band of a still, or its end."""
-        still.served_at = self._now()
+        """One piece of a still, or its end."""
+        started = self._now()
         try:
-            if still.bands is None:
-                still.bands = still.paint(self._renderer)
-            if await self._in_render_thread(_proceed, still.bands):
-                return
-            assert still.picture is not None  # noqa: S101 - made before the first band
-            data = await asyncio.get_running_loop().run_in_executor(
-                self._encode_thread, self._encode_still, still.picture, still.format
-            )
+            if still.pieces is None:
+                self.durations.still_wait.add(max(0.0, started - still.asked_at))
+                still.pieces = still.paint(self._renderer)
+            more = await self._in_render_thread(self._stills.account, proceed, still.pieces, self._now)
+            self._stills.charge(still, self._now() - started, self._now())
+            if more and still.spent > self._still_seconds:
+                raise TooLargeError(
+                    f"expected a picture that takes at most {self._still_seconds:g} s to render, got one of "
+                    f"{still.width} x {still.height} pixels, {still.samples} samples and {still.scene.optics.bands} "
+                    "bands that is not done after them; ask for less of each",
+                    "samples",
+                )
         except Exception as error:  # the one who asked is told
-            self.counters.problems += 1
-            self._stills.remove(still)
-            if not still.done.done():
-                still.done.set_exception(as_culet_error(error))
+            self._fail_still(still, error)
+            return
+        if not more:
+            still.rendered = True
+            task = asyncio.create_task(self._encode_and_answer(still))
+            self._encoding.add(task)
+            task.add_done_callback(self._encoding.discard)
+
+    async def _encode_and_answer(self, still: Still) -> None:
+        assert still.picture is not None  # noqa: S101 - it is rendered
+        try:
+            data = await asyncio.get_running_loop().run_in_executor(
+                self._still_thread, self._encode_still, still.picture, still.format
+            )
+        except Exception as error:  # as above
+            self._fail_still(still, error)
             return
         self._stills.remove(still)
         self.counters.stills_rendered += 1
         if not still.done.done():
             still.done.set_result(data)
 
-    async def _develop(self, live: LivePicture, picture: Picture, shown: Shown, plan: Plan | None) -> LiveFrame:
-        spent = live.simulate_seconds, live.render_seconds
-        return await self._in_render_thread(LiveFrame.developed, picture, shown, plan, spent, live.final)
+    def _fail_still(self, still: Still, error: Exception) -> None:
+        self.counters.problems += 1
+        self._stills.remove(still)
+        if not still.done.done():
+            still.done.set_exception(as_culet_error(error))
 
-    async def _publish(self, live: LivePicture, frame: LiveFrame) -> None:
+    def _publish(self, live: LivePicture, frame: LiveFrame, begun_at: float) -> None:
         """Encode and send while the next frame is rendered."""
-        if live.publishing is not None:
-            await live.publishing  # one frame at a time, so that they leave in order
-        live.publishing = asyncio.create_task(self._encode_and_send(live, frame))
+        live.unsent += 1
+        live.publishing = asyncio.create_task(self._encode_and_send(live, frame, begun_at, live.publishing))
 
-    async def _encode_and_send(self, live: LivePicture, frame: LiveFrame) -> None:
-        started = time.perf_counter()
-        payload = await asyncio.get_running_loop().run_in_executor(
-            self._encode_thread, lambda: jpeg.encode(frame.rgb, moving=frame.shown.moving)
-        )
-        live.session.sequence += 1
-        message = frame.pack(live.session, payload, time.perf_counter() - started)
+    async def _encode_and_send(
+        self, live: LivePicture, frame: LiveFrame, begun_at: float, before: asyncio.Task[None] | None
+    ) -> None:
+        drawn_at, started = self._now(), time.perf_counter()
+        try:
+            payload = await asyncio.get_running_loop().run_in_executor(
+                self._encode_thread, lambda: jpeg.encode(frame.rgb, moving=frame.shown.moving)
+            )
+            encode_seconds = time.perf_counter() - started
+            if before is not None:
+                await asyncio.wait([before])  # so that frames leave in order
+            live.session.sequence += 1
+            message = frame.pack(live.session, payload, encode_seconds)
+        except Exception as error:  # as above
+            self._tell_problem(live, as_culet_error(error, what="encoding"))
+            return
+        finally:
+            live.unsent -= 1
+            self.wake()
+        now = self._now()
+        self.durations.encode_wait.add(max(0.0, now - drawn_at))
+        self.durations.frame.add(max(0.0, now - begun_at))
         live.message = message
-        live.sent_at = self._now()
+        live.sent_at = now
         self.counters.frames_sent += 1
         self._send(message)
 
@@ -248,28 +331,57 @@ class Painter:
         self._send(message)
 
     def _refuse(self, live: LivePicture, shown: Shown, error: Exception) -> None:
-        live.refused = shown
-        live.abandon()
+        live.refuse(shown)
         self._tell_problem(live, as_culet_error(error))
 
     def _tell_problem(self, live: LivePicture, error: CuletError) -> None:
         self.counters.problems += 1
         self._report(live.session.name, error)
 
-    async def _in_render_thread(self, call: Callable[..., T], *arguments: object) -> T:
-        started = time.perf_counter()
+    async def _in_render_thread(self, account: Account, call: Callable[..., T], *arguments: object) -> T:
+        """The account pays for the time that this holds the thread."""
+        held = 0.0
+
+        def timed() -> T:
+            nonlocal held
+            started = self._now()
+            try:
+                return call(*arguments)
+            finally:
+                held = self._now() - started
+
         try:
-            return await asyncio.get_running_loop().run_in_executor(self._render_thread, call, *arguments)
+            return await asyncio.get_running_loop().run_in_executor(self._render_thread, timed)
         finally:
-            self.counters.render_seconds += time.perf_counter() - started
+            self.counters.render_seconds += held
+            self.durations.render_hold.add(held)
+            self._shares.charge(account, held, self._now())
 
 
-def _proceed(bands: Iterator[object]) -> bool:
-    """Render one band; whether there was one."""
-    return next(bands, _DONE) is not _DONE
+async def in_daemon_thread(call: Callable[[], None]) -> None:
+    """As `asyncio.to_thread`, but a process that ends does not wait for it: a compiler may take long."""
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[None] = loop.create_future()
 
+    def settle(error: Exception | None) -> None:
+        if done.done():
+            return
+        if error is None:
+            done.set_result(None)
+        else:
+            done.set_exception(error)
 
-_DONE = object()
+    def run() -> None:
+        failure = None
+        try:
+            call()
+        except Exception as error:
+            failure = error
+        with contextlib.suppress(RuntimeError):  # the loop is closed: nobody waits any more
+            loop.call_soon_threadsafe(settle, failure)
+
+    threading.Thread(target=run, name="prepare", daemon=True).start()
+    await done
 
 
 def as_culet_error(error: Exception, kind: type[CuletError] = DeviceError, what: str = "rendering") -> CuletError:

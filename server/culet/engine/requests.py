@@ -8,11 +8,11 @@ import os
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, assert_never
 
 from culet.engine import events
 from culet.engine.assets import Assets
-from culet.engine.limits import Limits, check_still_size, live_size
+from culet.engine.limits import Limits, check_still_size, check_still_work, live_size
 from culet.engine.live import LivePicture
 from culet.engine.memory import Memory
 from culet.engine.painter import Painter
@@ -90,8 +90,10 @@ class Requests:
         self._reporting: set[str] = set()
         self._subscriptions: set[bytes] = set()
         self._started = time.monotonic()
+        self._closed_pace = 0.0, 0.0
+        """Of sessions that are closed: seconds that were to be simulated, and of these those that were dropped."""
 
-    async def answer(self, request: Any, data: bytes | None) -> Answer:  # noqa: ANN401 - the union of all requests
+    async def answer(self, request: protocol.Request, data: bytes | None) -> Answer:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
@@ -114,8 +116,10 @@ class Requests:
                 return await self._skies.put(request.sky, request.file_type, _file(data)), None
             case protocol.Cancel():
                 return {}, None
-            case _:
+            case protocol.Status():
                 return self.status(), None
+            case _:
+                assert_never(request)
 
     def watch(self, key: bytes, subscribed: bool) -> None:
         """Somebody began or ceased to receive the frames of the session with these 16 bytes."""
@@ -178,7 +182,20 @@ class Requests:
             **vars(self._painter.counters),
             "memory_budget_bytes": self._memory.budget,
             **{f"memory_{kind}_bytes": size for kind, size in self._memory.held().items()},
+            **self._pace(),
+            "durations": self._painter.durations.as_json(),
             "device": self._device,
+        }
+
+    def _pace(self) -> dict[str, Any]:
+        """How far simulations that somebody watches are behind real time."""
+        paces = [live.session.pace for live in self._painter.pictures.values()]
+        moving = [live.session.pace for live in self._painter.pictures.values() if live.watched and live.session.moving]
+        return {
+            "simulated_seconds": self._closed_pace[0] + sum(pace.seconds for pace in paces),
+            "simulated_seconds_dropped": self._closed_pace[1] + sum(pace.dropped for pace in paces),
+            "sessions_slow": sum(pace.slow for pace in moving),
+            "slowest_pace": min((pace.lately for pace in moving), default=1.0),
         }
 
     async def _open(self, request: protocol.OpenSession) -> dict[str, Any]:
@@ -225,9 +242,8 @@ class Requests:
         named = set[str]()
         for live in self._painter.pictures.values():
             named |= names_in(live.session.shown.scene, live.session.sky.environment)
-            for shown in (live.painted, live.refused):
-                if shown is not None:
-                    named |= names_in(shown.scene)
+            if live.painted is not None:
+                named |= names_in(live.painted.scene)
         for still in self._awaited:
             named |= names_in(still.scene)
         return named
@@ -252,7 +268,8 @@ class Requests:
         return SHOWN_BYTES * sum(live.session.remembered for live in self._painter.pictures.values())
 
     def _close(self, session: str) -> dict[str, Any]:
-        self._live(session)
+        pace = self._live(session).session.pace
+        self._closed_pace = self._closed_pace[0] + pace.seconds, self._closed_pace[1] + pace.dropped
         del self._painter.pictures[session]
         del self._touched[session]
         self._told.pop(session, None)
@@ -312,15 +329,21 @@ class Requests:
         samples = scene.sampling.samples_per_pixel
         if request.session is not None:
             samples = max(samples, SESSION_STILL_SAMPLES)
-        still = Still(scene, stone, width, height, samples, request.format, panorama)
+        check_still_work(width, height, samples, scene.optics.bands, self._limits)
+        still = Still(
+            scene, stone, width, height, samples, request.format, panorama, request.client, time.monotonic()
+        )  # fmt: skip
+        await self._painter.prepare(scene, stone)
         self._make_room_for(still)
         self._stills.put(still)
         self._awaited.add(still)
         self._painter.wake()
         try:
             data = await still.done
-        finally:
+        finally:  # also where nobody waits for it any more
             self._awaited.discard(still)
+            self._stills.remove(still)
+            self._painter.wake()
         return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
 
     async def _subject(

@@ -1,7 +1,7 @@
 """What the one render thread does next: pure choices from what is due.
 
-A frame whose time has come goes first, the one begun longest ago before others, so that sessions share fairly. After
-every frame, one band of background work (a refinement or a still) gets its turn, so that no still starves.
+Every session has its share of the thread's time (shares.py), whatever one of its frames costs: the next piece of work
+is of who has had least. A frame whose time has come competes with refinements and stills, which have a smaller weight.
 """
 
 from __future__ import annotations
@@ -9,21 +9,30 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from culet.engine.live import LivePicture
-from culet.engine.still import Still
+from culet.engine.shares import Shares
+from culet.engine.still import StillQueue
 
 
-def next_frame(pictures: Iterable[LivePicture], now: float) -> LivePicture | None:
-    """The picture whose frame is due and was begun longest ago."""
-    due = [picture for picture in pictures if (time := picture.due_at()) is not None and time <= now]
-    return min(due, key=lambda picture: picture.begun_at, default=None)
+def next_work(
+    pictures: Iterable[LivePicture], stills: StillQueue, shares: Shares, now: float
+) -> LivePicture | StillQueue | None:
+    """Who gets the next piece of the render thread's time; of those with equal claims who waits longest."""
+    waiting: list[tuple[float, float, LivePicture | StillQueue]] = [
+        (shares.start(picture.next_account), picture.begun_at, picture)
+        for picture in pictures
+        if is_runnable(picture, now)
+    ]
+    if stills.next() is not None:
+        waiting.append((shares.start(stills.account), stills.served_at, stills))
+    return min(waiting, key=lambda claim: claim[:2], default=(0, 0, None))[2]
 
 
-def next_background(pictures: Iterable[LivePicture], still: Still | None) -> LivePicture | Still | None:
-    """The refinement or still that had its last turn longest ago."""
-    waiting: list[LivePicture | Still] = [picture for picture in pictures if picture.wants_refinement()]
-    if still is not None:
-        waiting.append(still)
-    return min(waiting, key=lambda work: work.served_at, default=None)
+def is_runnable(picture: LivePicture, now: float) -> bool:
+    """Whether there is work to do for a picture now."""
+    if picture.work is not None:
+        return picture.watched
+    due_at = picture.due_at()
+    return (due_at is not None and due_at <= now) or picture.wants_refinement()
 
 
 def next_repeat(pictures: Iterable[LivePicture], now: float) -> LivePicture | None:

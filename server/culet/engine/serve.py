@@ -135,9 +135,15 @@ class Engine:
         self._tasks: set[asyncio.Task[None]] = set()
         self._under_way: dict[tuple[bytes, bytes], asyncio.Task[None]] = {}
         """Requests that are not answered yet, by peer and number."""
-        stills = StillQueue(limits.max_stills)
+        stills = StillQueue(limits.max_stills, limits.max_still_pixels)
         self._painter = Painter(
-            renderer, render_thread, stills, send=self._send_frame, report=self._report_problem, encode_still=encode
+            renderer,
+            render_thread,
+            stills,
+            send=self._send_frame,
+            report=self._report_problem,
+            encode_still=encode,
+            still_seconds=limits.still_seconds,
         )
         self._watchdog = Watchdog(render_thread)
         self._orphan_seconds = limits.orphan_seconds
@@ -267,7 +273,7 @@ class Engine:
         return task
 
 
-def read_request(text: bytes) -> BaseModel:
+def read_request(text: bytes) -> protocol.Request:
     """The request, or InputError that names the first field that cannot be used."""
     try:
         return protocol.engine_request.validate_json(text)

@@ -20,7 +20,7 @@ from culet.errors import InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Scene
-from culet.simulation import Allowance, FixedStepClock, Simulation, surfaces_of
+from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
 from culet_protocol.engine import SessionState
 from culet_protocol.messages import BALANCED, Balance
 
@@ -87,6 +87,8 @@ class Session:
         self._advanced_at: float | None = None
         self._timer = timer
         self._allowance = Allowance()
+        self.pace = Pace()
+        """Of the simulation."""
         self._authored = scene
         self._camera = scene.camera
         self.sky = sky or Sky(scene.environment)
@@ -224,8 +226,10 @@ class Session:
         self._stop()
         self._show()
 
-    def advance(self, now: float) -> None:
+    def advance(self, now: float, share: float = 1.0) -> None:
         """Simulate up to `now`, in seconds of a steady clock, in fixed steps; show the pose between the last two.
+
+        Steps may take their part of the `share` of the time that the session can have beside others.
 
         Of a stone that does not move nothing changes, not even the time shown: another time would be another picture,
         to be drawn anew. Steps that take too long are given up (`Allowance`). If one fails, the stone stops, and the
@@ -236,15 +240,19 @@ class Session:
         elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
         self._advanced_at = now
         try:
-            self._step(self._simulation, elapsed)
+            self._step(self._simulation, elapsed, share)
             self._show()
         except Exception:
             self._stop()
             self._show()
             raise
 
-    def _step(self, simulation: Simulation, elapsed: float) -> None:
-        self._allowance.grow(elapsed)
+    def pause(self) -> None:
+        """Nobody watches: the time that passes now is not made up for, nor is it lost."""
+        self._advanced_at = None
+
+    def _step(self, simulation: Simulation, elapsed: float, share: float) -> None:
+        self._allowance.grow(elapsed, share)
         due = self._clock.advance(elapsed)
         for taken in range(due):
             if self._allowance.spent:
@@ -253,6 +261,7 @@ class Session:
             begun = self._timer()
             simulation.step()
             self._allowance.spend(self._timer() - begun)
+        self.pace.passed(elapsed, self._clock.dropped)
 
     def remember(self, shown: Shown) -> None:
         """Keep what a frame was made of, so that it can be rendered again."""

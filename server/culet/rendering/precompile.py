@@ -18,20 +18,20 @@ from culet.rendering.features import Features
 from culet.rendering.program import Programs, Variant
 
 NICENESS = 10
-"""Of the compiling process: frames come first."""
+"""Of the compiling process, unless somebody waits for it: frames come first."""
 MOST_SECONDS = 600.0
 """After which the compiler counts as hung. Programs take some 3 s of a core, measured, and more where many share it."""
-COMMAND = ("nice", "-n", str(NICENESS), sys.executable, "-m", __name__)
+COMMAND = (sys.executable, "-m", __name__)
 """The process, which takes the order as its argument."""
 
 
-def precompile(features: Features, variant: Variant) -> bool:
+def precompile(features: Features, variant: Variant, *, urgent: bool = False) -> bool:
     """Start a process that makes the program, and wait for it; whether it did. DeviceError if it does not end.
 
     If it fails, the caller's own build will say why.
     """
     order = {"features": asdict(features), "variant": {**asdict(variant), "real": np.dtype(variant.real).name}}
-    command = [*COMMAND, json.dumps(order)]
+    command = ["nice", "-n", str(0 if urgent else NICENESS), *COMMAND, json.dumps(order)]
     try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
     except subprocess.TimeoutExpired:

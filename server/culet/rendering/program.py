@@ -33,6 +33,26 @@ TILE = 32
 """Pixels on each side of what a core renders at a time."""
 
 
+TILES_DEALT, WORK_BYTES, OF_ITEMS = 0, 1, 2
+"""Where a sample's progress has what, as in tile.cl; then for each work-item whether it keeps a tile that is not done,
+and how many steps it has made in the last launch."""
+
+
+def progress_size(units: int) -> int:
+    """Numbers of the progress of a sample to which so many work-items see."""
+    return OF_ITEMS + 2 * units
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """The render kernel of one program."""
+
+    launch: Any
+    """pyopencl's."""
+    kept_bytes: int
+    """That a work-item keeps of a tile under way."""
+
+
 @dataclass(frozen=True)
 class Variant:
     """What names a program besides its features."""
@@ -80,12 +100,12 @@ class Programs:
         """`own_process`: this one is there for nothing else than to make a program."""
         self._device = device
         self._own_process = own_process
-        self._ready: dict[tuple[Features, Variant], Any] = {}
+        self._ready: dict[tuple[Features, Variant], Kernel] = {}
         self._next_try: dict[tuple[Features, Variant], float] = {}
         """s, steady clock: of those made in the background, or tried in vain, when they may be tried again."""
         self._compiler = threading.Lock()
 
-    def exact(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+    def exact(self, features: Features, variant: Variant) -> Kernel:
         """The kernel for just these features; waits for the compiler if need be."""
         key = features, variant
         kernel = self._ready.get(key)
@@ -96,7 +116,22 @@ class Programs:
                 self._ready[key] = kernel
         return kernel
 
-    def best(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+    def is_ready(self, features: Features, variant: Variant) -> bool:
+        """Whether `exact` would not wait."""
+        return (features, variant) in self._ready
+
+    def prepare(self, features: Features, variant: Variant, *, urgent: bool = True) -> None:
+        """Make the kernel for just these features ready, and keep launches waiting as little as can be: by a process of
+        its own, unless there is nothing yet that could be launched."""
+        from culet.rendering.precompile import precompile  # which imports this module
+
+        if self.is_ready(features, variant):
+            return
+        if self._ready:
+            precompile(features, variant, urgent=urgent)
+        self.exact(features, variant)
+
+    def best(self, features: Features, variant: Variant) -> Kernel:
         """The kernel for these features if it is ready; else the general one, while the special one is made.
 
         That is tried once: where it fails, the general one goes on serving; but tried again later where the driver
@@ -113,26 +148,22 @@ class Programs:
         return general
 
     def _make_ready(self, features: Features, variant: Variant) -> None:
-        from culet.rendering.precompile import precompile  # which imports this module
-
         try:
-            precompile(features, variant)
-            self.exact(features, variant)
+            self.prepare(features, variant, urgent=False)
         except KernelCacheError as error:
             self._next_try[features, variant] = time.monotonic() + RETRY_SECONDS
             log.error("the general program goes on serving: %s", error)
         except Exception:  # drivers fail in every way; another try with each frame would fail as well
             log.exception("the general program goes on serving: the special one cannot be made (%s)", features)
 
-    def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401
+    def _make(self, features: Features, variant: Variant) -> Kernel:
         if not self._own_process and not kernel_cache.has_plenty_of_room():
             self._make_in_a_process_of_its_own(features, variant)
         options = [*variant.options, *features.options]
         with alone(kernel_cache.folder(), f"{culet_kernels.source('render.cl')} {options}"):
             program = build(self._device, "render.cl", options)
-            kernel = cl.Kernel(program, "render")
-            warm_up(self._device, kernel)
-        return cl.Kernel(program, "render")
+            kept_bytes = warm_up(self._device, cl.Kernel(program, "render"))
+        return Kernel(cl.Kernel(program, "render"), kept_bytes)
 
     def _make_in_a_process_of_its_own(self, features: Features, variant: Variant) -> None:
         """Where there is little room the compiler may end its process: not this one. Then what is made is there."""
@@ -142,11 +173,16 @@ class Programs:
             raise KernelCacheError(fault)
 
 
-def warm_up(device: Device, kernel: Any) -> None:  # noqa: ANN401
-    """Launch once for no tiles, in a queue of its own."""
+def warm_up(device: Device, kernel: Any) -> int:  # noqa: ANN401
+    """Launch once for no tiles, in a queue of its own; the bytes that a work-item keeps of a tile under way."""
     queue = cl.CommandQueue(device.context)
     size = layout(np.float64).itemsize  # of the largest argument that is read: a scene in either precision
     scratch = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, size)
+    progress = np.zeros(progress_size(1), np.uint32)
+    target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR, hostbuf=progress)
     real, integer = np.float64(0), np.int32(0)
-    kernel(queue, (1,), (1,), *[scratch] * 9, real, real, integer, integer, scratch, integer, scratch)
-    queue.finish()
+    kernel(
+        queue, (1,), (1,), *[scratch] * 9, real, real, integer, target, integer, scratch, scratch, np.int32(1)
+    )  # fmt: skip
+    cl.enqueue_copy(queue, progress, target)
+    return int(progress[WORK_BYTES])

@@ -15,17 +15,34 @@ from culet.geometry.stone import Stone
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
-from culet.rendering.features import Features, features_of
+from culet.rendering.features import Features, Geometry, features_of
 from culet.rendering.inputs import Inputs
+from culet.rendering.pace import Pace
 from culet.rendering.panoramas import Panorama
-from culet.rendering.program import TILE, Programs, Variant, build
+from culet.rendering.program import (
+    OF_ITEMS,
+    TILE,
+    TILES_DEALT,
+    Kernel,
+    Programs,
+    Variant,
+    build,
+    progress_size,
+)
 from culet.rendering.sums import Fold, Sums
+from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene
 
-NONE_DEALT = np.zeros(1, np.uint32)
-"""Of a launch's tiles, before it begins; see tile.cl."""
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
+ALMOST = 1 - 2**-20
+"""The part of a sample that is done when its pixels are, but not what comes after."""
+DEVELOP_BLOCK = 16
+"""Pixels of a work-item that develops, as in film.cl."""
+DEVELOP_GROUP = 16
+"""Work-items of a group. Always as many, or PoCL would make machine code anew for many a picture's size: 0.2 s each."""
+DEVELOPED = 2**19
+"""Pixels that are developed at a time: some 7 ms. With more than 65535 work-items PoCL would make machine code anew."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3, "neutral": 4}
 
 
@@ -48,7 +65,9 @@ class Renderer:
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
         self.fold = Fold(self.device, self.variant)
+        self._paces: dict[tuple[Any, int], Pace] = {}
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
+        self._warm_up()
 
     def prepare(self) -> None:
         """Make the program that serves most scenes until a special one is ready, so that no picture waits for it."""
@@ -79,6 +98,36 @@ class Renderer:
     def release(self) -> None:
         """Give back the memory of pictures that are gone, which is kept for the next ones."""
         self.pool.free_held()
+
+    def _warm_up(self) -> None:
+        """Have machine code made of what every picture needs, before any picture waits for it."""
+        scratch = cl.Buffer(self.device.context, cl.mem_flags.READ_WRITE, 64)
+        none = np.int32(0)
+        self.develop(
+            self.device.queue, (DEVELOP_GROUP,), (DEVELOP_GROUP,), scratch, scratch, none, scratch, none, none,
+            np.float32(0), none, none,
+        )  # fmt: skip
+        self.fold.warm_up(scratch)
+        self.device.queue.finish()
+
+    def pace_of(self, kernel: Kernel, triangles: int) -> Pace:
+        """What is known of that program's steps, with stones of about so many triangles."""
+        return self._paces.setdefault((kernel, triangles.bit_length()), Pace())
+
+    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+        """Whether a picture can be begun without waiting for a compiler, or for a mesh's tree."""
+        stone = stone if scene.stones else None
+        features = features_of(scene, stone)
+        tree_is_there = stone is None or features.geometry != Geometry.MESH or has_tree(stone)
+        return tree_is_there and self.programs.is_ready(features.general, self.variant)
+
+    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+        """Have what `is_ready` asks for made, while pictures are refined in another thread."""
+        stone = stone if scene.stones else None
+        features = features_of(scene, stone)
+        if stone is not None and features.geometry == Geometry.MESH:
+            tree_of(stone)
+        self.programs.prepare(features.general, self.variant)
 
     def describe(self) -> dict[str, str | int]:
         """Device, driver and lanes, for reports."""
@@ -135,7 +184,9 @@ class Picture:
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
-        self._dealt = self._allocate(NONE_DEALT.nbytes)
+        self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
+        """As developed last, and how many samples there were then."""
+        self._pace = renderer.pace_of(self._kernel, 0 if stone is None else len(stone.triangles))
 
     @property
     def samples(self) -> int:
@@ -144,38 +195,55 @@ class Picture:
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
-        for _ in self.refine_in_bands(samples, self.height):
+        for _ in self.refine_in_pieces(samples, math.inf):
             pass
 
-    def refine_in_bands(self, samples: int, rows: int) -> Iterator[float]:
-        """The same in bands of about `rows` rows; yields the part that is done, between them."""
-        across, down = self._tiles
-        tiles = across * min(down, max(1, math.ceil(rows / TILE)))
-        bands = math.ceil(across * down / tiles)
-        queue = self._renderer.device.queue
+    def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
+        """The same in launches of about so many seconds each; yields the part that is done, between them.
+
+        However long a pixel takes: a launch ends after a number of steps, and the next one goes on where it ended. The
+        picture is the same to the last bit as one that is made at once.
+        """
         self.seconds = 0.0
         for sample in range(samples):
-            x, y = jitter(self.samples, self.scene.sampling.filter)
-            target, accumulate = self._sums.next
-            for band in range(bands):
-                start = time.perf_counter()
-                count = min(tiles, across * down - band * tiles)
-                cl.enqueue_fill_buffer(queue, self._dealt, NONE_DEALT, 0, NONE_DEALT.nbytes)
-                event = self._kernel(
-                    queue, (self._renderer.device.units,), (1,), target, *self._inputs.of_sample(self.samples),
-                    np.float64(x), np.float64(y), np.int32(band * tiles), np.int32(count), self._dealt,
-                    np.int32(accumulate), self._tallies,
-                )  # fmt: skip
-                event.wait()
-                self.seconds += time.perf_counter() - start
-                if band == bands - 1:
-                    self._sums.added()
-                yield (sample + (band + 1) / bands) / samples
+            for part in self._one_sample(seconds):
+                yield (sample + part) / samples
+
+    def _one_sample(self, seconds: float) -> Iterator[float]:
+        """Yields the part of the tiles that were begun, between launches, and at last 1."""
+        device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
+        x, y = jitter(self.samples, self.scene.sampling.filter)
+        target, accumulate = self._sums.next
+        progress = np.zeros(progress_size(device.units), np.uint32)
+        of_items = progress[OF_ITEMS:].reshape(device.units, 2)
+        buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * self._kernel.kept_bytes)
+        start = time.perf_counter()
+        cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
+        while True:
+            event = self._kernel.launch(
+                device.queue, (device.units,), (1,), target, *self._inputs.of_sample(self.samples),
+                np.float64(x), np.float64(y), np.int32(count), buffer, np.int32(accumulate), self._tallies, kept,
+                np.int32(self._pace.steps(seconds)),
+            )  # fmt: skip
+            event.wait()
+            cl.enqueue_copy(device.queue, progress, buffer)
+            taken = time.perf_counter() - start
+            self.seconds += taken
+            under_way, steps = of_items.T
+            self._pace.made(int(steps.max()), taken)
+            part = min(int(progress[TILES_DEALT]) / count, ALMOST)
+            if progress[TILES_DEALT] >= count and not under_way.any():
+                break
+            yield part
+            start = time.perf_counter()
+        for _ in self._sums.added():
+            yield ALMOST
+        yield 1.0
 
     @property
     def program(self) -> Any:  # noqa: ANN401 - pyopencl has no types
         """The built program that renders this picture."""
-        return self._kernel.program
+        return self._kernel.launch.program
 
     def linear(self) -> NDArray[np.floating[Any]]:
         """(height, width, 3) mean linear radiance."""
@@ -198,20 +266,31 @@ class Picture:
         return int(self._tally()[:, 0].sum(dtype=float))
 
     def rgb(self) -> NDArray[np.uint8]:
-        """(height, width, 3) tone-mapped, 8 bits."""
-        if self.samples == 0:
-            return np.zeros((self.height, self.width, 3), np.uint8)
+        """(height, width, 3) tone-mapped, 8 bits. Needs no device if it is developed already."""
+        for _ in self.develop_in_pieces():
+            pass
+        return self._shown
+
+    def develop_in_pieces(self) -> Iterator[None]:
+        """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""
+        if self._shown_samples == self.samples:
+            return
         shown = np.empty((self.height, self.width, 3), np.uint8)
-        target = self._allocate(shown.nbytes)
         film, pixels, sums = self.scene.film, self.width * self.height, self._sums
-        self._renderer.develop(
-            self._renderer.device.queue, (math.ceil(pixels / 16),), None, *sums.buffers, np.int32(sums.later > 0),
-            target, np.int32(pixels),
-            np.float32(film.exposure / max(1, self.samples)), np.int32(TONE_MAPS[film.tone_map]),
-            np.int32(film.gamut == "clip" or not is_spectral(self.scene)),
-        )  # fmt: skip
-        cl.enqueue_copy(self._renderer.device.queue, shown, target)
-        return shown
+        queue, target = self._renderer.device.queue, self._allocate(shown.nbytes)
+        flat = shown.reshape(-1)
+        for begin in range(0, pixels, DEVELOPED):
+            end = min(begin + DEVELOPED, pixels)
+            items = math.ceil((end - begin) / DEVELOP_BLOCK / DEVELOP_GROUP) * DEVELOP_GROUP
+            self._renderer.develop(
+                queue, (items,), (DEVELOP_GROUP,), *sums.buffers, np.int32(sums.later > 0), target,
+                np.int32(begin), np.int32(end),
+                np.float32(film.exposure / max(1, self.samples)), np.int32(TONE_MAPS[film.tone_map]),
+                np.int32(film.gamut == "clip" or not is_spectral(self.scene)),
+            )  # fmt: skip
+            cl.enqueue_copy(queue, flat[3 * begin : 3 * end], target, src_offset=3 * begin)
+            yield
+        self._shown, self._shown_samples = shown, self.samples
 
     def _tally(self) -> NDArray[np.float32]:
         """By tile: segments, and the weight that was cut; of the last sample."""

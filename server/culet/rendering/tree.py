@@ -64,6 +64,11 @@ _TREES: WeakKeyDictionary[Stone, Tree] = WeakKeyDictionary()
 """Kept as long as their stones: a tree is as large as its mesh."""
 
 
+def has_tree(stone: Stone) -> bool:
+    """Whether `tree_of` has it already."""
+    return stone in _TREES
+
+
 def tree_of(stone: Stone) -> Tree:
     """The tree of a stone; made once, since stones are immutable."""
     tree = _TREES.get(stone)

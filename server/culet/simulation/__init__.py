@@ -1,6 +1,6 @@
 """Rigid bodies: state, integrators, contact."""
 
-from culet.simulation.clock import Allowance, FixedStepClock
+from culet.simulation.clock import Allowance, FixedStepClock, Pace
 from culet.simulation.paths import Path, record, write
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
@@ -9,6 +9,7 @@ from culet.simulation.surfaces import Surface, surfaces_of
 __all__ = [
     "Allowance",
     "FixedStepClock",
+    "Pace",
     "Path",
     "RigidState",
     "Simulation",

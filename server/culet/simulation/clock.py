@@ -21,6 +21,20 @@ MOST_WORK = 0.02
 WORK_SHARE = 0.5
 """Of the time that passes, which steps may take on the average. 1: one session's stone can keep all others waiting."""
 
+SHARED_WORK = 0.3
+"""Of a session's share of the time, likewise, beside others: where they are so many that all stones move slower, frames
+are what the time is for. Two sessions have three times as much as a brilliant in contact takes."""
+
+LEAST_WORK = 0.25
+"""Of MOST_WORK, for one call however many share the time: a step or two in contact."""
+
+
+PACE_SECONDS = 1.0
+"""Over which the pace is averaged: one stall of a quarter of a second is no slow motion."""
+
+NOTICED = 0.1
+"""Slower by less nobody sees, nor is it worth saying."""
+
 
 class FixedStepClock:
     """Counts steps due. `dropped` is the time, in seconds, that was given up so far."""
@@ -76,10 +90,40 @@ class Allowance:
         """Whether no further step may be begun now."""
         return self._left <= 0
 
-    def grow(self, elapsed: float) -> None:
-        """Let `elapsed` seconds of real time pass."""
-        self._left = min(self._left + WORK_SHARE * elapsed, MOST_WORK)
+    def grow(self, elapsed: float, share: float = 1.0) -> None:
+        """Let `elapsed` seconds of real time pass, of which others leave that share."""
+        part = WORK_SHARE if share >= 1 else min(WORK_SHARE, SHARED_WORK * share)
+        self._left = min(self._left + part * elapsed, MOST_WORK * max(share, LEAST_WORK))
 
     def spend(self, seconds: float) -> None:
         """A step has taken so many seconds of the processor, maybe more than are left: later steps wait for that."""
         self._left -= seconds
+
+
+class Pace:
+    """How fast a simulation goes, beside real time."""
+
+    def __init__(self) -> None:
+        """In real time."""
+        self.seconds = 0.0
+        """Of real time that have passed while something moved."""
+        self.dropped = 0.0
+        """Of these, that were given up."""
+        self.lately = 1.0
+        """Part of real time, averaged over PACE_SECONDS."""
+        self._dropped_before = 0.0
+
+    @property
+    def slow(self) -> bool:
+        """Whether one who looks on can notice that it is slower than real time."""
+        return self.lately < 1 - NOTICED
+
+    def passed(self, elapsed: float, dropped: float) -> None:
+        """So many seconds of real time have passed, and a clock has dropped so many in all (a new one begins at 0)."""
+        lost = dropped - self._dropped_before if dropped >= self._dropped_before else dropped
+        self._dropped_before = dropped
+        self.seconds += elapsed
+        self.dropped += lost
+        if elapsed > 0:
+            weight = -math.expm1(-elapsed / PACE_SECONDS)
+            self.lately += weight * (max(0.0, 1 - lost / elapsed) - self.lately)
