@@ -50,8 +50,8 @@ class FailingRenderer:
     def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
         return self.renderer.is_ready(scene, stone)
 
-    def prepare(self, scene: Scene, stone: Stone | None) -> None:
-        self.renderer.prepare(scene, stone)
+    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+        self.renderer.make_ready(scene, stone)
 
     def describe(self) -> Mapping[str, Any]:
         return self.renderer.describe()

@@ -80,7 +80,7 @@ class World:
     def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
         return True
 
-    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
         """There is nothing to be made."""
 
     def describe(self) -> dict[str, str]:

@@ -74,7 +74,7 @@ class Renderer(Protocol):
     def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
         """Whether a picture can be begun at once."""
 
-    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
         """Make it so: have programs compiled and trees made, which may take seconds. Called from any thread."""
 
     def describe(self) -> Mapping[str, Any]:

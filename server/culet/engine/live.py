@@ -131,7 +131,8 @@ class LivePicture:
     @property
     def current(self) -> bool:
         """Whether the picture, and the frame made of it, still are what is shown."""
-        return self.painted is self.session.shown and self.painted_size == self.size
+        drawn = self.state is not State.REFUSED and self.painted is self.session.shown
+        return drawn and self.painted_size == self.size
 
     @property
     def at_rest(self) -> bool:
@@ -272,6 +273,11 @@ class LivePicture:
         """It cannot be rendered."""
         self.work, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
 
+    def try_again(self) -> None:
+        """What could not be rendered may be rendered now."""
+        if self.state is State.REFUSED:
+            self.state = State.BLANK
+
     def abandon(self) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
         self.work, self.picture = None, None
@@ -283,5 +289,4 @@ class LivePicture:
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
-        shown = self.watched and self.current and self.state is not State.REFUSED
-        return self.sent_at + REPEAT_SECONDS if shown and self.message else None
+        return self.sent_at + REPEAT_SECONDS if self.watched and self.current and self.message else None

@@ -148,9 +148,9 @@ class Painter:
             self._send_again(repeat, repeat.message)
         return chosen is not None or repeat is not None
 
-    async def prepare(self, scene: Scene, stone: Stone | None) -> None:
+    async def make_ready(self, scene: Scene, stone: Stone | None) -> None:
         """Have what a picture of the scene needs compiled, while others are drawn."""
-        await in_daemon_thread(lambda: self._renderer.prepare(scene, stone))
+        await in_daemon_thread(lambda: self._renderer.make_ready(scene, stone))
 
     async def _rest(self) -> None:
         try:
@@ -236,7 +236,7 @@ class Painter:
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
         try:
-            await self.prepare(work.shown.scene if work.plan is None else work.plan.scene, work.shown.stone)
+            await self.make_ready(work.shown.scene if work.plan is None else work.plan.scene, work.shown.stone)
         except Exception as error:  # as above
             self._refuse(live, work.shown, error)
         finally:
@@ -380,7 +380,7 @@ async def in_daemon_thread(call: Callable[[], None]) -> None:
         with contextlib.suppress(RuntimeError):  # the loop is closed: nobody waits any more
             loop.call_soon_threadsafe(settle, failure)
 
-    threading.Thread(target=run, name="prepare", daemon=True).start()
+    threading.Thread(target=run, name="make-ready", daemon=True).start()
     await done
 
 

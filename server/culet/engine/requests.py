@@ -333,7 +333,7 @@ class Requests:
         still = Still(
             scene, stone, width, height, samples, request.format, panorama, request.client, time.monotonic()
         )  # fmt: skip
-        await self._painter.prepare(scene, stone)
+        await self._painter.make_ready(scene, stone)
         self._make_room_for(still)
         self._stills.put(still)
         self._awaited.add(still)

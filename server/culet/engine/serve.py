@@ -257,7 +257,7 @@ class Engine:
         await asyncio.sleep(RETRY_SECONDS)
         live = self._painter.pictures.get(session)
         if live is not None:
-            live.refused = None
+            live.try_again()
             self._painter.wake()
 
     def _send_frame(self, message: bytes) -> None:

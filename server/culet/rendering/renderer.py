@@ -121,7 +121,7 @@ class Renderer:
         tree_is_there = stone is None or features.geometry != Geometry.MESH or has_tree(stone)
         return tree_is_there and self.programs.is_ready(features.general, self.variant)
 
-    def prepare(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
         """Have what `is_ready` asks for made, while pictures are refined in another thread."""
         stone = stone if scene.stones else None
         features = features_of(scene, stone)
