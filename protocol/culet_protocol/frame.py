@@ -41,6 +41,8 @@ class Flags(IntFlag):
     RIGHT = 128
     BEHIND = 256
     """Behind the camera; then none of the other four is set."""
+    SLOW = 512
+    """The stone moves slower than in real time: its steps, and those of others, take longer than there is time for."""
 
 
 class FrameError(ValueError):
@@ -61,7 +63,9 @@ FIELDS = (
     HeaderField("version", "B", "version of this header"),
     HeaderField("codec", "B", "1 JPEG, 2 PNG"),
     HeaderField(
-        "flags", "H", "bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen"
+        "flags",
+        "H",
+        "bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen, bit 9 slow",
     ),
     HeaderField("sequence", "I", "number of the frame in its session, from 1"),
     HeaderField("width", "H", "pixels"),

@@ -20,6 +20,7 @@ export const Flag = {
   LEFT: 64,
   RIGHT: 128,
   BEHIND: 256,
+  SLOW: 512,
 } as const;
 export type Flag = (typeof Flag)[keyof typeof Flag];
 
@@ -28,7 +29,7 @@ export interface Frame {
   session: string;
   /** 1 JPEG, 2 PNG */
   codec: Codec;
-  /** bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen */
+  /** bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen, bit 9 slow */
   flags: number;
   /** number of the frame in its session, from 1 */
   sequence: number;

@@ -12,6 +12,7 @@ import pytest
 
 from culet.engine.governor import (
     ERRORS,
+    LEAST_PIXELS,
     MOST_PATIENCE,
     PATIENCE,
     Governor,
@@ -117,6 +118,47 @@ def test_time_spent_besides_rendering_leaves_less_for_it() -> None:
     play(with_overhead, steady(0.7 * frame, 60), overhead=0.3 * frame)
     assert without.setting == LADDER[0]
     assert with_overhead.setting == LADDER[1]
+
+
+def crowd(governor: Governor, frames: int, *, share: float, cost: float, overhead: float = 0.002) -> list[Played]:
+    """The frames of 640x360 of a session that has so much of the render thread's time."""
+    played = []
+    for _ in range(frames):
+        plan = governor.plan(Scene(), (640, 360), BALANCE)
+        seconds = seconds_of(plan, cost)
+        played.append(Played(seconds, plan))
+        governor.rendered(plan, seconds, overhead, RATE, share)
+    return played
+
+
+@pytest.mark.parametrize("sessions", [8, 12, 20])
+def test_in_a_crowd_frames_are_made_so_small_that_its_rate_is_held(sessions: int) -> None:
+    """640x360 takes 29 ms of two cores in the best setting, 15 in the cheapest; simulating and the like takes 2."""
+    governor = Governor(MEASURED)
+    settled = crowd(governor, 200, share=1 / sessions, cost=0.029)[-60:]
+    turn = sessions * (sum(frame.seconds for frame in settled) / 60 + 0.002)
+    assert 1 / turn >= 6, "measured 10.7, 8.8 and 6.9 frames/s"
+    assert changes(settled) <= 1
+    assert len({frame.plan.size for frame in settled}) <= 2
+
+
+def test_all_frames_of_a_crowd_have_together_as_many_pixels_as_one_alone_at_least() -> None:
+    governor = Governor(MEASURED)
+    for sessions in (2, 4, 16):
+        width, height = crowd(governor, 60, share=1 / sessions, cost=10.0)[-1].plan.size
+        assert width * height >= 0.99 * LEAST_PIXELS / sessions
+
+
+def test_frames_grow_again_when_the_others_have_gone() -> None:
+    governor = Governor(MEASURED)
+    small = crowd(governor, 100, share=1 / 20, cost=0.029)[-1].plan
+    assert small.size[0] < 320
+    alone = crowd(governor, 8 * int(RATE), share=1.0, cost=0.029)[-1].plan
+    assert alone.size == (640, 360)
+
+
+def test_one_alone_is_never_made_smaller_than_the_least_however_dear_its_scene_is() -> None:
+    assert crowd(Governor(MEASURED), 60, share=1.0, cost=10.0)[-1].plan.size == (640, 360)
 
 
 @pytest.mark.parametrize("stall", [0.1, 1.5])

@@ -7,6 +7,8 @@ import math
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -23,6 +25,7 @@ from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
+from culet_protocol.messages import Balance
 
 WANTED = 1280, 800
 SLOW = 0.9
@@ -106,6 +109,7 @@ class TimedPicture:
     def __init__(self, world: World, scene: Scene, size: tuple[int, int]) -> None:
         self.scene, self.samples, self.seconds = scene, 0, 0.0
         self._world, self._size = world, size
+        self.clock = world
 
     def refine(self, samples: int = 1) -> None:
         for _ in self.refine_in_pieces(samples, math.inf):
@@ -116,16 +120,16 @@ class TimedPicture:
         part = self._size[0] * self._size[1] / (WANTED[0] * WANTED[1])
         in_all = samples * part * self._world.full_seconds * (1 if full else LADDER_SHARE * self._rung_cost())
         pieces = max(1, math.ceil(in_all / seconds))
-        drawn = Drawn(self._world.now, self._size, full)
+        drawn = Drawn(self.clock.now, self._size, full)
         if first:
             self._world.drawn.append(drawn)
         for piece in range(pieces):
-            self._world.spend(in_all / pieces)
+            self.clock.spend(in_all / pieces)
             yield (piece + 1) / pieces
         self.samples += samples
         self._world.samples = self.samples
         self.seconds = in_all
-        drawn.ended = self._world.now
+        drawn.ended = self.clock.now
 
     def develop_in_pieces(self) -> Iterator[None]:
         return iter(())
@@ -289,3 +293,84 @@ async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(
     await play(world, 4)
     assert overheads == pytest.approx([0] * len(overheads), abs=1e-9)
     assert overheads
+
+
+async def test_a_pinned_quality_that_is_far_too_dear_gives_way_while_the_stone_moves(play: Play) -> None:
+    """In full each frame takes a minute and a half: what is seen instead is what the governor makes of it."""
+    world = World(100 * SLOW, with_stone=True)
+    world.session.balance = Balance(exactness=1, pinned=True)
+    world.session.set_falling(True)
+    await play(world, 6)
+    done = [drawn for drawn in world.drawn if not math.isnan(drawn.ended)]
+    assert world.drawn[0].full
+    assert math.isnan(world.drawn[0].ended), "given up"
+    assert len(done) >= 2
+    assert not any(drawn.full for drawn in done)
+
+
+async def test_of_a_picture_that_takes_long_in_full_a_reduced_one_is_seen_first(play: Play) -> None:
+    world = World(10 * SLOW)
+    await play(world, 4)
+    first = next(drawn for drawn in world.drawn if not math.isnan(drawn.ended))
+    assert not first.full
+    assert first.ended - 100 < 3, "measured 1.8 s"
+    await play(world, 30)
+    assert any(drawn.full and not math.isnan(drawn.ended) for drawn in world.drawn)
+
+
+async def test_of_dear_frames_at_most_every_other_is_given_up_for_something_newer(play: Play) -> None:
+    """A drag of a scene whose cheapest frame takes a second: it must be seen to move."""
+    world = World(SLOW / (LADDER_SHARE * QUICKEST))
+    await play(world, 60)
+    world.drawn.clear()
+    world.turn(since=0, seconds=20)
+    await play(world, 20)
+    given_up = [math.isnan(drawn.ended) for drawn in world.drawn[:-1]]
+    assert given_up.count(False) >= 8
+    assert not any(before and after for before, after in pairwise(given_up[4:]))
+
+
+class Crowd(World):
+    """One more session, whose pictures cost something else."""
+
+    def __init__(self, full_seconds: float, other_seconds: float) -> None:
+        super().__init__(full_seconds, with_stone=True)
+        self.other = World(other_seconds, with_stone=True)
+
+    def picture(
+        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+    ) -> TimedPicture:
+        world = self.other if scene.floor.kind == "none" else self
+        picture = TimedPicture(world, scene, (width, height))
+        picture.clock = self
+        return picture
+
+
+async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_its_rate() -> None:
+    """One frame of the one takes a minute and a half; the other's best ones take 20 ms, 30 times a second alone."""
+    rates = []
+    for company in (False, True):
+        world = Crowd(100 * SLOW, 0.02 / LADDER_SHARE)
+        cheap = Session("1" * 32, Scene.read({"floor": {"kind": "none"}, "optics": {"bands": 16}}), world.session.stone)
+        world.session.balance = Balance(exactness=1, pinned=True)
+        with ThreadPoolExecutor(1) as thread:
+            painter = Painter(
+                world, thread, StillQueue(1, 2**25),
+                send=lambda _: None, report=_fail, encode_still=lambda _, __: b"", clock=partial(getattr, world, "now"),
+            )  # fmt: skip
+            sessions = [cheap, world.session] if company else [cheap]
+            for session in sessions:
+                session.set_falling(True)
+                painter.pictures[session.name] = LivePicture(session, watched=True, rate=30, size=WANTED)
+            while world.now < 110:
+                worked = await painter.work()
+                for live in painter.pictures.values():
+                    if live.publishing is not None:
+                        await live.publishing
+                if not worked:
+                    world.spend(IDLE)
+        assert painter.durations.render_hold.longest < 0.05, "measured 0.026 s"
+        rates.append(sum(not math.isnan(drawn.ended) for drawn in world.other.drawn) / 10)
+    alone, beside = rates
+    assert beside >= 0.4 * alone, "measured 26 of 30 frames/s"
+    assert any(not math.isnan(drawn.ended) for drawn in world.drawn), "the dear one is seen too"

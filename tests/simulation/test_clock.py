@@ -7,7 +7,16 @@ import math
 import pytest
 
 from culet.errors import InputError
-from culet.simulation.clock import MAX_CATCH_UP, MOST_WORK, WORK_SHARE, Allowance, FixedStepClock
+from culet.simulation.clock import (
+    LEAST_WORK,
+    MAX_CATCH_UP,
+    MOST_WORK,
+    SHARED_WORK,
+    WORK_SHARE,
+    Allowance,
+    FixedStepClock,
+    Pace,
+)
 
 
 @pytest.mark.parametrize("frames_per_second", [7, 24, 30, 59.94, 144, 1000])
@@ -95,3 +104,41 @@ def test_an_allowance_is_overdrawn_by_one_step_at_most_and_paid_back_by_time() -
         change(seconds)
         spent.append(allowance.spent)
     assert spent == [False, True, True, False, False, True]
+
+
+def test_beside_others_steps_may_take_a_part_of_their_share() -> None:
+    allowance, step, taken = Allowance(), 0.0005, 0.0
+    for _ in range(600):
+        allowance.grow(1 / 6, share=1 / 20)
+        while not allowance.spent:
+            allowance.spend(step)
+            taken += step
+    assert taken / 100 == pytest.approx(SHARED_WORK / 20, rel=0.1)
+
+
+def test_the_fewer_share_the_time_the_more_steps_may_come_in_a_row() -> None:
+    allowance = Allowance()
+    allowance.grow(1.0, share=1 / 20)
+    allowance.spend(LEAST_WORK * MOST_WORK)
+    assert allowance.spent
+
+
+def test_the_pace_tells_what_part_of_real_time_a_simulation_keeps() -> None:
+    pace, dropped = Pace(), 0.0
+    assert not pace.slow
+    for _ in range(600):
+        dropped += 0.06
+        pace.passed(0.1, dropped)
+    assert pace.lately == pytest.approx(0.4)
+    assert pace.slow
+    assert (pace.seconds, pace.dropped) == (pytest.approx(60), pytest.approx(36))
+    for _ in range(100):
+        pace.passed(0.1, dropped)
+    assert not pace.slow
+
+
+def test_a_new_clock_has_dropped_nothing_that_was_counted_before() -> None:
+    pace = Pace()
+    pace.passed(1.0, 0.5)
+    pace.passed(1.0, 0.25)
+    assert pace.dropped == 0.75

@@ -19,6 +19,12 @@ test("a finished picture is called still, one that is late is not", () => {
   expect(statusText({ ...status, frame: { ...frame, flags: 0 } })).toMatch(/^0\.0 frames\/s/);
 });
 
+test("a stone that falls slower than in real time is said to", () => {
+  const status = { framesPerSecond: 7, roundTripMs: null, viewers: 1 };
+  expect(statusText({ ...status, frame: { ...frame, flags: Flag.MOVING | Flag.SLOW } })).toContain(" \u00b7 slow motion \u00b7 ");
+  expect(statusText({ ...status, frame: { ...frame, flags: Flag.MOVING } })).not.toContain("slow");
+});
+
 test("a picture at rest tells what a sample takes, not the sum over all of them", () => {
   const refining = { ...frame, flags: 0, samples: 4, renderMs: 100, error: 0.063 };
   const status = { framesPerSecond: 1.5, roundTripMs: null, viewers: 1 };

@@ -40,6 +40,7 @@ export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Sta
     const atRest = samples > 1 && (flags & Flag.MOVING) === 0;
     if (flags & Flag.FINAL) parts.push("still picture");
     else parts.push(atRest ? "refining" : `${framesPerSecond.toFixed(1)} frames/s`);
+    if (flags & Flag.SLOW) parts.push("slow motion");
     parts.push(
       atRest
         ? `render ${milliseconds(renderMs / samples)} ms a sample`

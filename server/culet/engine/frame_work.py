@@ -47,6 +47,8 @@ class FrameWork:
     """That are added."""
     final: bool = False
     """Nothing better will come."""
+    slow: bool = False
+    """The stone moves slower than in real time."""
     simulate_seconds: float = 0.0
     """Before it was begun."""
     render_seconds: float = 0.0
@@ -83,8 +85,9 @@ class FrameWork:
         started = perf_counter()
         yield from picture.develop_in_pieces()
         develop_seconds = perf_counter() - started
+        spent = self.simulate_seconds, self.render_seconds
         self.frame = LiveFrame.developed(
-            picture, self.shown, self.plan, (self.simulate_seconds, self.render_seconds), develop_seconds, self.final
+            picture, self.shown, self.plan, spent, develop_seconds, final=self.final, slow=self.slow
         )
 
 

@@ -38,6 +38,8 @@ class LiveFrame:
     expected_error: float
     """That of the front, or NaN if the governor had no part in it."""
     final: bool
+    slow: bool
+    """The stone moves slower than in real time."""
 
     @classmethod
     def developed(
@@ -47,7 +49,9 @@ class LiveFrame:
         plan: Plan | None,
         spent: tuple[float, float],
         develop_seconds: float,
+        *,
         final: bool,
+        slow: bool,
     ) -> LiveFrame:
         """Of a picture that is done and developed, and took that long to simulate and to render.
 
@@ -67,6 +71,7 @@ class LiveFrame:
             error=error,
             expected_error=math.nan if plan is None else plan.error,
             final=final,
+            slow=slow,
         )
 
     def pack(self, session: Session, payload: bytes, encode_seconds: float) -> bytes:
@@ -107,5 +112,6 @@ class LiveFrame:
             Flags.FINAL: self.final,
             Flags.POLARISED: self.optics.polarised,
             Flags.FRONTIER: frontier,
+            Flags.SLOW: self.slow,
         }
         return Flags(sum(flag for flag, is_set in flags.items() if is_set))

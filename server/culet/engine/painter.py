@@ -192,6 +192,7 @@ class Painter:
         plan = live.governor.plan(shown.scene, wanted, live.balance) if live.governed else None
         kind = Kind.FULL if plan is None else Kind.PLANNED
         live.work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulate_seconds)
+        live.work.slow = shown.moving and session.pace.slow
         live.work.spent = self._now() - begun_at
         live.work.start(self._renderer)
 
