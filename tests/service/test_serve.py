@@ -43,6 +43,10 @@ class Served(NamedTuple):
         """Process id of the gateway."""
         return next(self._children("culet.gateway.inherited"), None)
 
+    def count(self) -> int:
+        """Of its processes."""
+        return len(Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split())
+
     def _children(self, word: str) -> Iterator[int]:
         for child in Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split():
             with contextlib.suppress(OSError):
@@ -263,6 +267,25 @@ def test_frames_that_cannot_be_published_are_refused_before_anything_starts() ->
         for endpoint, reason in (("foo", "expected ipc://"), (in_use, "another program listens there")):
             with pytest.raises(InputError, match=f"--frames: cannot listen at '{endpoint}': {reason}"):
                 serve({"port": "0"}, frames=endpoint)
+
+
+async def test_without_a_spare_nobody_stands_by_and_what_dies_is_started_anew(tmp_path: Path) -> None:
+    with _serve(tmp_path, "--no-spare") as (process, url):
+        async with httpx.AsyncClient(base_url=url, timeout=PATIENCE) as http:
+            served = Served(process, http)
+            session = (await http.post("/api/sessions")).json()["id"]
+            for pid in (served.gateway(), served.engine()):
+                assert pid
+                os.kill(pid, signal.SIGKILL)
+                await ended(pid)
+
+                async def back() -> bool:
+                    with contextlib.suppress(httpx.TransportError):  # a connection that ended with the gateway
+                        return (await http.get(f"/api/sessions/{session}")).status_code == 200
+                    return False
+
+                await eventually(back)
+            assert served.count() == 2
 
 
 async def test_a_killed_gateway_comes_back_with_the_sessions_that_the_engine_kept(served: Served) -> None:

@@ -41,7 +41,7 @@ PR_SET_PDEATHSIG = 1
 
 @dataclass(frozen=True)
 class Part:
-    """A process that is to be there always."""
+    """A process that is to be there always. It begins its work with a line on its standard input."""
 
     name: str
     command: Sequence[str]
@@ -50,7 +50,7 @@ class Part:
     inherited: tuple[int, ...] = ()
     """File descriptors that it is given, by the same numbers."""
     has_spare: bool = False
-    """Another one waits, ready to take over. Such a process begins its work with a line on its standard input."""
+    """Another one waits for that line, ready to take over."""
 
 
 class Supervisor:
@@ -197,7 +197,7 @@ class _Process:
         # A session of its own: Ctrl-C in the terminal reaches this process alone, which stops the others in order.
         self._process = await asyncio.create_subprocess_exec(
             *part.command,
-            stdin=asyncio.subprocess.PIPE if part.has_spare else asyncio.subprocess.DEVNULL,
+            stdin=asyncio.subprocess.PIPE,
             env=os.environ | {ADDRESS: str(self._address)},
             pass_fds=part.inherited,
             start_new_session=True,
