@@ -37,6 +37,7 @@ HEADERS: list[dict[str, Any]] = [
     {"range": "bytes=" + "0-1," * 2000},
     {"if-modified-since": "Mon, 99 Foo 99999 99:99:99 GMT"}, {"if-none-match": "*"}, {"accept-encoding": b"\xff"},
     {"x-forwarded-for": "\x7f,,"}, {"sec-fetch-site": "cross-site"}, {"host": "localhost:99999999"}, {"host": "["},
+    {"host": "x" * 5000},
     {"connection": "upgrade", "upgrade": "websocket"}, {"connection": "upgrade", "upgrade": "h2c"},
 ]  # fmt: skip
 PATHS = ["/", "/page.js", "/docs", "/docs/..%2f..", "/%00", "/%ff", "//evil", "/..", "/page.js/b",

@@ -86,9 +86,10 @@ class Admission:
     def _refusal(self, scope: Scope) -> Response | None:
         """Why not, by what the head says."""
         headers = Headers(scope=scope)
-        host = headers.get("host")
-        if not self._hosts.allow(host):
-            detail = f"this server does not go by the name {host!r}; --allow-host makes it one of its names"
+        if not self._hosts.allow(headers.get("host")):
+            detail = (
+                f"this server does not go by the name {headers['host'][:80]!r}; --allow-host makes it one of its names"
+            )
             return problem(421, "misdirected request", detail)
         client = client_of(scope)
         if self._open[client] >= self._settings.max_connections_per_address:

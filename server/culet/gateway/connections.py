@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
+from http import HTTPStatus
 from ipaddress import ip_address
 from typing import Any
 
@@ -185,7 +186,7 @@ class Guard:
 
     def _end(self, connection: Connection, why: str | None = None) -> None:
         self.ended += 1
-        log.info("ended a connection of %s: %s", connection.address or "a proxy", why or "others need its place")
+        log.debug("ended a connection of %s: %s", connection.address or "a proxy", why or "others need its place")
         self.forget(connection.protocol.transport)
         if why is None:
             connection.protocol.transport.abort()
@@ -287,7 +288,8 @@ class GuardedHttp(H11Protocol):
         if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
             answer = problem(status, title, detail)
             headers = [*answer.raw_headers, (b"connection", b"close")]
-            for event in (h11.Response(status_code=status, headers=headers), h11.Data(data=bytes(answer.body))):
+            head = h11.Response(status_code=status, headers=headers, reason=HTTPStatus(status).phrase.encode())
+            for event in (head, h11.Data(data=bytes(answer.body))):
                 self.transport.write(self.conn.send(event) or b"")
             self.transport.write(self.conn.send(h11.EndOfMessage()) or b"")
         self.transport.close()
