@@ -62,7 +62,8 @@ class Peer:
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.setsockopt(zmq.PROBE_ROUTER, 1)
         self._socket.connect(control)
-        self._number = 0
+        self.number = 0
+        """Of the request asked last."""
         self._replies: dict[int, asyncio.Future[tuple[dict[str, Any], bytes | None]]] = {}
         self._told = asyncio.Condition()
         self.reader = asyncio.create_task(self._read())
@@ -77,10 +78,10 @@ class Peer:
         **request: Any,  # noqa: ANN401
     ) -> asyncio.Future[tuple[dict[str, Any], bytes | None]]:
         """Send a request; the reply and its bytes come."""
-        self._number += 1
+        self.number += 1
         reply: asyncio.Future[tuple[dict[str, Any], bytes | None]] = asyncio.get_running_loop().create_future()
-        self._replies[self._number] = reply
-        parts = [REQUEST_NUMBER.pack(self._number), json.dumps(request).encode()]
+        self._replies[self.number] = reply
+        parts = [REQUEST_NUMBER.pack(self.number), json.dumps(request).encode()]
         self._socket.send_multipart(parts if data is None else [*parts, data])
         return reply
 

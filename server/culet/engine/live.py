@@ -103,6 +103,8 @@ class LivePicture:
     """The frame sent last."""
     told_asleep: bool = False
     """The gateway was told unasked that the stone sleeps."""
+    unwatched_at: float = NEVER
+    """s, steady clock: when nobody watched last."""
     sent_at: float = 0.0
     """s, steady clock."""
     begun_at: float = NEVER
@@ -278,10 +280,11 @@ class LivePicture:
         if self.state is State.REFUSED:
             self.state = State.BLANK
 
-    def abandon(self) -> None:
+    def abandon(self, now: float) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
         self.work, self.picture = None, None
         self.session.pause()
+        self.unwatched_at = now
         if self.state in (State.REDUCED, State.FULL):
             self.state = State.BLANK
         if self.painted is not self.session.shown:

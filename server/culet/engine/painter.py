@@ -137,7 +137,7 @@ class Painter:
                 self.counters.frames_given_up += 1
                 live.give_up(now)
             if not live.watched:
-                live.abandon()
+                live.abandon(now)
         chosen = schedule.next_work(pictures, self._stills, self._shares, now)
         if isinstance(chosen, LivePicture):
             await self._advance(chosen)
@@ -173,7 +173,7 @@ class Painter:
         """Simulate up to now, and choose how to draw it."""
         account, now = live.next_account, self._now()
         if live.begun_at > NEVER and (due_at := live.due_at()) is not None:
-            self.durations.frame_wait.add(max(0.0, now - due_at))
+            self.durations.frame_wait.add(max(0.0, now - max(due_at, live.unwatched_at)))
         live.begin(now)
         session, settled = live.session, live.settled
         async with session.lock:

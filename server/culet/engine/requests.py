@@ -183,7 +183,7 @@ class Requests:
             "memory_budget_bytes": self._memory.budget,
             **{f"memory_{kind}_bytes": size for kind, size in self._memory.held().items()},
             **self._pace(),
-            "durations": self._painter.durations.as_json(),
+            **self._painter.durations.as_json(),
             "device": self._device,
         }
 
