@@ -1,6 +1,7 @@
 /** Everything that a key or a button does: one catalogue for keyboard, panel and tests. */
 
 import type { SessionEvent, Target } from "./events";
+import type { Format } from "./rest";
 
 /** R a key press, as in the report. */
 export const STEP = 0.5;
@@ -8,7 +9,7 @@ export const STEP = 0.5;
 export type Effect =
   | { kind: "select"; target: Target }
   | { kind: "send"; event: (target: Target) => SessionEvent }
-  | { kind: "download" };
+  | { kind: "download"; format: Format };
 
 export interface Action {
   name: string;
@@ -61,7 +62,7 @@ export const ACTIONS: readonly Action[] = [
   plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
   plain("sky", "L", "Light sky, or the scene's own", "toggle_environment"),
   plain("walls", "W", "Walls", "toggle_walls"),
-  letter("download", "S", "Save the picture (.tga)", { kind: "download" }),
+  letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
 ];
 
 const KEY_NAMES: Record<string, string> = {

@@ -1,6 +1,7 @@
 /** The panel's choices about the picture: material, sky and optics. */
 
 import type { Controller, GUI } from "lil-gui";
+import { LiveControls } from "./live-controls";
 import { describeOptions } from "./option-titles";
 import type { Catalogued, Material } from "./rest";
 import {
@@ -12,7 +13,6 @@ import {
   ENDS_SAID,
   hasStone,
   imageSky,
-  NOTHING_CHOSEN,
   patchOf,
   SKIES,
   TONE_MAPS,
@@ -32,16 +32,17 @@ const HINTS: Partial<Record<keyof Choices, string>> = {
 };
 
 export class ChoicePanel {
-  private readonly shown: Choices = { ...NOTHING_CHOSEN };
-  private readonly controllers = new Map<keyof Choices, Controller>();
+  private readonly controls: LiveControls<Choices>;
   private readonly skies: Values = { ...SKIES };
-  private readonly send: (patch: Values) => void;
   private readonly size: SizeControl;
   private scene: ViewState["scene"] = null;
 
   /** Material and sky go into one folder, how light is followed into another. */
   constructor(subject: GUI, optics: GUI, send: (patch: Values) => void) {
-    this.send = send;
+    this.controls = new LiveControls<Choices>(
+      () => choicesOf(this.scene),
+      (name, value) => send(patchOf(this.scene, name, value)),
+    );
     this.add(subject, "material", "Material", {});
     this.size = new SizeControl(subject, send);
     this.add(subject, "sky", "Sky", this.skies);
@@ -54,9 +55,8 @@ export class ChoicePanel {
 
   update({ scene }: ViewState): void {
     this.scene = scene;
-    Object.assign(this.shown, choicesOf(scene));
-    for (const controller of this.controllers.values()) controller.updateDisplay();
-    this.controllers.get("material")?.show(hasStone(scene));
+    this.controls.display();
+    this.controls.controllers.get("material")?.show(hasStone(scene));
     this.size.update({ scene });
   }
 
@@ -72,28 +72,19 @@ export class ChoicePanel {
   }
 
   private add(folder: GUI, name: keyof Choices, label: string, options?: Values | number[]): Controller {
-    const controller = options ? folder.add(this.shown, name, options) : folder.add(this.shown, name);
-    this.listen(name, controller.name(label));
+    const { shown } = this.controls;
+    const controller = options ? folder.add(shown, name, options) : folder.add(shown, name);
+    this.controls.listen(name, controller.name(label));
     controller.domElement.title = HINTS[name] ?? "";
     return controller;
   }
 
   private offer(name: keyof Choices, options: Values, described: Catalogued[]): void {
-    const controller = this.controllers.get(name);
+    const controller = this.controls.controllers.get(name);
     if (!controller) return;
     const renewed = controller.options(options);
-    this.listen(name, renewed);
+    this.controls.listen(name, renewed);
     describeOptions(renewed, described);
     renewed.show(name !== "material" || hasStone(this.scene)).updateDisplay();
-  }
-
-  private listen(name: keyof Choices, controller: Controller): void {
-    this.controllers.set(name, controller);
-    controller.onChange((value: never) => {
-      controller.domElement.querySelector("select")?.blur(); // or the next key would choose something else
-      Object.assign(this.shown, choicesOf(this.scene)); // shows what is, until the server says that it changed
-      controller.updateDisplay();
-      this.send(patchOf(this.scene, name, value));
-    });
   }
 }

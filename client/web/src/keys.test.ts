@@ -1,6 +1,6 @@
 import { describe, expect, it, test } from "vitest";
 import { ACTIONS } from "./actions";
-import { actionOf, isTyping, type KeyPress } from "./keys";
+import { actionOf, type KeyPress, keepsKey } from "./keys";
 
 function press(code: string, key: string, more: Partial<KeyPress> = {}): string | undefined {
   const plain = { repeat: false, ctrlKey: false, metaKey: false, altKey: false, isComposing: false };
@@ -76,15 +76,42 @@ test("moves are sent for the chosen target, half a radius a press", () => {
   expect(sent).toContainEqual({ type: "dolly", target: "light_2", forward: 0.5 });
 });
 
-test("keys belong to whom types, not to buttons and check boxes", () => {
-  const element = (tagName: string, type?: string) =>
-    type === undefined ? { tagName, isContentEditable: false } : { tagName, isContentEditable: false, type };
-  expect(isTyping(element("INPUT", "text"))).toBe(true);
-  expect(isTyping(element("INPUT", "number"))).toBe(true);
-  expect(isTyping(element("SELECT"))).toBe(true);
-  expect(isTyping(element("TEXTAREA"))).toBe(true);
-  expect(isTyping({ tagName: "DIV", isContentEditable: true })).toBe(true);
-  expect(isTyping(element("INPUT", "checkbox"))).toBe(false);
-  expect(isTyping(element("BUTTON", "button"))).toBe(false);
-  expect(isTyping(element("CANVAS"))).toBe(false);
+describe("a key belongs to", () => {
+  const element = (tagName: string, type = "", open = false) => ({
+    tagName,
+    type,
+    isContentEditable: false,
+    closest: () => null,
+    matches: (selector: string) => selector === ":open" && open,
+  });
+
+  it("whom types, and not to buttons and check boxes", () => {
+    for (const key of ["p", "ArrowUp"]) {
+      expect(keepsKey(element("INPUT", "text"), key)).toBe(true);
+      expect(keepsKey(element("INPUT", "number"), key)).toBe(true);
+      expect(keepsKey(element("TEXTAREA"), key)).toBe(true);
+      expect(keepsKey({ ...element("DIV"), isContentEditable: true }, key)).toBe(true);
+      expect(keepsKey(element("INPUT", "checkbox"), key)).toBe(false);
+      expect(keepsKey(element("BUTTON", "button"), key)).toBe(false);
+      expect(keepsKey(element("CANVAS"), key)).toBe(false);
+    }
+  });
+
+  it.each(["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"])("the list that has the focus, if it is %s", (key) => {
+    expect(keepsKey(element("SELECT"), key)).toBe(true);
+    expect(keepsKey({ ...element("BUTTON"), closest: () => ({}) as Element }, key)).toBe(true);
+  });
+
+  it("the page, if it is a letter on a list that is folded", () => {
+    expect(keepsKey(element("SELECT"), "p")).toBe(false);
+    expect(keepsKey(element("SELECT", "", true), "p")).toBe(true);
+    expect(keepsKey({ ...element("BUTTON"), closest: () => ({}) as Element }, "p")).toBe(false);
+  });
+
+  it("the list where the browser cannot tell whether it is folded", () => {
+    const unknown = () => {
+      throw new SyntaxError("unknown pseudo-class");
+    };
+    expect(keepsKey({ ...element("SELECT"), matches: unknown }, "p")).toBe(true);
+  });
 });

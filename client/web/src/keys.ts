@@ -22,10 +22,33 @@ export function actionOf(press: KeyPress): Action | null {
 
 const NOT_TEXT = new Set(["button", "checkbox", "color", "file", "image", "radio", "reset", "submit"]);
 
-/** Whether keys go into a text field or a list of choices, and so are not ours. */
-export function isTyping(element: Pick<HTMLElement, "tagName" | "isContentEditable"> & { type?: string }): boolean {
-  if (element.isContentEditable || element.tagName === "TEXTAREA" || element.tagName === "SELECT") return true;
-  return element.tagName === "INPUT" && !NOT_TEXT.has(element.type ?? "text");
+/** Keys that walk through a list, whatever they mean elsewhere. */
+const WALKING = new Set(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]);
+
+type Focused = Pick<HTMLElement, "tagName" | "isContentEditable"> & {
+  type?: string;
+  closest: (selector: string) => unknown;
+  matches: (selector: string) => boolean;
+};
+
+/** Whether a key press is that of the element that has the focus, a text field or a list of choices, and so not ours. */
+export function keepsKey(element: Focused, key: string): boolean {
+  if (element.isContentEditable || element.tagName === "TEXTAREA") return true;
+  if (element.tagName === "INPUT") return !NOT_TEXT.has(element.type ?? "text");
+  if (element.tagName === "SELECT") return WALKING.has(key) || isOpen(element);
+  return WALKING.has(key) && element.closest(LIST) !== null;
+}
+
+/** What holds entries that the arrow keys walk through. */
+export const LIST = "[data-arrow-keys]";
+
+/** Whether a list's choices are unfolded: every letter looks for one of them then. A browser that cannot tell has them open. */
+function isOpen(list: Focused): boolean {
+  try {
+    return list.matches(":open");
+  } catch {
+    return true;
+  }
 }
 
 /** Listen while the page lives. In the capture phase, because the panel keeps key presses to itself. */
@@ -33,7 +56,7 @@ export function listenToKeys(target: Window, perform: (action: Action) => void):
   target.addEventListener(
     "keydown",
     (event) => {
-      if (event.target instanceof HTMLElement && isTyping(event.target)) return;
+      if (event.target instanceof HTMLElement && keepsKey(event.target, event.key)) return;
       const action = actionOf(event);
       if (!action) return;
       event.preventDefault();

@@ -2,7 +2,10 @@
 
 import type { Controller } from "lil-gui";
 
-/** For so long after it was let go, a slider stays where it is: what the server says of it may still be on its way. */
+/**
+ * For so long after it was let go, a slider or list stays where it is: what the server says of it may still be on its way,
+ * and the next arrow key of a list goes on from there.
+ */
 const ECHO_MS = 500;
 
 export class LiveControls<T extends object> {
@@ -25,9 +28,7 @@ export class LiveControls<T extends object> {
   listen(name: keyof T, controller: Controller): void {
     this.controllers.set(name, controller);
     controller.onChange((value: never) => {
-      const list = controller.domElement.querySelector("select");
-      list?.blur(); // or the next key would choose something else
-      if (!list) this.hold(name);
+      this.hold(name);
       this.display(); // what is not held shows what is, until the server says that it changed
       if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
       this.waiting.set(name, value);

@@ -1,7 +1,7 @@
 /** The page: finds or makes a session, then connects keys, fingers, panel and picture to it. */
 
 import { CloseCode } from "@culet/protocol/messages";
-import type { Action } from "./actions";
+import { type Action, actionNamed } from "./actions";
 import {
   Banner,
   bannerText,
@@ -13,8 +13,9 @@ import {
   WAITING,
   WAITING_LONG,
 } from "./banner";
+import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
-import { framingPatch } from "./framing";
+import { framed, framingPatch } from "./framing";
 import { listenToKeys } from "./keys";
 import { Meter } from "./meter";
 import { element } from "./page";
@@ -24,6 +25,7 @@ import { expose, header } from "./probe";
 import { OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
 import { imageSky, patchOf, stonePatch } from "./scene-choices";
+import { SceneStrip } from "./scene-strip";
 import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { ERROR_MEANINGS, statusText } from "./status-text";
@@ -58,7 +60,7 @@ let elsewhere: string | null = null;
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
-  choosePreset: ({ scene }) => viewer?.send({ type: "set_scene", scene }),
+  saveTarga: () => attempt(() => savePicture("tga")),
   saveScene: () => attempt(saveScene),
   openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
   openMesh: () => chooseFile(MESH_TYPES, (file) => attempt(() => openMesh(file))),
@@ -66,6 +68,8 @@ const panel = new Panel(element("panel", HTMLElement), {
   patch: (patch) => viewer?.send({ type: "patch_scene", patch }),
   newSession: startAnew,
 });
+const strip = new SceneStrip(element("scenes", HTMLElement), element("scenes-toggle", HTMLButtonElement));
+const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
 const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance));
 listenToKeys(window, perform);
 listenToPointers(
@@ -75,7 +79,7 @@ listenToPointers(
 );
 
 function perform({ effect }: Action): void {
-  if (effect.kind === "download") attempt(savePicture);
+  if (effect.kind === "download") attempt(() => savePicture(effect.format));
   else if (!viewer) problem("There is no session yet.");
   else if (effect.kind === "select") viewer.select(effect.target);
   else viewer.send(effect.event(viewer.state.target));
@@ -91,12 +95,12 @@ function problem(text: string, about?: string): void {
   toasts.problem(text, about);
 }
 
-async function savePicture(): Promise<void> {
+async function savePicture(format: rest.Format): Promise<void> {
   const frame = viewer?.lastFrame;
   if (!session || !frame) throw new Error("There is no picture yet.");
   const clear = toasts.note("Rendering the picture at full quality\u2026");
   try {
-    download(await rest.targa(session, frame.step), `culet-${frame.step}.tga`);
+    download(await rest.picture(session, frame.step, format), `culet-${frame.step}.${format}`);
   } finally {
     clear();
   }
@@ -138,6 +142,10 @@ async function openSky(file: File): Promise<void> {
   toasts.finding(`${file.name}:\n${summary}`);
   panel.choices.addSkies([{ name: file.name, summary }], () => sky.id);
   viewer?.send({ type: "patch_scene", patch: patchOf(viewer.state.scene, "sky", imageSky(sky.id)) });
+}
+
+function choosePreset({ scene }: rest.Preset): void {
+  viewer?.send({ type: "set_scene", scene: framed(scene, window.innerWidth / window.innerHeight) });
 }
 
 function startAnew(): void {
@@ -197,6 +205,7 @@ async function leaveIfUnknown(id: string): Promise<void> {
 
 function stateChanged(before: ViewState, after: ViewState): void {
   panel.update(after);
+  fallButton.update(after);
   meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
@@ -311,7 +320,7 @@ expose({
   problems,
 });
 waiting.show("Connecting\u2026");
-attempt(async () => panel.addPresets(await rest.presets()));
+attempt(async () => strip.show(await rest.presets(), choosePreset));
 attempt(async () => panel.choices.addMaterials(await rest.materials()));
 attempt(async () => {
   const [cut] = await rest.cuts(); // there is one so far

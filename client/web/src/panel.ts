@@ -1,4 +1,4 @@
-/** The panel: every action with its key, the state, presets and files. */
+/** The panel: every action with its key, the state, and files. */
 
 import { type Controller, GUI } from "lil-gui";
 // By its path, since the package does not export it: a style sheet of our own origin instead of one that a script writes.
@@ -9,13 +9,11 @@ import type { CutKind } from "./cut";
 import { CutPanel } from "./cut-panel";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
-import { describeOptions } from "./option-titles";
-import type { Preset } from "./rest";
 import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
 
 export interface PanelActions {
   perform: (action: Action) => void;
-  choosePreset: (preset: Preset) => void;
+  saveTarga: () => void;
   saveScene: () => void;
   openScene: () => void;
   openMesh: () => void;
@@ -50,6 +48,7 @@ export class Panel {
     this.choices = new ChoicePanel(surroundings, this.gui.addFolder("Optics").close(), actions.patch);
     this.files = this.gui.addFolder("Pictures and scenes");
     this.addButton(this.files, actionNamed("download"));
+    this.addCommand(this.files, "Save the picture (.tga)", () => actions.saveTarga());
     this.addCommand(this.files, "Save the scene (.json)", () => actions.saveScene());
     this.addCommand(this.files, "Open a scene\u2026", () => actions.openScene());
     this.addCommand(this.files, "Open a mesh\u2026", () => actions.openMesh());
@@ -73,21 +72,6 @@ export class Panel {
     this.cut.addCut(cut, this.state ?? INITIAL);
   }
 
-  addPresets(presets: Preset[]): void {
-    const choice = { preset: "" };
-    const options = Object.fromEntries([["choose\u2026", ""], ...presets.map(({ name }) => [name, name])]);
-    const controller = this.files.add(choice, "preset", options).name("Preset");
-    const list = controller.domElement.querySelector("select");
-    describeOptions(controller, presets);
-    controller.onChange((name: string) => {
-      const preset = presets.find((candidate) => candidate.name === name);
-      list?.blur(); // or the next key would choose another preset
-      if (!preset) return;
-      controller.setValue(""); // what is shown may soon differ from it, and it may be wanted again
-      this.actions.choosePreset(preset);
-    });
-  }
-
   private addMoves(): void {
     const folder = this.gui.addFolder("Move");
     const targets = Object.fromEntries(
@@ -96,10 +80,7 @@ export class Panel {
       }),
     );
     const target = folder.add(this.shown, "target", targets).name("What");
-    target.onChange((name: Target) => {
-      target.domElement.querySelector("select")?.blur();
-      this.actions.perform(actionNamed(name));
-    });
+    target.onChange((name: Target) => this.actions.perform(actionNamed(name)));
     this.displays.push(target);
     const buttons = MOVES.map((name) => this.addButton(folder, actionNamed(name)));
     for (const button of buttons) button.domElement.classList.add("half");

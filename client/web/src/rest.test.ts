@@ -6,8 +6,8 @@ import {
   materials,
   ProblemError,
   patchSession,
+  picture,
   problemText,
-  targa,
   uploadMesh,
   uploadSky,
 } from "./rest";
@@ -94,8 +94,8 @@ it("lists what a scene can name", async () => {
 
 it("asks for a step that a double cannot hold by all its digits", async () => {
   const calls = answering(200, "tga");
-  await targa("abc", 2n ** 53n + 1n);
-  expect(calls[0]?.path).toBe("/api/sessions/abc/frame.tga?step=9007199254740993");
+  await picture("abc", 2n ** 53n + 1n, "png");
+  expect(calls[0]?.path).toBe("/api/sessions/abc/frame.png?step=9007199254740993");
 });
 
 it("tells what passes by itself from what does not", () => {

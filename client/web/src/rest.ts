@@ -30,8 +30,16 @@ export interface Catalogued {
 }
 
 export interface Preset extends Catalogued {
+  /** What people call it. */
+  title: string;
+  group: string;
+  /** Address of a small picture. */
+  thumbnail: string;
   scene: JsonObject;
 }
+
+/** What a picture is saved as. */
+export type Format = "png" | "tga";
 
 export interface Material extends Catalogued {
   /** It absorbs by a spectrum of its own. */
@@ -164,6 +172,6 @@ function parseUpload(answer: JsonObject, otherwise: (description: JsonObject) =>
 }
 
 /** The state of that number, rendered at full quality. */
-export async function targa(session: string, step: bigint): Promise<Blob> {
-  return (await request(`/api/sessions/${session}/frame.tga?step=${step}`)).blob();
+export async function picture(session: string, step: bigint, format: Format): Promise<Blob> {
+  return (await request(`/api/sessions/${session}/frame.${format}?step=${step}`)).blob();
 }

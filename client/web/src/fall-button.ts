@@ -1,0 +1,33 @@
+/** The round button in the picture that lets the stone fall, or pauses the fall. */
+
+import { actionNamed, labelWithKey } from "./actions";
+import { hasStone } from "./scene-choices";
+import type { ViewState } from "./view-state";
+
+export const FALL = "Let the stone fall";
+export const PAUSE = "Pause the fall";
+
+/** What the button does next, or null if there is no stone. */
+export function fallLabel({ scene, falling, asleep }: Pick<ViewState, "scene" | "falling" | "asleep">): string | null {
+  if (!hasStone(scene)) return null;
+  return falling && !asleep ? PAUSE : FALL;
+}
+
+export class FallButton {
+  private readonly button: HTMLButtonElement;
+
+  constructor(button: HTMLButtonElement, press: () => void) {
+    this.button = button;
+    button.onclick = press;
+  }
+
+  update(state: ViewState): void {
+    const label = fallLabel(state);
+    this.button.hidden = label === null;
+    if (label === null) return;
+    const { key } = actionNamed("fall");
+    this.button.setAttribute("aria-label", label);
+    this.button.title = labelWithKey({ label, key });
+    this.button.classList.toggle("falling", label === PAUSE);
+  }
+}
