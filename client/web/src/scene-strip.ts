@@ -2,6 +2,9 @@
 
 import type { Preset } from "./rest";
 
+/** CSS pixels: in a lower window the strip is folded at first, for the picture's sake. */
+const LOW = 480;
+
 /** The entry that an arrow key or Home, End leads to from another; null if the key leads nowhere. */
 export function entryAfter(key: string, from: number, count: number): number | null {
   switch (key) {
@@ -34,10 +37,12 @@ export class SceneStrip {
   /** `list` scrolls, `toggle` hides and shows it. */
   constructor(list: HTMLElement, toggle: HTMLButtonElement) {
     this.list = list;
-    toggle.onclick = () => {
-      list.hidden = !list.hidden;
-      toggle.setAttribute("aria-expanded", String(!list.hidden));
+    const fold = (folded: boolean) => {
+      list.hidden = folded;
+      toggle.setAttribute("aria-expanded", String(!folded));
     };
+    toggle.onclick = () => fold(!list.hidden);
+    fold(window.innerHeight < LOW);
     list.addEventListener("keydown", (event) => this.walk(event));
     // A mouse has one wheel, and the list goes sideways.
     list.addEventListener("wheel", (event) => this.scroll(event), { passive: false });
@@ -61,8 +66,8 @@ export class SceneStrip {
     const picture = document.createElement("img");
     picture.src = preset.thumbnail;
     picture.alt = "";
-    picture.width = 96;
-    picture.height = 72;
+    picture.width = 84;
+    picture.height = 63;
     picture.loading = "lazy";
     const title = document.createElement("span");
     title.textContent = preset.title;
