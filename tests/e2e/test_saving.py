@@ -50,8 +50,8 @@ def test_s_saves_the_finished_picture_as_png(view: View, server: Server) -> None
 def test_the_panel_offers_png_first_and_the_same_picture_as_targa(view_of: ViewOf) -> None:
     view = view_of(viewport=WITH_PANEL).open()
     offered = view.page.get_by_role("button", name="Save the picture")
-    assert [text.split(" [")[0] for text in offered.all_inner_texts()] == [
-        "Save the picture (.png) ",
+    assert [text.split("[")[0].strip() for text in offered.all_inner_texts()] == [
+        "Save the picture (.png)",
         "Save the picture (.tga)",
     ]
     saved = []
