@@ -22,7 +22,7 @@ def falling(view_of: ViewOf, server: Server) -> View:
 
 def with_fall(view_of: ViewOf, session: str) -> View:
     view = view_of(viewport=WITH_PANEL).open(f"?session={session}")
-    view.page.get_by_role("button", name="Fall").click()
+    view.page.locator("#panel").get_by_role("button", name="Fall").click()
     return view
 
 

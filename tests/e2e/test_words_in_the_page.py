@@ -96,7 +96,7 @@ def test_without_a_stone_nothing_about_one_is_offered(wide_view: View, server: S
     view = wide_view
     material, fall, cut = (
         view.page.get_by_label("Material", exact=True),
-        view.page.get_by_role("button", name="Fall"),
+        view.page.locator("#panel").get_by_role("button", name="Fall"),
         view.page.get_by_role("button", name="Cut"),
     )
     for offered in (material, fall, cut):
