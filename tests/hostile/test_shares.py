@@ -33,3 +33,9 @@ async def test_a_form_of_nothing_but_delimiters_keeps_nobody_waiting(serving: Se
 async def test_a_flood_of_messages_leaves_another_session_its_rate(serving: Serving) -> None:
     found = await shares.beside(serving, "a flood of resize", shares.resizes, 0.8, SECONDS)
     assert found.holds, found.row
+
+
+@pytest.mark.timed
+async def test_a_session_that_asks_for_everything_leaves_another_its_share(serving: Serving) -> None:
+    found = await shares.beside(serving, "the dearest scene", shares.dearest_scene, 0.4, SECONDS)
+    assert found.holds, found.row
