@@ -56,7 +56,7 @@ class Admission:
     """
 
     def __init__(self, app: ASGIApp, *, settings: GatewaySettings, body_limits: Mapping[str, int]) -> None:
-        """`body_limits` are those of paths that do not have the settings' `max_body_bytes`."""
+        """`body_limits` are those of paths that take files, and not the settings' `max_body_bytes`."""
         self._app = app
         self._settings = settings
         self._body_limits = body_limits
@@ -109,7 +109,8 @@ class Admission:
         if declared.isdecimal():
             limit = self._limit(path)
             if int(declared) > limit:
-                return problem(TooLargeError.status, TooLargeError.title, f"{_too_large(limit)}, got {declared}")
+                field = "file" if path in self._body_limits else None
+                return problem(TooLargeError.status, TooLargeError.title, f"{_too_large(limit)}, got {declared}", field)
             if not self._bodies.room_for(client, int(declared)):
                 return _busy(f"{self._bodies.bytes} bytes of bodies are under way; try again later")
         return None
@@ -129,7 +130,10 @@ class Admission:
             message = await receive()
             size = len(message.get("body", b""))
             if came + size > limit:
-                raise HTTPException(TooLargeError.status, f"{_too_large(limit)}, got more")
+                detail = f"{_too_large(limit)}, got more"
+                if scope["path"] in self._body_limits:
+                    raise TooLargeError(detail, "file")
+                raise HTTPException(TooLargeError.status, detail)  # FastAPI makes 400 of others, reading JSON
             if not self._bodies.room_for(client, size):
                 detail = f"{self._bodies.bytes} bytes of bodies are under way; try again later"
                 raise HTTPException(BusyError.status, detail, {"Retry-After": RETRY_AFTER_SECONDS})
