@@ -313,9 +313,12 @@ class Requests:
         return (width, height) if scale >= 1 else (max(1, int(width * scale)), max(1, int(height * scale)))
 
     def _make_room_for(self, still: Still) -> None:
-        """BusyError if pictures so large do not fit besides what is held and what waits."""
+        """BusyError if it does not fit besides what is held and what waits, of which no more pixels are begun at a time
+        than a largest still has."""
         waiting = [other for other in self._awaited if other.picture is None]
         needed = sum(picture_bytes(other.width, other.height) for other in (*waiting, still))
+        most = picture_bytes(self._limits.max_still_pixels, 1)
+        needed = max(picture_bytes(still.width, still.height), min(needed, most))
         with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
             pass
 
