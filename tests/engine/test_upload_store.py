@@ -6,8 +6,10 @@ import io
 import pytest
 from PIL import Image
 
+from culet.engine import uploads
 from culet.engine.limits import Limits
 from culet.engine.memory import Memory
+from culet.engine.upload_process import Room
 from culet.engine.uploads import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from engine.peer import TETRAHEDRON
@@ -103,6 +105,28 @@ async def test_a_sky_of_too_many_pixels_is_too_large_before_it_is_decoded() -> N
     header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 10000 +X 20000\n"
     with pytest.raises(TooLargeError, match="20000 x 10000"):
         await UploadStore(SKY, Limits()).put("a", "hdr", header)
+
+
+async def test_readers_of_both_kinds_at_once_share_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    memory = Memory(3 * LEAST_TO_READ)
+    both, rooms = asyncio.Barrier(2), []
+
+    async def read(*arguments: object) -> None:
+        room = arguments[-1]
+        assert isinstance(room, Room)
+        rooms.append(room.memory)
+        await both.wait()
+        assert memory.free >= 0
+        raise InputError("none")
+
+    monkeypatch.setattr(uploads, "read_upload", read)
+    mesh, sky = UploadStore(MESH, Limits(), memory), UploadStore(SKY, Limits(), memory)
+    async with asyncio.timeout(10):
+        results = await asyncio.gather(mesh.put("a", "off", b"1"), sky.put("b", "png", b"2"), return_exceptions=True)
+    assert [str(result) for result in results] == ["none", "none"]
+    assert sum(rooms) <= memory.budget
+    assert min(rooms) >= LEAST_TO_READ
+    assert memory.free == memory.budget
 
 
 async def test_what_is_kept_is_bounded_in_memory_too() -> None:

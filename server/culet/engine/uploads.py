@@ -62,6 +62,8 @@ class _Kept(Generic[T]):
     content: T
     digest: bytes
     """Of the file that it was read from."""
+    described: dict[str, Any]
+    """What its uploader was told."""
 
 
 class UploadStore(Mapping[str, T]):
@@ -114,21 +116,26 @@ class UploadStore(Mapping[str, T]):
             raise TooLargeError(f"expected a {kind} of at most {self._limits.max_upload_bytes} bytes, got {len(data)}")
         if self._waiting >= WAITING:
             raise BusyError(f"{WAITING} uploads ({kind}) are waiting to be read")
-        digest = hashlib.sha256(file_type.encode() + b"\0" + data).digest()
         self._waiting += 1
         try:
+            digest = await asyncio.to_thread(_digest, file_type, data)
             async with self._turn:
-                content = self._known(name, digest) or await self._read(name, digest, file_type, data)
+                if not self._knows(name, digest):
+                    replaced = self._kept.get(name)
+                    self._kept[name] = await self._read(name, digest, file_type, data)
+                    if replaced is not None:
+                        self._forgotten(replaced.content)
+                self._kept.move_to_end(name)
+                return self._kept[name].described
         finally:
             self._waiting -= 1
-        return self._kind.describe(content).model_dump(mode="json")
 
-    def _known(self, name: str, digest: bytes) -> T | None:
-        """What that very file was read to before, so that sessions do not hold one copy and the store another."""
+    def _knows(self, name: str, digest: bytes) -> bool:
+        """Whether that very file was read before: sessions are not to hold one copy of it, and the store another."""
         kept = self._kept.get(name)
-        return self[name] if kept is not None and kept.digest == digest else None
+        return kept is not None and kept.digest == digest
 
-    async def _read(self, name: str, digest: bytes, file_type: str, data: bytes) -> T:
+    async def _read(self, name: str, digest: bytes, file_type: str, data: bytes) -> _Kept[T]:
         """In a process that can be ended, so that no frame waits for it; its memory is reserved meanwhile.
 
         At first with what is free. A file for which that is too little is worth what nobody uses.
@@ -142,7 +149,7 @@ class UploadStore(Mapping[str, T]):
         room = self._room(max(self._needed, int(free * SHARE_TO_READ)))
         while True:
             try:
-                content = await self._read_within(room, file_type, data)
+                kept = await self._read_within(room, digest, file_type, data)
                 break
             except TooLittleMemoryError as error:
                 needed = error.needed or 2 * room.memory
@@ -155,10 +162,8 @@ class UploadStore(Mapping[str, T]):
                         f"{more.memory / 2**20:.0f} MiB are free; try again later"
                     ) from None
                 room = more
-        self._needed = min(self._needed, max(LEAST_TO_READ, 2 * kind.size(content)))
-        self._kept[name] = _Kept(content, digest)
-        self._kept.move_to_end(name)
-        return content
+        self._needed = min(self._needed, max(LEAST_TO_READ, 2 * kind.size(kept.content)))
+        return kept
 
     def _room(self, size: int) -> Room:
         """So much, or what a file may take at most, or at least."""
@@ -166,12 +171,13 @@ class UploadStore(Mapping[str, T]):
         memory = max(LEAST_TO_READ, min(most, size))
         return Room(memory, full=memory == most)
 
-    async def _read_within(self, room: Room, file_type: str, data: bytes) -> T:
+    async def _read_within(self, room: Room, digest: bytes, file_type: str, data: bytes) -> _Kept[T]:
         kind = self._kind
         with self._memory.reserved("reading", room.memory, f"reading a {kind.name}"):
             content = await read_upload(kind.name, kind.error, file_type, data, self._limits, room)
-        assert isinstance(content, kind.content)  # noqa: S101 - by its kind
-        return content
+            assert isinstance(content, kind.content)  # noqa: S101 - by its kind
+            described = await asyncio.to_thread(kind.describe, content)
+        return _Kept(content, digest, described.model_dump(mode="json"))
 
     def _forget(self, size: int) -> None:
         """Up to so many bytes, the least recently used first."""
@@ -187,6 +193,10 @@ class UploadStore(Mapping[str, T]):
                 self._forgotten(kept.content)
                 return max(1, self._kind.size(kept.content))
         return 0
+
+
+def _digest(file_type: str, data: bytes) -> bytes:
+    return hashlib.sha256(file_type.encode() + b"\0" + data).digest()
 
 
 def described_mesh(stone: Stone) -> DescribedMesh:
