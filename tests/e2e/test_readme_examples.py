@@ -29,7 +29,7 @@ def test_the_readme_s_rest_examples_run(server: Server, tmp_path: Path) -> None:
     """In their order, in one folder, since one may use what another made."""
     examples = rest_examples()
     assert any("curl" in example for example in examples), "README.md has no sh block with curl under a REST heading"
-    assert any("render.tga" in example for example in examples)
+    assert any("render.png" in example for example in examples)
     # curl says nothing of an answer that is an error, unless told to.
     script = "\n".join(["set -euo pipefail", 'curl() { command curl --fail "$@"; }', *examples])
     assert README_SERVER.search(script)

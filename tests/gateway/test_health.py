@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
+from culet.gateway.settings import GatewaySettings, look_for_page
 from gateway.running import Endpoints, Gateway, gateway_before
 
 
@@ -69,6 +72,18 @@ async def test_every_example_in_the_documentation_runs(gateway: Gateway) -> None
                 assert answer.status_code in (200, 201), (path, answer.text)
                 ran += 1
     assert ran == 4
+
+
+def test_a_server_without_a_page_says_so_when_it_starts(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    found = GatewaySettings.model_construct(_fields_set=set(), web=tmp_path)  # where a page is looked for by itself
+    look_for_page(found)
+    (said,) = caplog.messages
+    assert said.startswith(f"there is no page to serve, only the REST interface: expected {tmp_path}/index.html")
+    assert "make wheel" in said
+    caplog.clear()
+    (tmp_path / "index.html").touch()
+    look_for_page(found)
+    assert caplog.messages == []
 
 
 async def test_the_page_is_served_or_its_absence_explained(engine: Endpoints, tmp_path: Path) -> None:

@@ -149,6 +149,12 @@ class GatewaySettings(Settings):
 def settings_of(given: Mapping[str, Any], control: str, frames: str) -> GatewaySettings:
     """The gateway's settings; InputError for one that cannot be used, or a named folder that holds no built page."""
     settings = GatewaySettings.read(given, control=control, frames=frames)
+    look_for_page(settings)
+    return settings
+
+
+def look_for_page(settings: GatewaySettings) -> None:
+    """Say in the log that there is no page to serve; InputError if there is none in a folder that was named."""
     page = settings.web / "index.html"
     if "web" in settings.model_fields_set and not page.is_file():
         raise InputError(f"web: expected the folder of a built web client; there is no {page}", "web")
@@ -158,4 +164,3 @@ def settings_of(given: Mapping[str, Any], control: str, frames: str) -> GatewayS
             "wheel`, or name its folder by --web",
             page,
         )
-    return settings
