@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -172,6 +172,8 @@ async def play() -> AsyncIterator[Play]:
             end = world.now + seconds
             while world.now < end:
                 worked = await painters[id(world)].work()
+                if (beginning := painters[id(world)].pictures["a"].beginning) is not None:
+                    await beginning
                 if (publishing := painters[id(world)].pictures["a"].publishing) is not None:
                     await publishing  # encoding takes no time of this world
                 if not worked:
@@ -330,6 +332,14 @@ async def test_of_dear_frames_at_most_every_other_is_given_up_for_something_newe
     assert not any(before and after for before, after in pairwise(given_up[4:]))
 
 
+WAKEFUL: dict[str, Any] = {
+    "floor": {"kind": "none"},
+    "optics": {"bands": 16},
+    "simulation": {"restitution": 1, "friction": 0, "sleeping": False},
+}
+"""A stone that never rests."""
+
+
 class Crowd(World):
     """One more session, whose pictures cost something else."""
 
@@ -351,7 +361,7 @@ async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_i
     rates = []
     for company in (False, True):
         world = Crowd(100 * SLOW, 0.02 / LADDER_SHARE)
-        cheap = Session("1" * 32, Scene.read({"floor": {"kind": "none"}, "optics": {"bands": 16}}), world.session.stone)
+        cheap = Session("1" * 32, Scene.read(WAKEFUL), world.session.stone)
         world.session.balance = Balance(exactness=1, pinned=True)
         with ThreadPoolExecutor(1) as thread:
             painter = Painter(
@@ -365,6 +375,8 @@ async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_i
             while world.now < 110:
                 worked = await painter.work()
                 for live in painter.pictures.values():
+                    if live.beginning is not None:
+                        await live.beginning
                     if live.publishing is not None:
                         await live.publishing
                 if not worked:
@@ -372,5 +384,6 @@ async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_i
         assert painter.durations.render_hold.longest < 0.05, "measured 0.026 s"
         rates.append(sum(not math.isnan(drawn.ended) for drawn in world.other.drawn) / 10)
     alone, beside = rates
-    assert beside >= 0.4 * alone, "measured 26 of 30 frames/s"
+    assert alone > 25
+    assert beside >= 0.4 * alone, "measured 29.8 of 30 frames/s"
     assert any(not math.isnan(drawn.ended) for drawn in world.drawn), "the dear one is seen too"

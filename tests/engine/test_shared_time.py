@@ -6,7 +6,7 @@ import asyncio
 from typing import Any
 
 from culet_protocol.frame import Flags
-from engine.peer import PATIENCE, EngineProcess, connected
+from engine.peer import PATIENCE, EngineProcess, Peer, connected
 
 DEAREST: dict[str, Any] = {
     "optics": {"bands": 64, "polarised": True, "cutoff": 1e-9, "max_bounces": 65536},
@@ -42,19 +42,22 @@ async def test_a_session_that_asks_for_everything_keeps_no_other_from_its_frames
         assert sum(held) > 50, "what takes seconds was done piece by piece"
 
 
+async def _stills_waiting(peer: Peer, number: int) -> None:
+    """Wait until so many do."""
+    async with asyncio.timeout(PATIENCE):
+        while (await peer.status())["stills_waiting"] != number:  # noqa: ASYNC110 - another process knows
+            await asyncio.sleep(0.05)
+
+
 async def test_a_still_that_is_cancelled_frees_its_place_and_the_render_thread(engine: EngineProcess) -> None:
     async with connected(engine) as (peer, _):
         waiting = peer.ask_later(
             type="render", scene=DEAREST | {"sampling": {"samples_per_pixel": 16}}, width=2048, height=2048, client="a"
         )
         number = peer.number
-        async with asyncio.timeout(PATIENCE):
-            while (await peer.status())["stills_waiting"] != 1:
-                await asyncio.sleep(0.05)
+        await _stills_waiting(peer, 1)
         await peer.result(type="cancel", request=number)
-        async with asyncio.timeout(PATIENCE):
-            while (await peer.status())["stills_waiting"] != 0:
-                await asyncio.sleep(0.05)
+        await _stills_waiting(peer, 0)
         assert not waiting.done()
         pictures = (await peer.status())["memory_pictures_bytes"]
         assert pictures < 2048 * 2048 * 32 * 2, "its sums are given back, or kept for the next picture only"

@@ -113,6 +113,8 @@ class LivePicture:
     """The frame that was finished last, on its way out."""
     unsent: int = 0
     """Frames on their way out."""
+    beginning: asyncio.Task[None] | None = None
+    """The next frame's simulation."""
     preparing: asyncio.Task[None] | None = None
     """What the next picture needs of programs and trees."""
     render_seconds: float = 0.0
@@ -148,7 +150,9 @@ class LivePicture:
 
     def due_at(self) -> float | None:
         """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
-        if not self.watched or self.work is not None or self.preparing is not None or self.unsent >= UNSENT_FRAMES:
+        if not self.watched or self.work is not None or self.unsent >= UNSENT_FRAMES:
+            return None
+        if self.beginning is not None or self.preparing is not None:
             return None
         if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
             return None
@@ -267,7 +271,7 @@ class LivePicture:
     def wants_refinement(self) -> bool:
         """Whether more samples would improve what is seen."""
         return (
-            self.watched and self.at_rest and self.state is State.FULL and self.work is None
+            self.watched and self.at_rest and self.state is State.FULL and self.work is None and self.beginning is None
             and self.unsent < UNSENT_FRAMES
         )  # fmt: skip
 

@@ -31,6 +31,9 @@ from culet.geometry.stone import Stone
 from culet.scene import Scene
 
 log = logging.getLogger(__name__)
+
+SIMULATE_THREADS = 4
+"""As many stones whose steps take long do not keep the others from moving."""
 T = TypeVar("T")
 
 
@@ -96,6 +99,7 @@ class Painter:
         self.durations = Durations()
         self._renderer = renderer
         self._render_thread = render_thread
+        self._simulate_threads = ThreadPoolExecutor(SIMULATE_THREADS, "simulate")
         self._encode_thread = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2), "encode")
         self._still_thread = ThreadPoolExecutor(1, "encode-still")
         self._shares = Shares()
@@ -126,6 +130,7 @@ class Painter:
                 if not await self.work():
                     await self._rest()
         finally:
+            self._simulate_threads.shutdown(wait=False, cancel_futures=True)
             self._encode_thread.shutdown(wait=False, cancel_futures=True)
             self._still_thread.shutdown(wait=False, cancel_futures=True)
 
@@ -161,40 +166,56 @@ class Painter:
 
     async def _advance(self, live: LivePicture) -> None:
         """The next piece of a frame or of a refinement, begun if need be."""
-        if live.work is None:
-            if live.wants_refinement():
-                self._begin_refinement(live)
-            else:
-                await self._begin(live)
+        if live.work is None and live.wants_refinement():
+            self._begin_refinement(live)
         if live.work is not None:
             await self._go_on(live, live.work)
+        else:
+            self._begin(live)
 
-    async def _begin(self, live: LivePicture) -> None:
-        """Simulate up to now, and choose how to draw it."""
-        account, now = live.next_account, self._now()
+    def _begin(self, live: LivePicture) -> None:
+        """Simulate up to now, while others are drawn: at the extremes a single step takes a second."""
+        account, now, settled = live.next_account, self._now(), live.settled
         if live.begun_at > NEVER and (due_at := live.due_at()) is not None:
             self.durations.frame_wait.add(max(0.0, now - max(due_at, live.unwatched_at)))
         live.begin(now)
-        session, settled = live.session, live.settled
-        async with session.lock:
-            begun_at = self._now()  # waiting for the lock is no work that the next frame has to do again
-            started = time.perf_counter()
-            try:
-                await self._in_render_thread(account, session.advance, begun_at, self._share(live))
-            except Exception as error:  # one session's failure must not end the others'; its stone has stopped
-                self._tell_problem(live, as_culet_error(error, CuletError, "simulating"))
-            simulate_seconds = time.perf_counter() - started
-            shown = session.shown
-            session.remember(shown)
-        if live.current and live.picture is not None and not settled:  # the simulation has not moved on
-            return
+        live.beginning = asyncio.create_task(self._simulate(live, account, settled=settled))
+
+    async def _simulate(self, live: LivePicture, account: Account, *, settled: bool) -> None:
+        session = live.session
+        try:
+            async with session.lock:
+                begun_at = self._now()  # waiting for the lock is no work that the next frame has to do again
+                started = time.perf_counter()
+                try:
+                    await asyncio.get_running_loop().run_in_executor(
+                        self._simulate_threads, session.advance, begun_at, self._share(live)
+                    )
+                except Exception as error:  # one session's failure must not end the others'; its stone has stopped
+                    self._tell_problem(live, as_culet_error(error, CuletError, "simulating"))
+                simulate_seconds = time.perf_counter() - started
+                self._shares.charge(account, self._now() - begun_at, self._now())
+                shown = session.shown
+                session.remember(shown)
+            if live.current and live.picture is not None and not settled:  # the simulation has not moved on
+                return
+            self._plan(live, shown, account, begun_at, simulate_seconds)
+        except Exception as error:  # as above
+            self._refuse(live, session.shown, error)
+        finally:
+            live.beginning = None
+            self.wake()
+
+    def _plan(self, live: LivePicture, shown: Shown, account: Account, begun_at: float, simulated: float) -> None:
+        """Choose how to draw what is shown."""
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
         plan = live.governor.plan(shown.scene, wanted, live.balance) if live.governed else None
         kind = Kind.FULL if plan is None else Kind.PLANNED
-        live.work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulate_seconds)
-        live.work.slow = shown.moving and session.pace.slow
-        live.work.spent = self._now() - begun_at
-        live.work.start(self._renderer)
+        work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated)
+        work.slow = shown.moving and live.session.pace.slow
+        work.spent = self._now() - begun_at
+        work.start(self._renderer)
+        live.work = work
 
     def _begin_refinement(self, live: LivePicture) -> None:
         """As many samples more as the picture has."""
