@@ -28,6 +28,9 @@ async def test_metrics_are_prometheus_text_without_a_label_that_grows(gateway: G
     for expected in ("culet_engine_up 1.0", "culet_sessions 1.0", "culet_viewers 1.0"):
         assert f"\n{expected}\n" in answer.text
     assert (await gateway.engine_status())["frames_rendered"] >= 1
+    for name in ("culet_engine_frame_seconds", "culet_engine_frame_wait_seconds", "culet_http_answer_seconds"):
+        assert f"# TYPE {name} histogram\n" in answer.text
+        assert re.search(rf'^{name}_bucket{{le="\+Inf"}} [1-9]', answer.text, re.MULTILINE)
 
 
 async def test_the_documentation_lists_every_route_and_loads_nothing_from_elsewhere(gateway: Gateway) -> None:
