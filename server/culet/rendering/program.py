@@ -169,7 +169,7 @@ class Programs:
         """Where there is little room the compiler may end its process: not this one. Then what is made is there."""
         from culet.rendering.precompile import precompile  # as above
 
-        if not precompile(features, variant) and (fault := kernel_cache.complaint()):
+        if not precompile(features, variant, urgent=True) and (fault := kernel_cache.complaint()):
             raise KernelCacheError(fault)
 
 
