@@ -8,7 +8,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
-class PageInWheel(BuildHookInterface):  # type: ignore[misc,type-arg,unused-ignore]  # where hatchling is there or not
+class PageInWheel(BuildHookInterface):
     """A wheel without the page is built as well, for a server that is told where the page lies; it says so."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
