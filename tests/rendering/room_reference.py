@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
 from culet.scene import Scene
+from culet.scene.lamps import BoxLamp
 from culet.scene.model import (
     ConstantEnvironment,
     Environment,
@@ -21,7 +22,7 @@ from culet.scene.model import (
     HalfEnvironment,
     LightEnvironment,
 )
-from culet.scene.studio import BoxLamp, StudioEnvironment
+from culet.scene.studio import StudioEnvironment
 from rendering.views import Array, pixel_directions
 
 SURFACES = np.array([[0, 1, 0, -1], [0, 0, 1, -8], [math.sqrt(3) / 2, 0, 0.5, -8], [-math.sqrt(3) / 2, 0, 0.5, -8]])

@@ -16,7 +16,7 @@ import pytest
 from conftest import RendererOf
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Picture, Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.views import BARE, radiance, take
 
@@ -55,7 +55,7 @@ ROUNDING = 1e-4
 
 
 def general(renderer: Renderer, case: Case) -> Picture:
-    return take(renderer, Scene.read(case.scene), size=SIZE, features=GENERAL)
+    return take(renderer, legacy(case.scene), size=SIZE, features=GENERAL)
 
 
 @CASE
@@ -100,7 +100,7 @@ def test_single_precision_agrees_with_double_but_where_rounding_decides(
 
 def test_where_rounding_decides_it_is_as_likely_brighter_as_darker(renderer: Renderer, exact: Renderer) -> None:
     """64 samples of a small picture: enough rays near edges to see a bias, if there were one."""
-    scene = Scene.read(CASES["sky only"].scene)
+    scene = legacy(CASES["sky only"].scene)
     difference = radiance(take(renderer, scene, samples=64)) - radiance(take(exact, scene, samples=64))
     brighter, darker = (difference > 2e-6).sum(), (difference < -2e-6).sum()
     assert brighter + darker > 50  # measured 37 + 43 = 80
@@ -112,7 +112,7 @@ def test_where_rounding_decides_it_is_as_likely_brighter_as_darker(renderer: Ren
 def test_half_spaces_and_triangles_are_the_same_stone(renderer: Renderer, exact: Renderer, case: Case) -> None:
     """The convex stone as the intersection of its facets, and as triangles in a tree."""
     for used, tolerance, decided, rel in ((exact, 1e-9, 0, 0), (renderer, ROUNDING, case.decided, 4e-3)):
-        hull, mesh = (take(used, Scene.read(case.scene), size=SIZE, features=Features(kind)) for kind in SHAPES)
+        hull, mesh = (take(used, legacy(case.scene), size=SIZE, features=Features(kind)) for kind in SHAPES)
         difference = radiance(mesh) - radiance(hull)
         # measured 0 in double precision; 50, 45, 8, 48 and 97 of 14,400 in single
         with compared(radiance(mesh), radiance(hull)):

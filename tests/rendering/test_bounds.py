@@ -10,7 +10,8 @@ import pytest
 from culet.rendering import program
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.renderer import Renderer
-from culet.scene import PRESETS, Scene
+from culet.scene import PRESETS
+from culet.scene.legacy import legacy
 from rendering.views import radiance, take
 
 SCENES: dict[str, dict[str, Any]] = {
@@ -23,8 +24,8 @@ SCENES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 def test_what_a_coarse_cutoff_loses_is_within_the_bound(exact: Renderer, scene: dict[str, Any]) -> None:
     """Far within it, since few chains end where it is brightest."""
-    coarse = take(exact, Scene.read({**scene, "optics": {"cutoff": 0.1}}))
-    fine = take(exact, Scene.read({**scene, "optics": {"cutoff": 1e-5, "max_bounces": 4096}}))
+    coarse = take(exact, legacy({**scene, "optics": {"cutoff": 0.1}}))
+    fine = take(exact, legacy({**scene, "optics": {"cutoff": 1e-5, "max_bounces": 4096}}))
     missing = float(np.mean(radiance(fine) - radiance(coarse)))
     assert 0 < missing <= coarse.truncation_bound()
 
@@ -33,7 +34,7 @@ def test_what_mirrors_cut_of_a_chain_counts_in_however_many_parts_it_is_followed
     exact: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Two segments at a time, and all in one go. Without what chains that go on have lost, 1.9e-4 were missing."""
-    scene = Scene.read({"optics": {"cutoff": 0.1}})
+    scene = legacy({"optics": {"cutoff": 0.1}})
     in_parts = take(exact, scene).cut_map()
     monkeypatch.setattr(program, "FLAGS", (*program.FLAGS, "-DSTRIDE=256"))
     at_once = take(Renderer(exact.device, lanes=exact.variant.lanes, real=np.float64), scene).cut_map()

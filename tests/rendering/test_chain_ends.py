@@ -10,6 +10,7 @@ import pytest
 from culet.geometry.load import stone_of
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
 
 VIEW: dict[str, Any] = {
@@ -21,7 +22,7 @@ VIEW: dict[str, Any] = {
 
 
 def scene(**optics: object) -> Scene:
-    return Scene.read({**VIEW, "optics": {"max_bounces": 65536, **optics}})
+    return legacy({**VIEW, "optics": {"max_bounces": 65536, **optics}})
 
 
 def means_by_sample(renderer: Renderer, samples: int, **optics: object) -> Array:

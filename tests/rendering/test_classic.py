@@ -9,7 +9,8 @@ import pytest
 
 from culet.geometry.load import stone_of
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene, preset
+from culet.scene import preset
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.classic_reference import classic_picture
 from rendering.views import radiance, take
@@ -35,7 +36,7 @@ def test_the_classic_estimator_draws_what_the_report_describes(exact: Renderer, 
     data = preset("report-fig1").model_dump(mode="json")
     stone = {**data["stones"][0], "orientation": [0.9, 0.3, 0.1, 0.2]}
     stone["absorption"] = changes.pop("absorption", stone["absorption"])
-    scene = Scene.read({**data, **changes, "stones": [stone]})
+    scene = legacy({**data, **changes, "stones": [stone]})
     ours = radiance(take(exact, scene, size=SIZE))
     theirs = classic_picture(scene, stone_of(scene.stones[0], {}), *SIZE)
     with compared(ours, theirs):

@@ -11,6 +11,7 @@ from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from culet.study.cases import ring as finer_ring
 from geometry.shapes import obj, star_outline
 from geometry.shapes import prism as extruded
@@ -29,7 +30,7 @@ def views(optics: dict[str, object], random: np.random.Generator | None = None) 
     random = random or np.random.default_rng(4)
     for _ in range(3):
         side = random.normal(size=3)
-        yield Scene.read(
+        yield legacy(
             {
                 **BARE,
                 "environment": {"kind": "constant"},

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from culet.rendering.renderer import Picture, Renderer
-from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from rendering.views import BARE, UPRIGHT, radiance, take
 
 SCENES: dict[str, dict[str, Any]] = {
@@ -46,7 +46,7 @@ def ratios(picture: Picture, counts: Sequence[int], converged: int) -> dict[int,
 @pytest.mark.parametrize("settings", SCENES.values(), ids=SCENES.keys())
 def test_the_error_estimate_is_within_a_factor_of_two(renderer: Renderer, settings: dict[str, Any]) -> None:
     """Measured 0.87 to 1.50."""
-    found = ratios(take(renderer, Scene.read(settings), samples=0), COUNTS, 512)
+    found = ratios(take(renderer, legacy(settings), samples=0), COUNTS, 512)
     assert {n: ratio for n, ratio in found.items() if not 0.5 < ratio < 2} == {}
 
 
@@ -54,15 +54,15 @@ def test_the_error_estimate_is_within_a_factor_of_two(renderer: Renderer, settin
 @pytest.mark.parametrize("settings", SCENES.values(), ids=SCENES.keys())
 def test_and_at_many_samples_too(renderer: Renderer, settings: dict[str, Any]) -> None:
     """Every number of samples from 2 to 256. Measured 0.78 to 1.96, the most of the ruby at 96."""
-    found = ratios(take(renderer, Scene.read(settings), samples=0), range(2, 257), 4096)
+    found = ratios(take(renderer, legacy(settings), samples=0), range(2, 257), 4096)
     print(f"{min(found.values()):.2f} to {max(found.values()):.2f}")
     assert {n: ratio for n, ratio in found.items() if not 0.5 < ratio < 2} == {}
 
 
 def test_one_sample_says_nothing_of_its_error(renderer: Renderer) -> None:
-    assert np.isnan(take(renderer, Scene()).error_estimate())
+    assert np.isnan(take(renderer, LEGACY_DEFAULT).error_estimate())
 
 
 def test_a_picture_without_edges_has_no_error(renderer: Renderer) -> None:
-    scene = Scene.read({**BARE, "stones": [], "environment": {"kind": "constant"}})
+    scene = legacy({**BARE, "stones": [], "environment": {"kind": "constant"}})
     assert take(renderer, scene, samples=4).error_estimate() == 0

@@ -9,7 +9,7 @@ import pytest
 
 from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.views import BARE, UPRIGHT, radiance, take
 from shared.extremes import GLOW, SCENES, THIN_STONES, looking
@@ -21,7 +21,7 @@ SIZE = 64, 36
 def test_no_light_comes_out_of_nothing(renderer: Renderer, exact: Renderer, extreme: dict[str, Any]) -> None:
     """Between 0 and 1 under a sky of 1, whatever the view; finite in both precisions."""
     for used, tolerance in ((renderer, 2e-7), (exact, 5e-16)):  # measured 0 and 0
-        picture = take(used, Scene.read({**GLOW, **extreme}), size=SIZE)
+        picture = take(used, legacy({**GLOW, **extreme}), size=SIZE)
         pixels, cut = radiance(picture), picture.cut_map()
         assert np.isfinite(pixels).all()
         assert np.isfinite(cut).all()
@@ -33,7 +33,7 @@ def test_no_light_comes_out_of_nothing(renderer: Renderer, exact: Renderer, extr
 @pytest.mark.parametrize("extreme", SCENES.values(), ids=SCENES.keys())
 def test_single_precision_sees_what_double_sees(renderer: Renderer, exact: Renderer, extreme: dict[str, Any]) -> None:
     """On the whole: the mean under a gradient, where a wrong facet shows."""
-    scene = Scene.read({**extreme, "lights": [], "environment": {"kind": "gradient"}})
+    scene = legacy({**extreme, "lights": [], "environment": {"kind": "gradient"}})
     single, double = (radiance(take(used, scene, size=SIZE)).mean() for used in (renderer, exact))
     assert single == pytest.approx(double, abs=1e-3)  # measured 4.2e-4, the floor's checker 1e8 R away; 7e-5 the others
 
@@ -43,7 +43,7 @@ def test_the_reports_estimator_is_finite_though_it_makes_light(renderer: Rendere
     """Each total reflection inside adds the sky once more without taking anything away: by design, as published. Under
     a sky of 1 its 12 meetings may show up to 12; measured 4.4."""
     optics = {"estimator": "classic", "fresnel": "schlick", "max_bounces": 12}
-    pixels = radiance(take(renderer, Scene.read({**GLOW, "camera": camera, "optics": optics}), size=SIZE))
+    pixels = radiance(take(renderer, legacy({**GLOW, "camera": camera, "optics": optics}), size=SIZE))
     assert np.isfinite(pixels).all()
     assert pixels.min() >= 0
     assert 1 < pixels.max() <= 12
@@ -52,7 +52,7 @@ def test_the_reports_estimator_is_finite_though_it_makes_light(renderer: Rendere
 def test_a_stone_looks_the_same_from_far_and_from_farther(exact: Renderer, renderer: Renderer) -> None:
     """At 4e4 and 1.2e5 radii the perspective is gone: a third of the angle from three times as far is the same view."""
     far, farther = (
-        Scene.read({**BARE, "environment": {"kind": "gradient"}, "stones": [{"position": [0, 0, 0]}],
+        legacy({**BARE, "environment": {"kind": "gradient"}, "stones": [{"position": [0, 0, 0]}],
                     "optics": {"cutoff": 1e-3}, **looking([0, 3 * d, 4 * d], [0, 0, 0], fov_degrees=angle)})
         for d, angle in ((8e3, 0.003), (2.4e4, 0.001))
     )  # fmt: skip
@@ -72,7 +72,7 @@ def test_thin_stones_lose_and_gain_no_light(renderer: Renderer, exact: Renderer,
     camera = looking([0.8, 1.5, 2.5], [0, 0, 0], fov_degrees=40)
     for used, tolerance in ((renderer, 3e-7), (exact, 1e-15)):  # measured 9.4e-8 and 2.3e-16
         for turned in ([1, 0, 0, 0], [0.9, 0.1, -0.3, 0.2]):
-            scene = Scene.read({**BARE, **GLOW, "stones": [{**UPRIGHT, "orientation": turned}], **camera})
+            scene = legacy({**BARE, **GLOW, "stones": [{**UPRIGHT, "orientation": turned}], **camera})
             picture = take(used, scene, stone)
             assert picture.segments() > 0
             assert radiance(picture).mean(axis=-1) + picture.cut_map() == pytest.approx(1, abs=tolerance)
@@ -81,7 +81,7 @@ def test_thin_stones_lose_and_gain_no_light(renderer: Renderer, exact: Renderer,
 def test_a_picture_of_many_samples_stays_finite(renderer: Renderer) -> None:
     """Sums of bright light in single precision, at the largest radiance that a scene allows."""
     sky = {"kind": "constant", "radiance": [1e6, 1e6, 1e6]}
-    picture = take(renderer, Scene.read({**BARE, "environment": sky}), size=(16, 9), samples=256)
+    picture = take(renderer, legacy({**BARE, "environment": sky}), size=(16, 9), samples=256)
     pixels = radiance(picture)
     assert pixels.mean(axis=-1) / 1e6 + picture.cut_map() == pytest.approx(1, abs=1e-6)  # measured 2.7e-7
     assert (picture.rgb() >= 254).all()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT
 from culet.study.extremes import EXTREMES, MODES, ROUNDING, Extreme, _judged, count
 
 MANY = (
@@ -48,13 +48,13 @@ def test_what_is_wrong_is_counted() -> None:
     pixels[0] = [[np.nan, 1, 1], [-0.1, 1, 1], [0.9, 0.9, 0.9], [1.1, 1, 1]]
     cut = np.zeros((2, 4))
     pixels[1, 0], cut[1, 0] = 0.995, 0.005
-    found = _judged(Scene(), None, pixels, cut)
+    found = _judged(LEGACY_DEFAULT, None, pixels, cut)
     assert (found.pixels, found.not_finite, found.negative, found.specks) == (8, 1, 1, 3)
 
 
 def test_a_ray_that_is_lost_is_a_speck_though_it_is_counted_as_cut() -> None:
     pixels, cut = np.zeros((1, 2, 3)), np.ones((1, 2))
-    assert _judged(Scene(), None, pixels, cut).specks == 2
+    assert _judged(LEGACY_DEFAULT, None, pixels, cut).specks == 2
 
 
 def test_the_page_shows_every_case() -> None:

@@ -14,7 +14,8 @@ from conftest import RendererOf
 from culet.geometry.load import stone_of
 from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
 from culet.rendering.renderer import Picture, Renderer
-from culet.scene import PRESETS, Scene
+from culet.scene import PRESETS
+from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from pictures import compared
 from rendering.views import BARE, radiance, take
 
@@ -68,7 +69,7 @@ def narrow(renderer_of: RendererOf) -> Renderer:
 
 @pytest.fixture(scope="module")
 def size_of_general(narrow: Renderer) -> int:
-    return machine_code(take(narrow, Scene(), features=Features()))
+    return machine_code(take(narrow, LEGACY_DEFAULT, features=Features()))
 
 
 @pytest.mark.parametrize(("feature", "kind", "scene"), DECIDED.values(), ids=DECIDED.keys())
@@ -76,8 +77,8 @@ def test_a_decided_feature_shows_what_the_general_program_shows(
     narrow: Renderer, size_of_general: int, feature: str, kind: int, scene: dict[str, Any]
 ) -> None:
     """The general program with the feature idle, and the same program without the other kinds' code."""
-    general = take(narrow, Scene.read(scene), features=Features())
-    decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
+    general = take(narrow, legacy(scene), features=Features())
+    decided = take(narrow, legacy(scene), features=replace(Features(), **{feature: kind}))
     assert machine_code(general) == size_of_general
     # measured 1.9e-7 of the radiance without dispersion, where the channels of one chain are summed in another order;
     # otherwise every bit is the same
@@ -90,20 +91,20 @@ def test_a_feature_that_is_off_is_not_in_the_program(narrow: Renderer, size_of_g
     """Measured: from 0.7 % (absorption) to 22 % (the sky) of 49 kB. What the camera's place decides is a branch or two,
     less than what the compiler then orders otherwise: 0.2 % more."""
     feature, kind, scene = DECIDED[name]
-    decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
+    decided = take(narrow, legacy(scene), features=replace(Features(), **{feature: kind}))
     assert machine_code(decided) < size_of_general
 
 
 def test_without_dispersion_a_third_of_the_segments_is_followed(narrow: Renderer) -> None:
     """This feature saves work, not code: one chain carries three channels, and its arithmetic is there for each."""
     feature, kind, scene = DECIDED["no dispersion"]
-    general = take(narrow, Scene.read(scene), features=Features())
-    decided = take(narrow, Scene.read(scene), features=replace(Features(), **{feature: kind}))
+    general = take(narrow, legacy(scene), features=Features())
+    decided = take(narrow, legacy(scene), features=replace(Features(), **{feature: kind}))
     assert general.segments() == 3 * decided.segments() > 0
 
 
 def test_without_a_stone_the_program_is_less_than_half(narrow: Renderer, size_of_general: int) -> None:
-    scene = Scene.read({"stones": []})
+    scene = legacy({"stones": []})
     assert machine_code(take(narrow, scene, features=Features(Geometry.EMPTY))) < size_of_general / 2  # measured 0.39
 
 
@@ -120,7 +121,7 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
     narrow: Renderer, size_of_general: int, scene: dict[str, Any]
 ) -> None:
     """Every feature decided, against every feature left to run time."""
-    own, general = take(narrow, Scene.read(scene)), take(narrow, Scene.read(scene), features=Features())
+    own, general = take(narrow, legacy(scene)), take(narrow, legacy(scene), features=Features())
     # measured 2.2e-7 of the radiance: where less is left to run time, other sums are rounded together
     with compared(radiance(own), radiance(general)):
         assert radiance(own) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
@@ -129,7 +130,7 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
 
 def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> None:
     """Lights and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
-    stone = stone_of(Scene().stones[0], {})
+    stone = stone_of(LEGACY_DEFAULT.stones[0], {})
     left = {
         name: {
             field.name for field in fields(Features) if getattr(features_of(preset.scene, stone), field.name) == RUNTIME
@@ -138,7 +139,7 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
     }
     assert left["default"] == {"lights"}
     assert left["tinted-blue"] == {"lights", "absorption"}
-    assert features_of(Scene.read(OWN["bare"]), stone) == Features(
+    assert features_of(legacy(OWN["bare"]), stone) == Features(
         Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], boxes=0, head=0, backdrop=0, glare=1,
         dispersion=0, absorption=0, fresnel=0, end=0, camera_inside=0,
     )  # fmt: skip

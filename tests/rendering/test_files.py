@@ -16,7 +16,7 @@ from culet.gateway.stills import MEDIA_TYPES
 from culet.rendering import files
 from culet.rendering.files import ENCODERS, encode, write
 from culet.rendering.renderer import Picture, Renderer
-from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT
 from rendering.views import take
 
 WIDTH, HEIGHT = 97, 55
@@ -25,7 +25,7 @@ WIDTH, HEIGHT = 97, 55
 
 @pytest.fixture(scope="module")
 def picture(renderer: Renderer) -> Picture:
-    return take(renderer, Scene(), size=(WIDTH, HEIGHT))
+    return take(renderer, LEGACY_DEFAULT, size=(WIDTH, HEIGHT))
 
 
 def test_a_tga_is_what_its_specification_says_byte_by_byte(picture: Picture) -> None:
@@ -74,7 +74,7 @@ def test_an_npy_holds_the_linear_radiance_untouched(picture: Picture) -> None:
 
 
 def test_a_picture_in_double_precision_has_the_same_files(exact: Renderer) -> None:
-    picture = take(exact, Scene(), size=(20, 10))
+    picture = take(exact, LEGACY_DEFAULT, size=(20, 10))
     array = np.load(io.BytesIO(encode(picture, "npy")))
     assert (array == picture.linear().astype(np.float32)).all()
     assert len(encode(picture, "tga")) == 18 + 600 + 26

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from pictures import compared
 from rendering.views import BARE, Array, radiance, take
 
@@ -49,7 +49,7 @@ def to_bytes(encoded: Array) -> NDArray[np.int64]:
 
 def ramp(renderer: Renderer, tone_map: str, exposure: float, brightest: float) -> tuple[Array, NDArray[np.int64]]:
     """All radiances up to that, and what is shown of them: a vertical gradient in each channel, finely graded."""
-    scene = Scene.read(
+    scene = legacy(
         {
             **BARE,
             "stones": [],
@@ -83,7 +83,7 @@ def test_what_is_too_bright_is_white_and_what_is_dark_is_black(renderer: Rendere
 
 
 def test_the_mean_of_the_samples_is_shown_not_their_sum(renderer: Renderer) -> None:
-    scene = Scene.read({**BARE, "stones": [], "environment": {"kind": "constant", "radiance": [0.2, 0.4, 0.8]}})
+    scene = legacy({**BARE, "stones": [], "environment": {"kind": "constant", "radiance": [0.2, 0.4, 0.8]}})
     for samples in (1, 5):
         assert take(renderer, scene, size=(5, 3), samples=samples).rgb()[1, 2].tolist() == [124, 170, 231]
 
@@ -91,10 +91,10 @@ def test_the_mean_of_the_samples_is_shown_not_their_sum(renderer: Renderer) -> N
 @pytest.mark.parametrize("pixels", [1, 15, 16, 17, 33])
 def test_every_pixel_of_an_odd_number_is_shown(renderer: Renderer, pixels: int) -> None:
     """Blocks of 16 pixels: the last one may be short, and nothing is written beyond it."""
-    scene = Scene.read({**BARE, "stones": [], "environment": {"kind": "constant"}})
+    scene = legacy({**BARE, "stones": [], "environment": {"kind": "constant"}})
     assert (take(renderer, scene, size=(pixels, 1)).rgb() == 255).all()
 
 
 def test_double_precision_is_shown_the_same(renderer: Renderer, exact: Renderer) -> None:
-    single, double = (take(used, Scene()).rgb().astype(int) for used in (renderer, exact))
+    single, double = (take(used, LEGACY_DEFAULT).rgb().astype(int) for used in (renderer, exact))
     assert (abs(single - double).max(axis=-1) > 1).mean() < 0.002  # measured 0 of 5184

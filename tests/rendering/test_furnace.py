@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.views import BARE, UPRIGHT, radiance, take, without_stone
 from shared.stones import prism
@@ -35,7 +35,7 @@ VIEWS: dict[str, dict[str, Any]] = {
 def test_all_light_is_seen_or_counted_as_cut(renderer: Renderer, exact: Renderer, view: dict[str, Any]) -> None:
     """R + T + lost = 1 for every pixel: the mean of the channels and the weight cut from them."""
     for used, tolerance in ((renderer, 5e-7), (exact, 2e-15)):  # measured 2.0e-7, one index; 4.4e-16
-        picture = take(used, Scene.read({**FURNACE, **view}))
+        picture = take(used, legacy({**FURNACE, **view}))
         seen, cut = radiance(picture), picture.cut_map().astype(float)
         assert seen.max() <= 1 + tolerance
         assert cut.min() >= 0
@@ -46,7 +46,7 @@ def test_all_light_is_seen_or_counted_as_cut(renderer: Renderer, exact: Renderer
 
 def test_a_finer_cut_off_misses_less(renderer: Renderer) -> None:
     """The mean that is missing falls about as the cut-off does, and its bound with it."""
-    missing = [take(renderer, Scene.read({**FURNACE, "optics": {"cutoff": c}})).cut() for c in (1e-1, 1e-2, 1e-3, 1e-4)]
+    missing = [take(renderer, legacy({**FURNACE, "optics": {"cutoff": c}})).cut() for c in (1e-1, 1e-2, 1e-3, 1e-4)]
     ratios = np.divide(missing[:-1], missing[1:])
     assert ratios.min() > 5
     assert missing[-1] < 1e-5
@@ -60,12 +60,12 @@ def test_a_coloured_furnace_keeps_its_colour(exact: Renderer) -> None:
         "optics": {"cutoff": 1e-9, "max_bounces": 65536},
     }
     # measured 3.0e-9, the cut-off
-    assert radiance(take(exact, Scene.read(scene))) == pytest.approx(np.broadcast_to(colour, (54, 96, 3)), abs=1e-8)
+    assert radiance(take(exact, legacy(scene))) == pytest.approx(np.broadcast_to(colour, (54, 96, 3)), abs=1e-8)
 
 
 def test_a_stone_of_plain_facets_is_no_more_visible_than_a_brilliant(renderer: Renderer) -> None:
     """In a regular prism chains meet the same few angles again and again; many are totally reflected for long."""
-    picture = take(renderer, Scene.read({**FURNACE, "stones": [{"orientation": [0.9, 0.1, 0.4, 0.2]}]}), prism(60))
+    picture = take(renderer, legacy({**FURNACE, "stones": [{"orientation": [0.9, 0.1, 0.4, 0.2]}]}), prism(60))
     assert radiance(picture).mean(axis=-1) + picture.cut_map() == pytest.approx(1, abs=3e-7)  # measured 7.4e-8
 
 
@@ -81,6 +81,6 @@ ROOMS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("room", ROOMS.values(), ids=ROOMS.keys())
 def test_a_stone_of_index_one_cannot_be_seen(exact: Renderer, room: dict[str, Any]) -> None:
     """Without lights, for it would still cast its shadow."""
-    scene = Scene.read({"stones": [INDEX_ONE], "lights": [], "environment": {"kind": "gradient"}, **room})
+    scene = legacy({"stones": [INDEX_ONE], "lights": [], "environment": {"kind": "gradient"}, **room})
     difference = abs(radiance(take(exact, scene)) - radiance(take(exact, without_stone(scene)))).max(axis=-1)
     assert (difference > 1e-12).sum() == 0

@@ -10,6 +10,7 @@ from culet.geometry.stone import Stone
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from rendering.views import BARE, UPRIGHT, radiance, take
 from shared.stones import brilliant, ring, star
 
@@ -17,7 +18,7 @@ STONES = {"star": star(), "ring": ring(), "brilliant": brilliant()}
 
 
 def furnace(camera: dict[str, Any], **optics: object) -> Scene:
-    return Scene.read(
+    return legacy(
         {
             **BARE,
             "environment": {"kind": "constant"},

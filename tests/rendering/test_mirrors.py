@@ -9,7 +9,7 @@ from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
 from culet.rendering.features import features_of
 from culet.rendering.mirrors import makes_finite_group
-from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT
 from geometry.shapes import obj
 from geometry.shapes import prism as extruded
 from shared.stones import ball, brilliant, prism, ring, skew_block, slab, step_cut
@@ -29,10 +29,10 @@ ENDLESS = [brilliant(), step_cut(), skew_block(), ring(), ball(5000)()]
 @pytest.mark.parametrize("stone", FINITE.values(), ids=FINITE.keys())
 def test_of_boxes_and_prisms_the_mirrors_are_few(stone: Stone) -> None:
     assert makes_finite_group(stone)
-    assert features_of(Scene(), stone).few_mirrors == 1
+    assert features_of(LEGACY_DEFAULT, stone).few_mirrors == 1
 
 
 @pytest.mark.parametrize("stone", ENDLESS, ids=lambda stone: stone.name)
 def test_other_stones_have_no_end_of_mirrors(stone: Stone) -> None:
     assert not makes_finite_group(stone)
-    assert features_of(Scene(), stone).few_mirrors == 0
+    assert features_of(LEGACY_DEFAULT, stone).few_mirrors == 0

@@ -10,6 +10,7 @@ import pytest
 from culet.rendering.panoramas import Panorama, directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.views import BARE, Array, pixel_directions, radiance
 
@@ -24,7 +25,7 @@ LOOK = pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS.keys())
 
 def sky_scene(look: dict[str, Any], fov: float, **environment: object) -> Scene:
     camera = {"position": [0, 0, 0], "fov_degrees": fov, **look}
-    return Scene.read({**BARE, "stones": [], "environment": environment, "camera": camera})
+    return legacy({**BARE, "stones": [], "environment": environment, "camera": camera})
 
 
 def looked_up(renderer: Renderer, scene: Scene, panorama: Panorama) -> Array:

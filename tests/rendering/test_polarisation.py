@@ -12,6 +12,7 @@ from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene, StoneSettings
+from culet.scene.legacy import legacy
 from optics.closed_forms import DIAMOND
 from rendering import ray_fields
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
@@ -22,7 +23,7 @@ FINE = {"cutoff": 1e-9, "max_bounces": 65536}
 
 def ray_scene(eye: Array, direction: Array, eta: float, sky: dict[str, object], **optics: object) -> Scene:
     """One pixel that sees along a ray."""
-    return Scene.read(
+    return legacy(
         {
             **BARE,
             "stones": [{**UPRIGHT, "material": {"ior": [eta] * 3}}],

@@ -9,7 +9,7 @@ import pytest
 
 from culet.geometry.stone import Stone
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from optics.closed_forms import DIAMOND, deviation, fresnel, minimum_deviation
 from rendering.views import BARE, UPRIGHT, radiance, take
 from shared.stones import prism
@@ -30,7 +30,7 @@ def measured_deviation(
     # The facet's inward normal points apex/2 below the horizontal; the ray comes from below it.
     rise = incidence - apex / 2
     direction = np.array([math.cos(rise), math.sin(rise), 0])
-    scene = Scene.read(
+    scene = legacy(
         {
             **BARE,
             "stones": [{**UPRIGHT, "material": {"ior": indices}}],

@@ -11,11 +11,11 @@ import pytest
 from culet.geometry.load import stone_of
 from culet.rendering.pace import Pace
 from culet.rendering.renderer import Renderer, jitter
-from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from pictures import compared
 from rendering.views import radiance, take
 
-SCENE = Scene()
+SCENE = LEGACY_DEFAULT
 
 
 def test_the_same_picture_twice_is_the_same_to_the_last_bit(renderer: Renderer) -> None:
@@ -124,7 +124,7 @@ def test_refinement_converges_on_the_picture_of_a_finer_grid(exact: Renderer) ->
 @pytest.mark.parametrize("size", [(1, 1), (1, 100), (100, 1), (33, 31), (64, 64)])
 def test_every_size_is_the_same_picture_as_its_neighbours(exact: Renderer, size: tuple[int, int]) -> None:
     """Tiles that hang over the picture's edge: as bright, finite, and every pixel written."""
-    scene = Scene.read({"environment": {"kind": "light"}, "floor": {"kind": "none"}, "stones": []})
+    scene = legacy({"environment": {"kind": "light"}, "floor": {"kind": "none"}, "stones": []})
     picture = take(exact, scene, size=size)
     assert radiance(picture) == pytest.approx(np.broadcast_to((0.7, 0.85, 1), (size[1], size[0], 3)), abs=1e-12)
     assert picture.rgb().shape == (size[1], size[0], 3)

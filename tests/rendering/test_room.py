@@ -12,6 +12,7 @@ from culet.geometry.stone import Stone
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.room_reference import look_around
 from rendering.views import radiance, take
@@ -49,14 +50,14 @@ def compare(renderer: Renderer, scene: Scene, stone: Stone | None, tolerance: fl
 def test_every_sky_is_as_described(exact: Renderer, environment: dict[str, Any]) -> None:
     """In all directions: 170 degrees towards the studio's lamps, and its half sky to both sides of the horizon."""
     camera = {"position": [0, 0, 0], "target": [0.1, 0.6, 0.3], "fov_degrees": 150}
-    scene = Scene.read({"stones": [], "floor": {"kind": "none"}, "environment": environment, "camera": camera})
+    scene = legacy({"stones": [], "floor": {"kind": "none"}, "environment": environment, "camera": camera})
     compare(exact, scene, None, 5e-12, 0)  # measured 1.1e-12, the studio; 5e-16 the others
 
 
 @pytest.mark.parametrize(("floor", "walls"), ROOMS)
 def test_every_room_is_as_described(renderer: Renderer, exact: Renderer, floor: str, walls: str) -> None:
     """Without a stone: checkers, both lights, mirrors in mirrors."""
-    scene = Scene.read({**WIDE, "stones": [], "floor": {"kind": floor}, "walls": {"kind": walls}})
+    scene = legacy({**WIDE, "stones": [], "floor": {"kind": floor}, "walls": {"kind": walls}})
     compare(exact, scene, None, 5e-12, 0)  # measured 1.9e-12, a lamp's edge
     compare(renderer, scene, None, 1e-3, 40)  # of 5184: lamps' edges, up to 7e-4; the far checker's edges
 
@@ -65,7 +66,7 @@ def test_a_mirror_floor_returns_four_fifths_of_the_sky_and_a_fifth_of_its_own_li
     """The closed form for no lights: 0.8 sky + 0.2 x 0.2 x albedo, albedo 0.1 and 0.05."""
     data = {"stones": [], "lights": [], "environment": {"kind": "constant", "radiance": [1, 2, 4]}}
     camera = {"position": [0, 3, 0], "target": [0.5, -1, 0.5], "fov_degrees": 50}
-    pixels = radiance(take(exact, Scene.read({**data, "camera": camera}))).reshape(-1, 3)
+    pixels = radiance(take(exact, legacy({**data, "camera": camera}))).reshape(-1, 3)
     expected = np.array([[0.8 * c + 0.04 * albedo for c in (1, 2, 4)] for albedo in (0.1, 0.05)])
     distance = abs(pixels[:, None, :] - expected).max(axis=-1)
     assert distance.min(axis=1).max() < 1e-14
@@ -83,10 +84,10 @@ def test_a_mirrored_camera_sees_the_mirrored_stone(exact: Renderer) -> None:
     common = {"stones": [stone], "lights": [], "environment": sky, "optics": FINE}
     above = {"position": [0, 2, 4], "target": [0, -2.9, -0.2], "fov_degrees": 25}
     below = {"position": [0, -4, 4], "target": [0, 0.9, -0.2], "up": [0, -1, 0], "fov_degrees": 25}
-    mirrored = radiance(take(exact, Scene.read({**common, "camera": above})))
-    direct = radiance(take(exact, Scene.read({**common, "camera": below, "floor": {"kind": "none"}})))[:, ::-1]
-    floor = look_around(Scene.read({**common, "camera": above, "stones": []}), None, *SIZE).radiance
-    bare = look_around(Scene.read({**common, "camera": below, "stones": [], "floor": {"kind": "none"}}), None, *SIZE)
+    mirrored = radiance(take(exact, legacy({**common, "camera": above})))
+    direct = radiance(take(exact, legacy({**common, "camera": below, "floor": {"kind": "none"}})))[:, ::-1]
+    floor = look_around(legacy({**common, "camera": above, "stones": []}), None, *SIZE).radiance
+    bare = look_around(legacy({**common, "camera": below, "stones": [], "floor": {"kind": "none"}}), None, *SIZE)
     own = floor - 0.8 * bare.radiance[:, ::-1]  # the mirror's own light
     with compared(mirrored, 0.8 * direct + own):
         assert mirrored == pytest.approx(0.8 * direct + own, abs=1e-12)
@@ -120,7 +121,7 @@ def test_shadows_lie_where_the_stone_is_in_the_way(
     x, _, z = place["position"]
     camera = {"position": [x, 5, z + 5], "target": [x, -1, z], "fov_degrees": 60}
     data = {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}, "camera": camera, "stones": [place], "optics": FINE}
-    scene = Scene.read({**data, **light})
+    scene = legacy({**data, **light})
     compare(exact, scene, stone_of(scene.stones[0], {}), 1e-11, 0)
 
 
@@ -129,7 +130,7 @@ def test_a_tree_of_triangles_casts_the_same_shadows(exact: Renderer, place: dict
     """The same stone with its facets as triangles; the edge of a shadow may fall to either side."""
     x, _, z = place["position"]
     camera = {"position": [x, 5, z + 5], "target": [x, -1, z], "fov_degrees": 60}
-    scene = Scene.read({"floor": {"kind": "matte"}, "camera": camera, "stones": [place], "optics": FINE})
+    scene = legacy({"floor": {"kind": "matte"}, "camera": camera, "stones": [place], "optics": FINE})
     by_planes, by_triangles = (
         radiance(take(exact, scene, size=SIZE, features=Features(geometry)))
         for geometry in (Geometry.HULL, Geometry.MESH)
@@ -142,5 +143,5 @@ def test_a_mirror_shows_the_stones_shadow(exact: Renderer) -> None:
     """Pixels that see the floor's shadow by way of a mirror wall."""
     camera = {"position": [0, 1, 4], "target": [0, 0.3, -8], "fov_degrees": 60}
     data = {"floor": {"kind": "matte"}, "walls": {"kind": "mirror"}, "camera": camera, "optics": FINE}
-    scene = Scene.read({**data, "stones": [{"position": [0, 0.2, -4]}]})
+    scene = legacy({**data, "stones": [{"position": [0, 0.2, -4]}]})
     compare(exact, scene, stone_of(scene.stones[0], {}), 1e-11, 0)

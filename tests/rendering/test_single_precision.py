@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from culet.study.precision import FARTHER, PERTURBATION, SCENES, SIZE, is_step, judge
 
 MOST = {
-    "default": (0.002, 0.02),  # measured 0.00132, 0.014
+    "legacy default": (0.002, 0.02),  # measured 0.00132, 0.014
     "matte floor, lights": (0.002, 0.02),  # 0.00132, 0.012
     "matte floor, no lights": (0.002, 0.02),  # 0.00131, 0.012
     "stone alone, gradient": (0.0003, 0.006),  # 0.00012, 0.004
@@ -25,7 +25,7 @@ the former would explain few others: pixels that differ are not found by shaking
 
 
 def assert_explained(renderer: Renderer, exact: Renderer, name: str, size: tuple[int, int]) -> None:
-    found = judge(renderer, exact, Scene.read(SCENES[name]), size, FARTHER.get(name, PERTURBATION))
+    found = judge(renderer, exact, legacy(SCENES[name]), size, FARTHER.get(name, PERTURBATION))
     most_decided, most_moved = MOST[name]
     assert 0 < found.decided < most_decided * found.pixels
     assert found.unexplained == 0, found
@@ -34,7 +34,7 @@ def assert_explained(renderer: Renderer, exact: Renderer, name: str, size: tuple
 
 
 def test_every_pixel_that_differs_is_where_the_picture_is_steep(renderer: Renderer, exact: Renderer) -> None:
-    assert_explained(renderer, exact, "default", (160, 90))
+    assert_explained(renderer, exact, "legacy default", (160, 90))
 
 
 @pytest.mark.validation

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from optics.closed_forms import DIAMOND, fresnel, slab
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
 from shared.stones import slab as slab_stone
@@ -28,7 +28,7 @@ def seen_from_above(
     """(3,) radiance in the middle of the plate, seen that far from vertical."""
     angle = math.radians(degrees)
     position = [0, 4 * math.cos(angle), 4 * math.sin(angle)]
-    scene = Scene.read(
+    scene = legacy(
         {
             **BARE,
             "stones": [{**UPRIGHT, **stone}],

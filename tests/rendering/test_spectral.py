@@ -11,7 +11,7 @@ import pytest
 from culet.optics.materials import material_of
 from culet.rendering.chains import GROUPS, chain_table
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from optics.closed_forms import deviation, fresnel, minimum_deviation
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
 from shared.stones import prism
@@ -28,7 +28,7 @@ def seen_through_a_prism(renderer: Renderer, scene: dict[str, Any], incidence: f
     rise = incidence - APEX / 2
     direction = np.array([math.cos(rise), math.sin(rise), 0])
     camera = {"position": (entry - 3 * direction).tolist(), "target": entry.tolist(), "fov_degrees": 1e-3}
-    return radiance(take(renderer, Scene.read({**BARE, "camera": camera, **scene}), stone, (size, size)))
+    return radiance(take(renderer, legacy({**BARE, "camera": camera, **scene}), stone, (size, size)))
 
 
 def sky_at(incidence: float, n: Array) -> Array:
@@ -56,7 +56,7 @@ def test_each_wavelength_is_turned_by_the_prism_as_its_index_says(
         "environment": {"kind": "gradient"},
         "optics": {"bands": bands, "max_bounces": 1, "cutoff": 1e-9},
     }
-    chains = chain_table(Scene.read({**BARE, **settings}), 0, np.float64, common=False)
+    chains = chain_table(legacy({**BARE, **settings}), 0, np.float64, common=False)
     expected = np.array(
         [chains["share"][group::GROUPS].T @ sky_at(incidence, chains["eta"][group::GROUPS]) for group in range(GROUPS)]
     )
@@ -84,7 +84,7 @@ def test_violet_bends_most(exact: Renderer) -> None:
     normal, offset = stone.planes[LEFT, :3], stone.planes[LEFT, 3]
     entry = np.array([offset / normal[0], 0, 0])
     direction = np.array([math.cos(rise), math.sin(rise), 0])
-    scene = Scene.read(
+    scene = legacy(
         {
             **BARE,
             "stones": [{**UPRIGHT, "material": "diamond"}],
@@ -108,7 +108,7 @@ def test_violet_bends_most(exact: Renderer) -> None:
 def test_white_stays_white(renderer: Renderer, bands: int, polarised: bool) -> None:
     """Under a white sky each pixel is as grey as its weights: their sum is 1 in each group, and rounding adds
     5e-7. What is cut may differ by wavelength."""
-    scene = Scene.read(
+    scene = legacy(
         {
             **BARE,
             "environment": {"kind": "constant"},
@@ -126,12 +126,12 @@ def test_white_stays_white(renderer: Renderer, bands: int, polarised: bool) -> N
 def test_a_spectral_picture_is_the_weighted_sum_of_pictures_of_one_index(exact: Renderer) -> None:
     """Four wavelengths for each of four groups, traced once together and once one by one."""
     base = {**BARE, "environment": {"kind": "gradient"}}
-    spectral = Scene.read({**base, "optics": {"bands": 4}})
+    spectral = legacy({**base, "optics": {"bands": 4}})
     together = radiance(take(exact, spectral, size=(48, 28)))
     chains = chain_table(spectral, 0, np.float64, common=False)
     alone = np.zeros((GROUPS, *together.shape))
     for number, chain in enumerate(chains):
-        scene = Scene.read({**base, "stones": [{"material": {"ior": [chain["eta"]] * 3}}]})
+        scene = legacy({**base, "stones": [{"material": {"ior": [chain["eta"]] * 3}}]})
         alone[number % GROUPS] += chain["share"] * radiance(take(exact, scene, size=(48, 28)))
     height, width, _ = together.shape
     group = np.arange(width)[None, :] % 2 + 2 * (np.arange(height)[:, None] % 2)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
 
@@ -16,7 +16,7 @@ SIZE = 180, 180
 
 def down_the_axis(renderer: Renderer, turned_degrees: float) -> Array:
     angle = math.radians(turned_degrees)
-    scene = Scene.read(
+    scene = legacy(
         {
             **BARE,
             "stones": [UPRIGHT],
@@ -52,7 +52,7 @@ def test_a_brilliant_seen_along_its_axis_is_its_own_mirror_image(exact: Renderer
 @pytest.mark.parametrize("kind", ["constant", "gradient"])
 def test_a_stone_of_index_one_is_not_there(exact: Renderer, kind: str) -> None:
     base = {**BARE, "environment": {"kind": kind}}
-    seen = radiance(take(exact, Scene.read({**base, "stones": [{"material": {"ior": [1, 1, 1]}}]})))
-    without = radiance(take(exact, Scene.read({**base, "stones": []})))
+    seen = radiance(take(exact, legacy({**base, "stones": [{"material": {"ior": [1, 1, 1]}}]})))
+    without = radiance(take(exact, legacy({**base, "stones": []})))
     with compared(seen, without):
         assert seen == pytest.approx(without, abs=1e-14)

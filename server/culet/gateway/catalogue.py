@@ -22,6 +22,7 @@ SKIES = {
     "light-box": "A photographer's light box: bright above, softer at the sides, dark below.",
     "ring-lights": "Three thin bright rings, as around a lens: much fire.",
     "aset": "The Angular Spectrum Evaluation Tool's colours by elevation: green, red, blue.",
+    "ideal-scope": "The Ideal-Scope's: red from above, black where the eye is, white from below.",
 }
 """Made by the renderer, which the gateway does not load; a test compares the names."""
 INTEGRATORS = {

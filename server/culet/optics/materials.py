@@ -33,9 +33,9 @@ CORUNDUM_SOURCE = (
 CORUNDUM_SPAN = (200.0, 5000.0)
 
 RUBY_BANDS = AbsorptionSpectrum(
-    (GaussianBand(556, 2500, 0.50), GaussianBand(410, 5000, 0.62)),
+    (GaussianBand(556, 2500, 1.5), GaussianBand(410, 5000, 2.1)),
     "Cr3+ at 405-410 and 550-560 nm: GRS Gemresearch Swisslab, Journal 1 (2002), fig. 26; 4A2 to 4T2 at 18 300 1/cm: "
-    "B. J. Reddy, L. R. Moorthy, Pramana 19, 449 (1982)",
+    "B. J. Reddy, L. R. Moorthy, Pramana 19, 449 (1982); heights of a deep red stone",
 )
 SAPPHIRE_BANDS = AbsorptionSpectrum(
     (

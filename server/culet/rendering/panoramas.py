@@ -64,7 +64,22 @@ def aset(height: int = STUDIO_HEIGHT) -> Panorama:
     return np.asarray(np.stack(bands, axis=-1).astype(float) @ colours, np.float32)
 
 
-STUDIO: Mapping[str, Callable[[], Panorama]] = {"light-box": light_box, "ring-lights": ring_lights, "aset": aset}
+def ideal_scope(height: int = STUDIO_HEIGHT) -> Panorama:
+    """The Ideal-Scope's: red around the observer's dark eye, which fills 15 degrees; white light from below, so that
+    what leaks is white."""
+    elevation = np.degrees(np.arcsin(directions(height)[..., 1]))
+    colours = np.zeros((*elevation.shape, 3), np.float32)
+    colours[(elevation > 0) & (elevation < 75)] = (1, 0, 0)
+    colours[elevation <= 0] = 1
+    return colours
+
+
+STUDIO: Mapping[str, Callable[[], Panorama]] = {
+    "light-box": light_box,
+    "ring-lights": ring_lights,
+    "aset": aset,
+    "ideal-scope": ideal_scope,
+}
 """By the name that a scene gives."""
 
 

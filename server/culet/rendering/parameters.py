@@ -11,6 +11,7 @@ from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.projection import camera_is_inside, placement, project
 from culet.rendering.studio import set_studio
+from culet.scene.lamps import MOST_LAMPS
 from culet.scene.model import (
     ConstantEnvironment,
     Environment,
@@ -20,7 +21,7 @@ from culet.scene.model import (
     Scene,
 )
 from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
-from culet.scene.studio import MOST_LAMPS, StudioEnvironment
+from culet.scene.studio import StudioEnvironment
 
 MAX_LAMPS = MOST_LAMPS
 MAX_LIGHTS = 8

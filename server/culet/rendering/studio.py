@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from culet.geometry.stone import Stone
 from culet.rendering.projection import placement
+from culet.scene.lamps import BoxLamp
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y
 from culet.scene.studio import (
     Backdrop,
-    BoxLamp,
     GradientBackdrop,
     PlainBackdrop,
     StudioFloor,

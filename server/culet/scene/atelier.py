@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 
 from culet.scene.fields import Colour, Vector
-from culet.scene.studio import BoxLamp, Lamp, StudioEnvironment
+from culet.scene.lamps import BoxLamp, Lamp
 
 BOX_ELEVATION, BOX_TURN = 42.0, 45.0
 LOW_ELEVATION = 14.0
-LAMPS = (
+PLACES = (
     (11.6, 40), (36.8, 42), (84.1, 53), (105.4, 40), (135.5, 31), (147.9, 63),
     (176.7, 69), (229.7, 60), (237.8, 34), (290.3, 44), (314.1, 31), (331.7, 47),
 )  # fmt: skip
@@ -34,39 +34,44 @@ def grey(radiance: float) -> Colour:
     return radiance, radiance, radiance
 
 
-def boxes(count: int, radiance: float, *, fade: float = 0.45, half_height: float = 14) -> tuple[BoxLamp, ...]:
+def boxes(
+    radiance: float, *, count: int = 5, fade: float = 0.45, half_width: float = 17, half_height: float = 17
+) -> tuple[BoxLamp, ...]:
     """Soft boxes around the stone, brighter above than below."""
     return tuple(
         BoxLamp(
             shape="box", direction=towards(BOX_TURN + 360 * k / count, BOX_ELEVATION), radiance=grey(radiance),
-            half_width_degrees=15, half_height_degrees=half_height, fade=fade, softness=0.4,
+            half_width_degrees=half_width, half_height_degrees=half_height, fade=fade, softness=0.4,
         )
         for k in range(count)
     )  # fmt: skip
 
 
-def low_boxes(count: int, radiance: float) -> tuple[BoxLamp, ...]:
-    """A ring of boxes just above the floor, whose gaps leave dark facets among bright ones."""
+def low_boxes(radiance: float, *, count: int = 7) -> tuple[BoxLamp, ...]:
+    """A ring of boxes just above the floor, with a quarter of it left dark between them."""
     return tuple(
         BoxLamp(
             shape="box", direction=towards(360 * (k + 0.5) / count, LOW_ELEVATION), radiance=grey(radiance),
-            half_width_degrees=82 / count, half_height_degrees=10, softness=0.4,
+            half_width_degrees=90 / count, half_height_degrees=12, softness=0.4,
         )
         for k in range(count)
     )  # fmt: skip
 
 
-def small_lamps(radiance: float, half_angle_degrees: float = 2.6, count: int = len(LAMPS)) -> tuple[Lamp, ...]:
+def small_lamps(radiance: float, *, half_angle_degrees: float = 2.6, count: int = len(PLACES)) -> tuple[Lamp, ...]:
     """Warm and cold by turns, by a twentieth."""
+    warm, cold = (
+        (round(radiance * (1 + part), 3), radiance, round(radiance * (1 - part), 3)) for part in (0.05, -0.05)
+    )
     return tuple(
         Lamp(
             direction=towards(azimuth, elevation), half_angle_degrees=half_angle_degrees,
-            radiance=tuple(round(radiance * (1 + 0.05 * side * (1 if k % 2 else -1)), 3) for side in (1, 0, -1)),
+            radiance=warm if k % 2 else cold,
         )
-        for k, (azimuth, elevation) in enumerate(LAMPS[:count])
+        for k, (azimuth, elevation) in enumerate(PLACES[:count])
     )  # fmt: skip
 
 
-def atelier() -> StudioEnvironment:
-    """The default light."""
-    return StudioEnvironment(ambient=grey(0.045), lamps=(*boxes(5, 1.9), *low_boxes(7, 1.1), *small_lamps(10)))
+AMBIENT = grey(0.038)
+LAMPS: tuple[Lamp | BoxLamp, ...] = (*boxes(2.1), *low_boxes(1.1), *small_lamps(11))
+"""The default light."""

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from culet.scene.lamps import Lamp
 from culet.scene.model import Camera, Film, Light, Plane, Scene, StoneSettings
-from culet.scene.studio import Lamp, StudioEnvironment
+from culet.scene.studio import NoBackdrop, StudioEnvironment
 
 LEGACY_DEFAULT = Scene(
     stones=(StoneSettings(position=(0, 0.5, 0), orientation=(0.93670, 0.33047, 0, 0.11566)),),
@@ -24,7 +29,30 @@ LEGACY_DEFAULT = Scene(
             Lamp(direction=(-0.2, 1, -0.35), half_angle_degrees=5, radiance=(9, 9, 9)),
         ),
     ),
+    backdrop=NoBackdrop(),
+    head=None,
     camera=Camera(position=(0, 2.4, 4.6), target=(0, 0.1, 0), fov_degrees=40),
     film=Film(exposure=1, tone_map="srgb"),
 )
 """A diamond that floats over a mirror floor under six round lamps, lit red and blue."""
+
+_WHOLE: dict[str, Any] = json.loads(LEGACY_DEFAULT.model_dump_json())
+
+
+def legacy(changes: Mapping[str, Any] | None = None) -> Scene:
+    """As Scene.read reads it, but what is not there is the legacy default's: in the scene, its parts and its stones."""
+    return Scene.read(_in_full(changes or {}))
+
+
+def _in_full(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """The whole document."""
+    return _WHOLE | {name: _filled(name, value) for name, value in changes.items()}
+
+
+def _filled(name: str, value: Any) -> Any:  # noqa: ANN401 - JSON
+    base = _WHOLE.get(name)
+    if name == "stones" and isinstance(value, list):
+        return [_WHOLE["stones"][0] | stone if isinstance(stone, dict) else stone for stone in value]
+    if isinstance(base, dict) and isinstance(value, dict) and value.get("kind", base.get("kind")) == base.get("kind"):
+        return base | value
+    return value

@@ -21,7 +21,7 @@ from pydantic import (
 
 from culet.errors import SceneError
 from culet.scene.fields import Colour, Coordinate, Model, Vector
-from culet.scene.studio import Backdrop, Head, NoBackdrop, StudioEnvironment, StudioFloor
+from culet.scene.studio import Backdrop, GradientBackdrop, Head, StudioEnvironment, StudioFloor
 from culet.scene.wording import expected, unknown_field
 
 Index = Annotated[float, Field(ge=1, le=10)]
@@ -114,7 +114,7 @@ class StoneSettings(Model):
         description="R in millimetres, from the centre of mass to the farthest corner; then `absorption` is per "
         "millimetre.",
     )
-    position: Vector = (0, 0.5, 0)
+    position: Vector = Field((0, -0.373345, 0), description="By default the default cut lies on the floor.")
     orientation: tuple[Coordinate, Coordinate, Coordinate, Coordinate] = Field(
         (0.93670, 0.33047, 0, 0.11566),
         description="Unit quaternion w, x, y, z; normalised when read. The default tilts the table 41 degrees towards "
@@ -203,7 +203,8 @@ class ImageEnvironment(Model):
 
     kind: Literal["image"]
     image: Annotated[str, Field(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = Field(
-        "light-box", description="light-box, ring-lights or aset, or the id of an uploaded .exr, .hdr or .png."
+        "light-box",
+        description="light-box, ring-lights, aset or ideal-scope, or the id of an uploaded .exr, .hdr or .png.",
     )
     scale: Annotated[float, Field(ge=0, le=1e6)] = Field(1, description="Factor on its radiance.")
     turn_degrees: Annotated[float, Field(ge=-360, le=360)] = Field(0, description="About the vertical.")
@@ -229,10 +230,10 @@ class Camera(Model):
         description="orthographic: parallel rays, from a plane through the position; one within 2 R of the stone's "
         "centre is moved back.",
     )
-    position: Vector = (0, 2.4, 4.6)
-    target: Vector = (0, 0.1, 0)
+    position: Vector = (0, 8.146, 11.032)
+    target: Vector = (0, -0.473, 0)
     up: Vector = (0, 1, 0)
-    fov_degrees: Annotated[float, Field(ge=1e-3, le=170)] = Field(40, description="Vertical field of view (pinhole).")
+    fov_degrees: Annotated[float, Field(ge=1e-3, le=170)] = Field(13.5, description="Vertical field of view (pinhole).")
     height: Annotated[float, Field(ge=1e-6, le=1e9)] = Field(
         3, description="R, of what the picture shows (orthographic)."
     )
@@ -295,7 +296,7 @@ class Film(Model):
 
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
     tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(
-        "srgb",
+        "neutral",
         description="srgb: IEC 61966-2-1; neutral: as it is up to 0.8, above that a shoulder towards white, then srgb; "
         "filmic: a curve on the luminance that keeps hues, then srgb; "
         "classic: (1.2 L)^1.2 as in the report; none: linear. What is above 1 is clipped.",
@@ -366,15 +367,14 @@ class Scene(Model):
 
     version: Literal[1] = 1
     stones: Annotated[tuple[StoneSettings, ...], Field(max_length=1)] = (StoneSettings(),)
-    floor: Floor = Plane(kind="mirror")
+    floor: Floor = StudioFloor(kind="studio")
     walls: Plane = Plane(kind="none")
-    lights: Annotated[tuple[Light, ...], Field(max_length=8)] = (
-        Light(position=(-4, 6, 4), colour=(1, 0.2, 0.2)),
-        Light(position=(4, 6, 4), colour=(0.2, 0.5, 1)),
-    )
+    lights: Annotated[tuple[Light, ...], Field(max_length=8)] = ()
     environment: Environment = StudioEnvironment()
-    backdrop: Backdrop = Field(NoBackdrop(), description="What the camera sees in place of the sky.")
-    head: Head | None = Field(None, description="The observer's, as stones see it; none without one.")
+    backdrop: Backdrop = Field(
+        GradientBackdrop(kind="gradient"), description="What the camera sees in place of the sky."
+    )
+    head: Head | None = Field(Head(), description="The observer's, as stones see it; none without one.")
     camera: Camera = Camera()
     optics: Optics = Optics()
     sampling: Sampling = Sampling()

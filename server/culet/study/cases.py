@@ -22,13 +22,15 @@ from culet.scene.model import (
 
 _STONE = StoneSettings(material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0))
 
-CHECKER = Scene(
-    stones=(_STONE,),
-    floor=Plane(kind="matte"),
-    lights=(),
-    environment=GradientEnvironment(kind="gradient", bottom=(0.9, 0.9, 1), top=(0.2, 0.3, 0.6)),
-    camera=Camera(position=(0, 2.2, 3.2), target=(0, 0, 0), fov_degrees=45),
-    optics=Optics(max_bounces=64),
+CHECKER = LEGACY_DEFAULT.model_copy(
+    update={
+        "stones": (_STONE,),
+        "floor": Plane(kind="matte"),
+        "lights": (),
+        "environment": GradientEnvironment(kind="gradient", bottom=(0.9, 0.9, 1), top=(0.2, 0.3, 0.6)),
+        "camera": Camera(position=(0, 2.2, 3.2), target=(0, 0, 0), fov_degrees=45),
+        "optics": Optics(max_bounces=64),
+    }
 )
 """The main job at its plainest: a brilliant of three indices over a checker without lights, 64 bounces."""
 
@@ -42,6 +44,7 @@ CASES: dict[str, Scene] = {
     "checker, 256 bounces": CHECKER.model_copy(update={"optics": Optics()}),
     "checker, both lights": CHECKER.model_copy(update={"lights": _LIGHTS}),
     "mirror, both lights": CHECKER.model_copy(update={"lights": _LIGHTS, "floor": Plane(kind="mirror")}),
+    "default": Scene(),
     "legacy default": LEGACY_DEFAULT,
     "legacy default, 8 bands": LEGACY_DEFAULT.model_copy(update={"optics": Optics(bands=8)}),
     "legacy default, polarised": LEGACY_DEFAULT.model_copy(update={"optics": Optics(polarised=True)}),

@@ -101,6 +101,35 @@ def streaming(
 
 
 @study_app.command()
+def gallery(
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets gallery.md and its pictures.")
+    ] = Path("docs"),
+    thumbnails: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Gets the presets' small pictures too, as the page shows them."),
+    ] = None,
+) -> None:
+    """Draw every preset, and measure whether it looks as it should; fails if one does not."""
+    from culet.rendering.renderer import Renderer
+    from culet.study.gallery import Shown, make_thumbnails
+    from culet.study.gallery import gallery as all_presets
+    from culet.study.gallery_page import write_gallery
+
+    with errors_in_one_line():
+        renderer, seen = Renderer(), list[Shown]()
+        for each in all_presets(renderer):
+            typer.echo(f"{each.preset.name}: {', '.join(each.failures) or 'as it should be'}")
+            seen.append(each)
+        typer.echo(write_gallery(out, seen))
+        if thumbnails is not None:
+            for file in make_thumbnails(renderer, thumbnails):
+                typer.echo(file)
+    if any(each.failures for each in seen):
+        raise typer.Exit(1)
+
+
+@study_app.command()
 def governor(
     scene: SceneFile = None,
     preset: Preset = None,

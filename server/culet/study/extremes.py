@@ -22,6 +22,7 @@ from culet.geometry.stone import Stone
 from culet.rendering.chains import GROUPS, chain_table, is_spectral
 from culet.rendering.features import Geometry, features_of
 from culet.rendering.renderer import Renderer
+from culet.scene.legacy import legacy
 from culet.scene.model import Scene, StoneSettings
 
 Array = NDArray[np.float64]
@@ -226,7 +227,7 @@ def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3)
     size = (5, 5) if extreme.cameras else (96, 54)
     total = Count()
     for camera in cameras:
-        scene = Scene.read(
+        scene = legacy(
             {
                 "floor": {"kind": "none"},
                 "lights": [],

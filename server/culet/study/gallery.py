@@ -1,9 +1,10 @@
-"""The presets as pictures: small ones for the page, and those that README and docs/gallery.md show."""
+"""The presets as pictures, with the measures that they are held to: what README, docs/gallery.md and the page show."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,35 +12,125 @@ import PIL.Image
 from numpy.typing import NDArray
 
 from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
 from culet.rendering.renderer import Picture, Renderer
+from culet.scene.model import Scene
 from culet.scene.presets import PRESETS, Preset
 from culet.scene.thumbnails import SIZE
+from culet.simulation.drop import dropped
+from culet.simulation.paths import record
+from culet.study.appearance import appearance, colour_parts, stone_mask
 
+WIDE, SQUARE = (1280, 720), (720, 720)
+"""Pixels of a picture; square are those of the instruments, which look straight down."""
+SAMPLES, SPECTRAL_SAMPLES = 32, 24
+"""Of each pixel; of a scene with many wavelengths a sample takes five times as long."""
+SHOWN_WIDTH, QUALITY = 960, 85
+"""Pixels of the pictures that the gallery shows, at most, and JPEG's."""
 THUMBNAIL_SAMPLES, THUMBNAIL_SCALE, THUMBNAIL_QUALITY = 16, 2, 80
 """Of each pixel of a picture that is twice as large, and WebP's."""
+POSES = (0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
+"""s after its toss, of a stone that is judged in flight."""
+POSES_SIZE, POSES_SAMPLES = (640, 360), 8
+
+Band = tuple[float, float]
+INFINITE = float("inf")
+WANTED: Mapping[str, Mapping[str, Band]] = {
+    "default": {
+        "lightness": (52, 64), "low": (0, 27), "high": (94, 100), "dark": (0.08, 0.25), "clipped": (0, 0.005),
+        "michelson": (0.24, 1), "fire": (0.04, 0.08), "isolated": (0, 0.45),
+    },
+    "white": {
+        "lightness": (62, 72), "low": (0, 34), "clipped": (0, 0.01), "michelson": (0.19, 1), "surround": (85, 95),
+    },
+    "fire": {
+        "lightness": (30, 42), "hot": (0.02, 1), "isolated": (0, 0.4), "clipped": (0, 0.04), "surround": (0, 12),
+    },
+    "falling": {"lightness": (54, 100), "dark": (0, 0.08), "clipped": (0, 0.04), "michelson": (0.2, 1)},
+    "face-up": {
+        "median": (80, 100), "high": (95, 100), "dark": (0.08, 0.14), "clipped": (0, 0.005), "michelson": (0.17, 1),
+    },
+    "aset": {"pure_red": (0.55, 1), "green": (0.05, 0.09), "blue": (0.2, 0.26)},
+    "ideal-scope": {"red": (0.9, 1)},
+    "ruby": {"lightness": (38, 56), "dark": (0, 0.1), "clipped": (0, 0.005), "chroma": (23, 200)},
+    "sapphire": {"lightness": (38, 56), "dark": (0, 0.1), "clipped": (0, 0.005), "chroma": (45, 200)},
+    "emerald": {"lightness": (38, 56), "dark": (0, 0.1), "clipped": (0, 0.005), "chroma": (36, 200)},
+}  # fmt: skip
+"""By preset and measure: from where to where it may be at full size."""
 
 
-def picture_of(renderer: Renderer, preset: Preset, width: int, height: int, samples: int) -> Picture:
-    """A preset's finished picture."""
+@dataclass(frozen=True)
+class Shown:
+    """A preset's picture and what it measures."""
+
+    preset: Preset
+    picture: NDArray[np.uint8]
+    measures: Mapping[str, float]
+
+    @property
+    def failures(self) -> list[str]:
+        """Measures that are out of their band."""
+        bands = WANTED.get(self.preset.name, {})
+        return [name for name, (low, high) in bands.items() if not low <= self.measures[name] <= high]
+
+
+def size_of(preset: Preset) -> tuple[int, int]:
+    """Pixels of a preset's picture."""
+    return SQUARE if preset.group == "instruments" else WIDE
+
+
+def picture_of(renderer: Renderer, preset: Preset, size: tuple[int, int], samples: int) -> tuple[Picture, Stone | None]:
+    """A preset's finished picture, and its stone."""
     scene = preset.scene
     stone = stone_of(scene.stones[0], {}) if scene.stones else None
-    picture = renderer.picture(scene, stone, width, height)
+    picture = renderer.picture(scene, stone, *size)
     picture.refine(samples)
-    return picture
+    return picture, stone
+
+
+def shown(renderer: Renderer, preset: Preset, size: tuple[int, int] | None = None, samples: int | None = None) -> Shown:
+    """At full size, unless another is asked for."""
+    size = size or size_of(preset)
+    samples = samples or (SPECTRAL_SAMPLES if preset.scene.optics.bands > 3 else SAMPLES)
+    picture, stone = picture_of(renderer, preset, size, samples)
+    measures: dict[str, float] = {}
+    if stone is not None and stone.convex:
+        mask = stone_mask(preset.scene, stone, *size)
+        measures = {**vars(appearance(picture.rgb(), mask)), **vars(colour_parts(picture.linear(), mask))}
+    return Shown(preset, picture.rgb(), measures)
+
+
+def in_flight(renderer: Renderer, preset: Preset, size: tuple[int, int] = POSES_SIZE) -> Mapping[str, float]:
+    """Means of the measures over POSES of a tossed stone."""
+    scene: Scene = preset.scene
+    stone = stone_of(scene.stones[0], {})
+    path = record(dropped(scene, stone), stone, max(POSES) + scene.simulation.time_step)
+    found: list[dict[str, float]] = []
+    for seconds in POSES:
+        step = int(np.argmin(abs(path.time - seconds)))
+        (x, y, z), (a, b, c, d) = path.position[step].tolist(), path.orientation[step].tolist()
+        posed = scene.moved((x, y, z), (a, b, c, d))
+        picture = renderer.picture(posed, stone, *size)
+        picture.refine(POSES_SAMPLES)
+        found.append(vars(appearance(picture.rgb(), stone_mask(posed, stone, *size))))
+    return {name: float(np.mean([measures[name] for measures in found])) for name in found[0]}
+
+
+def gallery(renderer: Renderer) -> Iterator[Shown]:
+    """All presets at full size; one that falls is measured in flight."""
+    for preset in PRESETS.values():
+        seen = shown(renderer, preset)
+        yield seen if preset.name != "falling" else Shown(preset, seen.picture, in_flight(renderer, preset))
 
 
 def make_thumbnails(renderer: Renderer, folder: Path) -> Iterator[Path]:
     """Write each preset's small picture as WebP; yields the files."""
     width, height = (THUMBNAIL_SCALE * side for side in SIZE)
     for preset in PRESETS.values():
-        shown = picture_of(renderer, preset, width, height, THUMBNAIL_SAMPLES).rgb()
+        picture, _ = picture_of(renderer, preset, (width, height), THUMBNAIL_SAMPLES)
+        data = io.BytesIO()
+        small = PIL.Image.fromarray(picture.rgb()).resize(SIZE, PIL.Image.Resampling.LANCZOS)
+        small.save(data, "WEBP", quality=THUMBNAIL_QUALITY, method=6)
         file = folder / f"{preset.name}.webp"
-        file.write_bytes(_webp(shown))
+        file.write_bytes(data.getvalue())
         yield file
-
-
-def _webp(shown: NDArray[np.uint8]) -> bytes:
-    data = io.BytesIO()
-    small = PIL.Image.fromarray(shown).resize(SIZE, PIL.Image.Resampling.LANCZOS)
-    small.save(data, "WEBP", quality=THUMBNAIL_QUALITY, method=6)
-    return data.getvalue()

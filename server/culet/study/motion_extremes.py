@@ -17,7 +17,7 @@ from typing import Any
 from culet.errors import CuletError
 from culet.geometry.mesh import stone_from_mesh
 from culet.geometry.stone import Stone
-from culet.scene.model import Scene
+from culet.scene.legacy import legacy
 from culet.scene.model import Simulation as Settings
 from culet.simulation.motion import Motion, kinetic_energy, pushed_out
 from culet.simulation.rotation import rotate
@@ -201,7 +201,7 @@ def mesh_of_nan() -> object:
 
 
 def _read(**settings: object) -> Callable[[], object]:
-    return lambda: Scene.read({"simulation": settings})
+    return lambda: legacy({"simulation": settings})
 
 
 REFUSED: Mapping[str, Callable[[], object]] = {

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.load import stone_of
 from culet.rendering.renderer import Renderer
+from culet.scene.legacy import legacy
 from culet.scene.model import GradientEnvironment, Plane, Scene
 from culet.scene.studio import StudioEnvironment
 
@@ -47,7 +48,7 @@ FARTHER: Mapping[str, float] = {"mirrors all around, absorption": 5e-6}
 
 _BARE: Settings = {"floor": {"kind": "none"}, "lights": []}
 SCENES: Mapping[str, Settings] = {
-    "default": {},
+    "legacy default": {},
     "matte floor, lights": {"floor": {"kind": "matte"}},
     "matte floor, no lights": {"floor": {"kind": "matte"}, "lights": []},
     "stone alone, gradient": {**_BARE, "environment": {"kind": "gradient"}},
@@ -179,7 +180,7 @@ def table(single: Renderer, double: Renderer) -> Iterator[str]:
     yield "| scene | pixels | facet | room | rim | critical | unexplained | moved | mean difference | its sigma |"
     yield "|---|" + "---|" * 9
     for name, settings in SCENES.items():
-        v = judge(single, double, Scene.read(settings), perturbation=FARTHER.get(name, PERTURBATION))
+        v = judge(single, double, legacy(settings), perturbation=FARTHER.get(name, PERTURBATION))
         yield (
             f"| {name} | {v.decided} ({v.decided / v.pixels:.3%}) | {v.facet} | {v.room} | {v.rim} | {v.critical} "
             f"| {v.unexplained} | {v.moved:.1%} | {v.mean:+.1e} | {v.sigma:.1e} |"

@@ -1,0 +1,64 @@
+"""The report's own scene, to its constants, and its figures."""
+
+from __future__ import annotations
+
+from culet.scene.legacy import LEGACY_DEFAULT
+from culet.scene.model import (
+    Camera,
+    DarkEnvironment,
+    Film,
+    LightEnvironment,
+    Optics,
+    Plane,
+    Scene,
+    Simulation,
+    StoneSettings,
+)
+from culet.scene.studio import NoBackdrop
+
+_CLASSIC_STONE = StoneSettings(
+    material="classic", absorption=(0.02, 0.02, 0.02), position=(0, 4, 0), orientation=(1, 0, 0, 0)
+)
+
+CLASSIC = Scene(
+    stones=(_CLASSIC_STONE,),
+    floor=Plane(kind="mirror"),
+    walls=Plane(kind="mirror"),
+    lights=LEGACY_DEFAULT.lights,
+    backdrop=NoBackdrop(),
+    head=None,
+    environment=DarkEnvironment(kind="dark"),
+    camera=Camera(position=(0, 2, 13), target=(0, 1.4, 0), fov_degrees=45),
+    optics=Optics(fresnel="schlick", estimator="classic", max_bounces=12),
+    film=Film(tone_map="classic"),
+    simulation=Simulation(model="classic", inertia="cone", time_step=1 / 30),
+)
+"""The report's own scene, to its constants: material, estimator, tone map and simulation."""
+
+
+def classic(
+    *,
+    floor: str = "mirror",
+    walls: str = "none",
+    light: bool = False,
+    absorption: tuple[float, float, float] = (0.02, 0.02, 0.02),
+    position: tuple[float, float, float] = (0, 4, 0),
+    camera: Camera = CLASSIC.camera,
+) -> Scene:
+    stone = _CLASSIC_STONE.model_copy(update={"absorption": absorption, "position": position})
+    return CLASSIC.model_copy(
+        update={
+            "stones": (stone,),
+            "floor": Plane.model_validate({"kind": floor}),
+            "walls": Plane.model_validate({"kind": walls}),
+            "environment": LightEnvironment(kind="light") if light else DarkEnvironment(kind="dark"),
+            "camera": camera,
+        }
+    )
+
+
+_CLOSE = Camera(position=(0, 2.2, 5.5), target=(0, 0.9, 0), fov_degrees=45)
+
+
+def tinted(absorption: tuple[float, float, float]) -> Scene:
+    return classic(floor="mirror", light=True, absorption=absorption, position=(0, 1, 0), camera=_CLOSE)
