@@ -12,6 +12,7 @@ from culet.engine.snapshot import Snapshot
 from culet.errors import InputError, SceneError
 from culet.rendering.sky_files.picture import SkyPicture
 from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent
 
@@ -22,7 +23,7 @@ ASSETS = Assets({}, SKIES)
 
 
 def session(**scene: Any) -> Session:  # noqa: ANN401
-    settings = Scene.read(scene)
+    settings = legacy(scene)
     sky = events.sky_for(settings, None, ASSETS)
     return Session("0" * 32, settings, events.stone_for(settings, None, ASSETS), sky=sky)
 
@@ -242,7 +243,7 @@ def test_a_patched_camera_is_shown_and_becomes_home() -> None:
     after(subject, messages.PatchScene(patch={"camera": {"fov_degrees": 30}}))
     assert subject.scene.camera == orbited.model_copy(update={"fov_degrees": 30})
     home = after(subject, messages.ResetCamera()).camera
-    assert home == Scene().camera.model_copy(update={"fov_degrees": 30})
+    assert home == LEGACY_DEFAULT.camera.model_copy(update={"fov_degrees": 30})
 
 
 def test_a_new_scene_replaces_camera_and_stone() -> None:

@@ -13,8 +13,9 @@ from culet.engine.session import Session
 from culet.errors import InputError
 from culet.geometry.load import stone_of
 from culet.scene import Camera, Scene
+from culet.scene.legacy import LEGACY_DEFAULT
 
-SCENE = Scene()
+SCENE = LEGACY_DEFAULT
 STONE = stone_of(SCENE.stones[0], {})
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 AHEAD = Camera(position=(0, 0, 5), target=(0, 0, 0), fov_degrees=90)

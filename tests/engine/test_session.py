@@ -7,10 +7,11 @@ from culet.engine.snapshot import Snapshot
 from culet.errors import InputError, NotFoundError
 from culet.geometry.load import stone_of
 from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT
 from culet.simulation.clock import MOST_WORK, WORK_SHARE
 
 NAME = "0123456789abcdef" * 2
-SCENE = Scene()
+SCENE = LEGACY_DEFAULT
 STONE = stone_of(SCENE.stones[0], {})
 
 

@@ -55,7 +55,7 @@ def test_pieces_make_the_same_picture_to_the_last_bit(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch, kind: str, steps: int
 ) -> None:
     """A launch may end anywhere: among the pixels that are looked at, or in the middle of a chain."""
-    scene = Scene.read(KINDS[kind])
+    scene = legacy(KINDS[kind])
     size = (20, 18) if steps == 1 else (70, 50)  # six tiles, some of them not full
     whole = take(renderer, scene, size=size, samples=2)
     pieced = renderer.picture(scene, stone_of(scene.stones[0], {}) if scene.stones else None, *size)
@@ -71,7 +71,7 @@ def test_pieces_make_the_same_picture_to_the_last_bit(
 
 def test_a_launch_of_a_very_dear_scene_ends_when_its_steps_are_made(renderer: Renderer) -> None:
     """One pixel's chains of 65536 reflections, between mirrors: a sample takes thousands of launches of 50 steps."""
-    scene = Scene.read(
+    scene = legacy(
         {
             "optics": {"bands": 64, "polarised": True, "cutoff": 1e-9, "max_bounces": 65536},
             "walls": {"kind": "mirror"}, "floor": {"kind": "mirror"}, "stones": [{"material": {"ior": [10, 10, 10]}}],

@@ -36,6 +36,11 @@ FIRE = Scene(
 )
 """Sixteen wavelengths, so that rainbows are smooth."""
 FALLING = Scene(
+    floor=StudioFloor(kind="studio", colour=grey(0.063)),
+    environment=StudioEnvironment(
+        ambient=grey(0.032),
+        lamps=(*boxes(3.2, half_width=18, half_height=18), *low_boxes(1.8), *small_lamps(11)),
+    ),
     stones=(StoneSettings(position=(-0.6, 1.5, 0)),),
     camera=Camera(position=(0, 7.2, 12), target=(0, 0, 0), fov_degrees=17),
     simulation=Simulation(velocity=(0.8, 1.5, 0), spin=(1.5, 5, -2)),

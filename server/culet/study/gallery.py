@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
+from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
 from culet.scene.presets import PRESETS, Preset
@@ -46,7 +47,7 @@ WANTED: Mapping[str, Mapping[str, Band]] = {
     "fire": {
         "lightness": (30, 42), "hot": (0.02, 1), "isolated": (0, 0.4), "clipped": (0, 0.04), "surround": (0, 12),
     },
-    "falling": {"lightness": (54, 100), "dark": (0, 0.08), "clipped": (0, 0.04), "michelson": (0.2, 1)},
+    "falling": {"lightness": (54, 100), "dark": (0, 0.09), "clipped": (0, 0.04), "michelson": (0.19, 1)},
     "face-up": {
         "median": (80, 100), "high": (95, 100), "dark": (0.08, 0.14), "clipped": (0, 0.005), "michelson": (0.17, 1),
     },
@@ -79,20 +80,28 @@ def size_of(preset: Preset) -> tuple[int, int]:
     return SQUARE if preset.group == "instruments" else WIDE
 
 
-def picture_of(renderer: Renderer, preset: Preset, size: tuple[int, int], samples: int) -> tuple[Picture, Stone | None]:
-    """A preset's finished picture, and its stone."""
+def picture_of(
+    renderer: Renderer, preset: Preset, size: tuple[int, int], samples: int, features: Features | None = None
+) -> tuple[Picture, Stone | None]:
+    """A preset's finished picture, and its stone; `features` asks for another program than its own."""
     scene = preset.scene
     stone = stone_of(scene.stones[0], {}) if scene.stones else None
-    picture = renderer.picture(scene, stone, *size)
+    picture = renderer.picture(scene, stone, *size, features=features)
     picture.refine(samples)
     return picture, stone
 
 
-def shown(renderer: Renderer, preset: Preset, size: tuple[int, int] | None = None, samples: int | None = None) -> Shown:
+def shown(
+    renderer: Renderer,
+    preset: Preset,
+    size: tuple[int, int] | None = None,
+    samples: int | None = None,
+    features: Features | None = None,
+) -> Shown:
     """At full size, unless another is asked for."""
     size = size or size_of(preset)
     samples = samples or (SPECTRAL_SAMPLES if preset.scene.optics.bands > 3 else SAMPLES)
-    picture, stone = picture_of(renderer, preset, size, samples)
+    picture, stone = picture_of(renderer, preset, size, samples, features)
     measures: dict[str, float] = {}
     if stone is not None and stone.convex:
         mask = stone_mask(preset.scene, stone, *size)
@@ -100,7 +109,9 @@ def shown(renderer: Renderer, preset: Preset, size: tuple[int, int] | None = Non
     return Shown(preset, picture.rgb(), measures)
 
 
-def in_flight(renderer: Renderer, preset: Preset, size: tuple[int, int] = POSES_SIZE) -> Mapping[str, float]:
+def in_flight(
+    renderer: Renderer, preset: Preset, size: tuple[int, int] = POSES_SIZE, features: Features | None = None
+) -> Mapping[str, float]:
     """Means of the measures over POSES of a tossed stone."""
     scene: Scene = preset.scene
     stone = stone_of(scene.stones[0], {})
@@ -110,7 +121,7 @@ def in_flight(renderer: Renderer, preset: Preset, size: tuple[int, int] = POSES_
         step = int(np.argmin(abs(path.time - seconds)))
         (x, y, z), (a, b, c, d) = path.position[step].tolist(), path.orientation[step].tolist()
         posed = scene.moved((x, y, z), (a, b, c, d))
-        picture = renderer.picture(posed, stone, *size)
+        picture = renderer.picture(posed, stone, *size, features=features)
         picture.refine(POSES_SAMPLES)
         found.append(vars(appearance(picture.rgb(), stone_mask(posed, stone, *size))))
     return {name: float(np.mean([measures[name] for measures in found])) for name in found[0]}

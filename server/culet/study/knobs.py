@@ -45,7 +45,8 @@ class Knobs:
 
     def applied_to(self, scene: Scene) -> Scene:
         """The scene with these optics."""
-        optics = Optics.model_validate({name: getattr(self, name) for name in Optics.model_fields})
+        own = {name: getattr(self, name) for name in Optics.model_fields if hasattr(self, name)}
+        optics = Optics.model_validate({**scene.optics.model_dump(), **own})
         return scene.model_copy(update={"optics": optics})
 
     def differences(self, base: Knobs) -> str:
