@@ -19,6 +19,9 @@ PIECE_SECONDS = 0.025
 """That a piece of work is meant to hold the render thread: two of them are 50 ms, after which a viewer sees that frames
 are late; and 100 times what it costs to begin one."""
 
+ALONE_SECONDS = 0.05
+"""The same where nobody else wants the thread: a governed frame is then one launch, however busy the machine is."""
+
 
 class Picture(Protocol):
     """An image that gets better with every sample."""

@@ -45,6 +45,8 @@ class FrameWork:
     """Made by the first piece, unless it is refined."""
     samples: int = 1
     """That are added."""
+    piece_seconds: float = PIECE_SECONDS
+    """That a launch is meant to take."""
     final: bool = False
     """Nothing better will come."""
     slow: bool = False
@@ -78,7 +80,7 @@ class FrameWork:
                 raise Unprepared
             self.picture = renderer.picture(scene, self.shown.stone, width, height, panorama=self.shown.panorama)
         picture = self.picture
-        for part in picture.refine_in_pieces(self.samples, PIECE_SECONDS):
+        for part in picture.refine_in_pieces(self.samples, self.piece_seconds):
             self.part = part
             yield part
         self.render_seconds += picture.seconds

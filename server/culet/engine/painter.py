@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from culet.engine import jpeg, schedule
-from culet.engine.drawing import Picture, Renderer
+from culet.engine.drawing import ALONE_SECONDS, Picture, Renderer
 from culet.engine.frame_work import FrameWork, Kind, Unprepared, proceed
 from culet.engine.histogram import Histogram
 from culet.engine.live import NEVER, REST_SAMPLES, LivePicture
@@ -212,6 +212,8 @@ class Painter:
         plan = live.governor.plan(shown.scene, wanted, live.balance) if live.governed else None
         kind = Kind.FULL if plan is None else Kind.PLANNED
         work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated)
+        if self._share(live) >= 1:
+            work.piece_seconds = ALONE_SECONDS
         work.slow = shown.moving and live.session.pace.slow
         work.spent = self._now() - begun_at
         work.start(self._renderer)
