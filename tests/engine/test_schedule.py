@@ -10,10 +10,11 @@ from culet.engine.shares import Shares
 from culet.engine.still import STILLS_WEIGHT, Still, StillQueue
 from culet.geometry.mesh import stone_from_mesh
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
+from culet.scene import Light, Scene
 from engine.peer import TETRAHEDRON
 
 SCENE = Scene()
+LAMP = Light(position=(1, 2, 3), colour=(1, 1, 1))
 STONE = stone_from_mesh(TETRAHEDRON, "off")
 RENDERER = Renderer()
 
@@ -84,7 +85,7 @@ def test_a_reduced_picture_is_drawn_in_full_when_things_have_settled() -> None:
 
 def test_a_change_a_new_size_or_motion_make_it_due_again() -> None:
     changed, resized, falling = (painted(live(), final=True) for _ in range(3))
-    changed.session.change(SCENE.model_copy(update={"lights": ()}))
+    changed.session.change(SCENE.model_copy(update={"lights": (LAMP,)}))
     resized.size = (32, 32)
     falling.session.set_falling(True)
     for picture in (changed, resized, falling):
@@ -97,7 +98,7 @@ def test_what_could_not_be_rendered_is_tried_again_only_when_it_changed() -> Non
     picture = live()
     picture.refuse(picture.session.shown)
     assert next_of([picture], now=100) is None
-    picture.session.change(SCENE.model_copy(update={"lights": ()}))
+    picture.session.change(SCENE.model_copy(update={"lights": (LAMP,)}))
     assert next_of([picture], now=100) is picture
 
 
