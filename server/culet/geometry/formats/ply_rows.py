@@ -182,7 +182,7 @@ def _row(data: bytes, start: int, element: Element, order: str, row: int) -> tup
                 start += struct.calcsize(order + own.code)
                 continue
             (length,) = struct.unpack_from(order + own.length, data, start)
-            if length != int(length) or length < 0:
+            if not 0 <= length <= len(data) or length != int(length):  # a float may be infinite
                 raise MeshError(f"row {row} of {element.name} has a list {own.name} of length {length}")
             start += struct.calcsize(order + own.length)
             if start + int(length) * struct.calcsize(order + own.code) > len(data):
