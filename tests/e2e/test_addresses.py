@@ -44,8 +44,8 @@ def test_a_session_that_ends_while_it_is_watched_says_so(view: View, server: Ser
 def test_a_preset_that_does_not_exist_is_named_with_those_that_do(view_of: ViewOf, server: Server) -> None:
     view = view_of()
     view.refusals.add(404)
-    view.page.goto(f"{server.url}/?preset=ruby")
+    view.page.goto(f"{server.url}/?preset=coal")
     obstacle = view.page.get_by_role("alertdialog")
     obstacle.wait_for()
-    for name in ("ruby", "default", "classic"):
+    for name in ("coal", "default", "classic"):
         assert name in obstacle.inner_text()

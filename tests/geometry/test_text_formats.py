@@ -295,6 +295,18 @@ def test_a_binary_ply_that_is_cut_off_says_within_what() -> None:
         read(data[:-1], "ply")
 
 
+@pytest.mark.parametrize("length", [np.inf, -np.inf, np.nan, -1.0, 2.5, 1e30])
+def test_a_list_of_a_length_that_is_none_is_refused(length: float) -> None:
+    """A list's length may be of any type, so also no whole number, or none at all."""
+    header = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 8\nproperty double x\nproperty double y\n"
+        "property double z\nelement face 1\nproperty list float int vertex_indices\nend_header\n"
+    )
+    row = np.array([length], "<f4").tobytes() + np.arange(4, dtype="<i4").tobytes()
+    with pytest.raises(MeshError, match="row 0 of face has a list vertex_indices of length"):
+        read(header.encode() + CORNERS.astype("<f8").tobytes() + row, "ply")
+
+
 # Counts
 
 
