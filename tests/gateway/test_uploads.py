@@ -42,13 +42,14 @@ async def test_an_uploaded_sky_is_described_and_seen_in_stills_and_sessions(gate
     sky = answer.json()
     assert (sky["description"]["width"], sky["description"]["height"]) == (16, 8)
     environment = {"kind": "image", "image": sky["id"]}
-    nothing_but_sky = {"stones": [], "floor": {"kind": "none"}, "environment": environment}
+    bare = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
+    nothing_but_sky = {**bare, "environment": environment}
     still = await gateway.http.post(
         "/api/render", json={"scene": nothing_but_sky, "width": 32, "height": 18, "format": "png"}
     )
     assert still.status_code == 200, still.text
     assert mean_colour(still.content) == pytest.approx([200, 100, 50], abs=1)  # measured 0
-    session = await gateway.session({"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "dark"}})
+    session = await gateway.session({**bare, "environment": {"kind": "dark"}})
     patched = await gateway.http.patch(f"/api/sessions/{session}", json={"environment": environment})
     assert patched.status_code == 200, patched.text
     async with gateway.viewer(session) as viewer:
