@@ -76,7 +76,8 @@ async def control_messages(serving: Serving, count: int, seed: int) -> Finding:
             async with asyncio.timeout(count / 20 + PATIENCE):
                 while not told["pong"] and not reading.done():  # noqa: ASYNC110 - the condition is the server's
                     await asyncio.sleep(0.05)
-            reading.cancel()
+            await connection.close()
+            await asyncio.gather(reading, return_exceptions=True)  # it read until then: else the close is never heard
         await watcher.frame_after(time.monotonic())
     code = connection.close_code
     lives = serving.http.get(f"/api/sessions/{session}").status_code == 200 and serving.engine.pid == engine

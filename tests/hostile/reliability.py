@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -117,42 +117,48 @@ def provenance() -> str:
     return (
         f"Measured on {datetime.now(UTC):%Y-%m-%d} at commit {commit}: {device.name}, {psutil.cpu_count()} cores, "
         f"{psutil.virtual_memory().total / 2**30:.0f} GiB, {device.driver}, Python {platform.python_version()}, Linux "
-        f"{platform.release()}. The clients ran on the same machine; load averages at the end: {load}.\n"
+        f"{platform.release()}. The clients ran on the same machine; load averages at the end, with all other work: "
+        f"{load}.\n"
     )
 
 
-def run(trials: Sequence[Trial]) -> list[Finding]:
-    """One after the other; a trial that fails altogether is a row too."""
+def run(chosen: Sequence[Trial]) -> Iterator[list[Finding]]:
+    """All findings so far, after each trial; one that fails altogether is a finding too."""
     found: list[Finding] = []
-    for trial in trials:
+    for trial in chosen:
         began = time.monotonic()
         try:
             rows = asyncio.run(trial.run())
         except Exception as error:
             traceback.print_exc()
-            rows = [Finding(trial.group, trial.name, f"the trial ended: {type(error).__name__}: {error}", "", False)]
+            ended = f"the trial ended: {type(error).__name__}: {error}".splitlines()[0]
+            rows = [Finding(trial.group, trial.name, ended, "it comes to its end", False)]
         for row in rows:
             print(f"{trial.name} ({time.monotonic() - began:.0f} s): {row.row}", flush=True)
         found += rows
-    return found
+        yield found
+
+
+def write(text: str, into: Path) -> None:
+    """Between the marks of a document."""
+    before, rest = into.read_text().split(BEGIN)
+    into.write_text(f"{before}{BEGIN}\n{text}{END}{rest.split(END)[1]}")
 
 
 def main(arguments: list[str]) -> int:
-    """Exit code 1 if something does not hold."""
+    """Exit code 1 if something does not hold. What was found before an interruption is written."""
     parser = argparse.ArgumentParser(prog="python -m hostile.reliability")
     parser.add_argument("--into", type=Path, metavar="FILE", help="a document, between whose marks the table goes")
     parser.add_argument("--part", type=float, default=1, help="of the inputs and of the chaos, 0 to 1")
     parser.add_argument("names", nargs="*", metavar="NAME", help="of trials; without any, all")
     given = parser.parse_args(arguments)
-    into: Path | None = given.into
-    found = run([trial for trial in trials(given.part) if not given.names or trial.name in given.names])
-    text = f"{provenance()}\n{table(found)}"
-    if into is None:
+    found: list[Finding] = []
+    for found in run([trial for trial in trials(given.part) if not given.names or trial.name in given.names]):
+        text = f"{provenance()}\n{table(found)}"
+        if given.into:
+            write(text, given.into)
+    if not given.into:
         print(text)
-    else:
-        document = into.read_text()
-        before, rest = document.split(BEGIN)
-        into.write_text(f"{before}{BEGIN}\n{text}{END}{rest.split(END)[1]}")
     return int(not all(finding.holds for finding in found))
 
 
