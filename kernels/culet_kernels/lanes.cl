@@ -56,6 +56,7 @@ static inline void store_ints(intL value, int *to) { *to = value; }
 static inline void store_mask(maskL mask, int *to) { *to = mask; }
 static inline intL count_mask(maskL mask) { return mask; }
 static inline maskL widen(intL mask) { return mask; }
+static inline intL blend_ints(intL mask, intL yes, intL no) { return mask ? yes : no; }
 #else
 typedef JOIN(REAL, LANES) realL;
 typedef JOIN(int, LANES) intL;
@@ -86,6 +87,7 @@ static inline void store_ints(intL value, int *to) { JOIN(vstore, LANES)(value, 
 static inline void store_mask(maskL mask, int *to) { JOIN(vstore, LANES)(JOIN(convert_int, LANES)(mask), 0, to); }
 static inline intL count_mask(maskL mask) { return -JOIN(convert_int, LANES)(mask); }
 static inline maskL widen(intL mask) { return JOIN(JOIN(convert_, MASK), LANES)(mask); }
+static inline intL blend_ints(intL mask, intL yes, intL no) { return select(no, yes, mask); }
 #endif
 #define PACKET_X (LANE_INDEX % PACKET_WIDTH)
 #define PACKET_Y (LANE_INDEX / PACKET_WIDTH)
@@ -94,12 +96,14 @@ static inline maskL widen(intL mask) { return JOIN(JOIN(convert_, MASK), LANES)(
 typedef double doubleL;
 static inline doubleL to_double(realL value) { return value; }
 static inline realL ints_to_real(intL value) { return (real)value; }
+static inline intL reals_to_int(realL value) { return (int)value; }
 static inline doubleL ints_to_double(intL value) { return value; }
 static inline realL from_double(doubleL value) { return (real)value; }
 #else
 typedef JOIN(double, LANES) doubleL;
 static inline doubleL to_double(realL value) { return JOIN(convert_double, LANES)(value); }
 static inline realL ints_to_real(intL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
+static inline intL reals_to_int(realL value) { return JOIN(convert_int, LANES)(value); }
 static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, LANES)(value); }
 static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 #endif

@@ -78,6 +78,7 @@ def stone_mask(scene: Scene, stone: Stone, width: int, height: int) -> Mask:
             t = gap / speed
         enter = np.where(speed < 0, np.maximum(enter, t), enter)
         leave = np.where(speed > 0, np.minimum(leave, t), leave)
+        leave = np.where((speed == 0) & (gap < 0), -np.inf, leave)  # beside a facet that the ray is parallel to
     return np.asarray(enter < leave)
 
 
@@ -104,6 +105,7 @@ def appearance(rgb: NDArray[np.uint8], mask: Mask) -> Appearance:
     fire = mask & (apart > FIRE_CHROMA) & (lightness > FIRE_LIGHTNESS)
     largest, smallest = shown.max(axis=-1)[mask], shown.min(axis=-1)[mask]
     low, median, high = np.percentile(within, (5, 50, 95))
+    around = lightness[_around(mask)]
     return Appearance(
         lightness=float(within.mean()),
         low=float(low),
@@ -116,7 +118,7 @@ def appearance(rgb: NDArray[np.uint8], mask: Mask) -> Appearance:
         hot=float((mask & (apart > HOT_CHROMA) & (lightness > HOT_LIGHTNESS)).sum() / mask.sum()),
         isolated=_isolated(fire, away / np.maximum(apart, 1e-9)[..., None]),
         chroma=float(np.median(np.hypot(colours[..., 1], colours[..., 2])[mask])),
-        surround=float(lightness[_around(mask)].mean()),
+        surround=float(around.mean()) if around.size else float("nan"),
         share=float(mask.mean()),
     )
 

@@ -45,7 +45,7 @@ WANTED: Mapping[str, Mapping[str, Band]] = {
         "lightness": (62, 72), "low": (0, 34), "clipped": (0, 0.01), "michelson": (0.19, 1), "surround": (85, 95),
     },
     "fire": {
-        "lightness": (30, 42), "hot": (0.02, 1), "isolated": (0, 0.4), "clipped": (0, 0.04), "surround": (0, 12),
+        "lightness": (30, 42), "hot": (0.02, 1), "isolated": (0, 0.45), "clipped": (0, 0.04), "surround": (0, 12),
     },
     "falling": {"lightness": (54, 100), "dark": (0, 0.09), "clipped": (0, 0.04), "michelson": (0.19, 1)},
     "face-up": {
