@@ -89,7 +89,7 @@ async def test_an_address_ends_as_the_picture_that_it_answers_with(
     frame = await gateway.http.get(f"/api/sessions/{session}/frame.{ending}", params=SMALL)
     assert (frame.status_code, frame.headers["content-type"]) == (200, media_type)
     kind = "attachment" if ending == "tga" else "inline"
-    assert frame.headers["content-disposition"] == f'{kind}; filename="culet-0.{ending}"'
+    assert frame.headers["content-disposition"] == f'{kind}; filename="culet-1.{ending}"'  # a new session is at step 1
 
 
 async def test_an_address_of_another_ending_is_not_found(gateway: Gateway) -> None:

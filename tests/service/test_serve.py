@@ -43,7 +43,7 @@ class Served(NamedTuple):
         """Process id of the gateway."""
         return next(self._children("culet.gateway.inherited"), None)
 
-    def count(self) -> int:
+    def children(self) -> int:
         """Of its processes."""
         return len(Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split())
 
@@ -285,7 +285,7 @@ async def test_without_a_spare_nobody_stands_by_and_what_dies_is_started_anew(tm
                     return False
 
                 await eventually(back)
-            assert served.count() == 2
+            assert served.children() == 2
 
 
 async def test_a_killed_gateway_comes_back_with_the_sessions_that_the_engine_kept(served: Served) -> None:

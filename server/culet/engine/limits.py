@@ -44,7 +44,9 @@ class Limits(Settings):
         ge=1,
         description="Pixels of a live frame; one asked for larger is rendered so large, with the same aspect ratio.",
     )
-    max_uploads: int = Field(32, ge=1, description="Uploads of each kind, mesh or sky, that are kept.")
+    max_uploads: int = Field(
+        32, ge=1, description="Uploads of each kind, mesh or sky, that are kept besides those that sessions show."
+    )
     memory: ByteSize | None = Field(
         None,
         ge=256 * 2**20,

@@ -141,10 +141,8 @@ class UploadStore(Mapping[str, T]):
         At first with what is free. A file for which that is too little is worth what nobody uses.
         """
         kind, limits = self._kind, self._limits
-        while len(self._kept) >= limits.max_uploads and self._forget_one():
+        while self._unused() >= limits.max_uploads and self._forget_one():
             pass
-        if len(self._kept) >= limits.max_uploads and name not in self._kept:
-            raise BusyError(f"sessions show {len(self._kept)} uploads ({kind.name}), as many as are kept; close one")
         free = self._memory.make_room(self._needed)
         room = self._room(max(self._needed, int(free * SHARE_TO_READ)))
         while True:
@@ -178,6 +176,10 @@ class UploadStore(Mapping[str, T]):
             assert isinstance(content, kind.content)  # noqa: S101 - by its kind
             described = await asyncio.to_thread(kind.describe, content)
         return _Kept(content, digest, described.model_dump(mode="json"))
+
+    def _unused(self) -> int:
+        """Uploads that no session shows: what sessions show is bounded by sessions and memory."""
+        return len(self._kept.keys() - self._in_use())
 
     def _forget(self, size: int) -> None:
         """Up to so many bytes, the least recently used first."""
