@@ -91,7 +91,7 @@ def test_a_child_process_is_given_what_was_given() -> None:
 def test_the_variables_that_compose_hands_on_are_settings_of_their_service() -> None:
     text = (Path(__file__).parents[1] / "docker" / "compose.yaml").read_text()
     engine, gateway = text.partition("services:")[2].split("\n  gateway:")
-    of_compose_itself = {"CULET_ADDRESS", "CULET_PORT"}
+    of_compose_itself = {"CULET_ADDRESS", "CULET_PORT", "CULET_ENGINE_MEMORY", "CULET_GATEWAY_MEMORY"}
     for service, kind in ((engine, Limits), (gateway, GatewaySettings)):
         named = set(re.findall(r"CULET_\w+", service)) - of_compose_itself
         assert len(named) > 3

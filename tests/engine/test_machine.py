@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from culet.engine.machine import SHARE, default_budget, memory_of_machine
+from culet.engine.machine import SHARE, budget, memory_of_machine
 
 GIBIBYTE = 2**30
 MACHINE = {"proc/meminfo": "MemTotal:       16777216 kB\nMemFree: 1 kB\n"}
@@ -47,8 +47,19 @@ def test_the_least_of_machine_and_groups_counts(case: str, tmp_path: Path) -> No
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(content)
     assert memory_of_machine(tmp_path) == gibibytes * GIBIBYTE
-    assert default_budget(tmp_path) == int(SHARE * gibibytes * GIBIBYTE)
+    assert budget(None, tmp_path) == int(SHARE * gibibytes * GIBIBYTE)
 
 
 def test_a_system_that_does_not_say_gets_a_small_budget(tmp_path: Path) -> None:
     assert memory_of_machine(tmp_path) == 2 * GIBIBYTE
+
+
+@pytest.mark.parametrize(("asked", "warned"), [(2, False), (3, True), (4, True)])
+def test_a_budget_that_the_container_does_not_have_is_warned_of(
+    asked: int, warned: bool, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    limit = tmp_path / "sys/fs/cgroup/memory.max"
+    limit.parent.mkdir(parents=True)
+    limit.write_text(f"{3 * GIBIBYTE}\n")
+    assert budget(asked * GIBIBYTE, tmp_path) == asked * GIBIBYTE
+    assert ("3072 MiB" in caplog.text) is warned

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from pathlib import Path
+
+log = logging.getLogger(__name__)
 
 SHARE = 0.5
 """Of the memory there is that the engine takes unless told otherwise: the gateway, the readers' programs and the
@@ -18,9 +21,22 @@ def memory_of_machine(root: Path = Path("/")) -> int:
     return min((size for size in allowed if size > 0), default=ASSUMED)
 
 
-def default_budget(root: Path = Path("/")) -> int:
-    """Bytes that the engine's sessions, uploads and pictures may take."""
-    return int(SHARE * memory_of_machine(root))
+def budget(asked: int | None, root: Path = Path("/")) -> int:
+    """Bytes that the engine's sessions, uploads and pictures may take: those asked for, or a share of what there is.
+
+    More than there is gets a warning, since the system would end the engine before its budget is used up.
+    """
+    there_is = memory_of_machine(root)
+    if asked is None:
+        return int(SHARE * there_is)
+    if asked >= there_is:
+        log.warning(
+            "the memory asked for, %.0f MiB, is not less than the %.0f MiB that this machine or container has: the "
+            "engine may be ended for taking too much; by default it takes half",
+            asked / 2**20,
+            there_is / 2**20,
+        )
+    return asked
 
 
 def _total(meminfo: Path) -> int:

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ValidationError
 
 from culet.engine.drawing import Picture, Renderer
 from culet.engine.limits import Limits
-from culet.engine.machine import default_budget
+from culet.engine.machine import budget
 from culet.engine.memory import Memory
 from culet.engine.painter import Painter
 from culet.engine.requests import Requests
@@ -147,7 +147,7 @@ class Engine:
         )
         self._watchdog = Watchdog(render_thread)
         self._orphan_seconds = limits.orphan_seconds
-        memory = Memory(limits.memory or default_budget())
+        memory = Memory(budget(limits.memory))
         memory.count("pictures", lambda: renderer.held().get("pictures", 0))
         memory.count("device_skies", lambda: renderer.held().get("device_skies", 0))
         memory.give_back(lambda _: renderer.release())
