@@ -129,7 +129,7 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
 
 
 def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> None:
-    """Lights and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
+    """Lights, boxes and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
     stone = stone_of(LEGACY_DEFAULT.stones[0], {})
     left = {
         name: {
@@ -137,7 +137,8 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
         }
         for name, preset in PRESETS.items()
     }
-    assert left["default"] == {"lights"}
+    assert left["default"] == {"boxes"}
+    assert left["mirror"] == {"lights"}
     assert left["tinted-blue"] == {"lights", "absorption"}
     assert features_of(legacy(OWN["bare"]), stone) == Features(
         Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], boxes=0, head=0, backdrop=0, glare=1,

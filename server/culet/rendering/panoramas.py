@@ -65,11 +65,11 @@ def aset(height: int = STUDIO_HEIGHT) -> Panorama:
 
 
 def ideal_scope(height: int = STUDIO_HEIGHT) -> Panorama:
-    """The Ideal-Scope's: red around the observer's dark eye, which fills 15 degrees; white light from below, so that
+    """The Ideal-Scope's: red around the observer's dark eye, which fills 10 degrees; white light from below, so that
     what leaks is white."""
     elevation = np.degrees(np.arcsin(directions(height)[..., 1]))
     colours = np.zeros((*elevation.shape, 3), np.float32)
-    colours[(elevation > 0) & (elevation < 75)] = (1, 0, 0)
+    colours[(elevation > 0) & (elevation < 80)] = (1, 0, 0)
     colours[elevation <= 0] = 1
     return colours
 

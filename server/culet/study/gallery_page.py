@@ -28,6 +28,8 @@ COLUMNS = {
     "fire": ("fire", "{:.1%}"), "hot": ("hot", "{:.1%}"), "isolated": ("isolated", "{:.0%}"),
     "chroma": ("C*", "{:.0f}"), "surround": ("around", "{:.0f}"),
 }  # fmt: skip
+COLOUR_CODED = ("aset", "ideal-scope")
+"""Presets whose colours say where light comes from."""
 INSTRUMENTS = {"red": "red", "pure_red": "pure red", "green": "green", "blue": "blue"}
 
 
@@ -69,7 +71,7 @@ def _table(seen: Sequence[Shown]) -> str:
     rows += [
         [f"`{each.preset.name}`", *(_cell(each, name, form) for name, (_, form) in COLUMNS.items())]
         for each in seen
-        if each.measures and each.preset.group != "the report" and "pure_red" not in WANTED.get(each.preset.name, {})
+        if each.measures and each.preset.group != "the report" and each.preset.name not in COLOUR_CODED
     ]
     return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
 
@@ -79,7 +81,7 @@ def _instruments(seen: Sequence[Shown]) -> str:
     rows += [
         [f"`{each.preset.name}`", *(_cell(each, name, "{:.1%}") for name in INSTRUMENTS)]
         for each in seen
-        if each.preset.name in ("aset", "ideal-scope")
+        if each.preset.name in COLOUR_CODED
     ]
     return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
 
