@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from culet import __version__
+from culet.command.help import ListedHelp
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import check_place, opened
 from culet.command.settings import options_of
@@ -191,7 +192,7 @@ def bench(
             print(line, file=file)
 
 
-@app.command()
+@app.command(cls=ListedHelp)
 @options_of(Gateway=GatewaySettings, Engine=Limits)
 def serve(
     frames: Annotated[
@@ -204,7 +205,7 @@ def serve(
         bool,
         typer.Option(
             envvar="CULET_SPARE",
-            help="Keep another engine and gateway ready to take over when one dies; they take some 250 MB of memory.",
+            help="Keep another engine and gateway ready to take over when one dies; they take some 260 MiB of memory.",
         ),
     ] = True,
     *,
@@ -221,7 +222,7 @@ def serve(
         run(given, frames=frames, engine_options=[*Limits.words(given)], spare=spare)
 
 
-@app.command()
+@app.command(cls=ListedHelp)
 @options_of(Gateway=GatewaySettings)
 def gateway(control: Control, frames: Frames, *, given: dict[str, Any]) -> None:
     """Run the web process alone, for an engine that runs elsewhere."""
@@ -233,7 +234,7 @@ def gateway(control: Control, frames: Frames, *, given: dict[str, Any]) -> None:
         run_gateway(given, control, frames)
 
 
-@app.command()
+@app.command(cls=ListedHelp)
 @options_of(Engine=Limits)
 def engine(
     control: Control,

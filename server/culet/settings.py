@@ -100,8 +100,8 @@ def shown(value: object) -> str:
             return f"{value:g}"
         case Path() | str() | int():
             return str(value)
-        case tuple() | None:
-            return ", ".join(map(str, value or ())) or "none"
+        case tuple():
+            return ", ".join(map(str, value)) or "none"
     raise TypeError(f"a setting cannot be shown: {value!r}")
 
 

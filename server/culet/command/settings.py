@@ -53,7 +53,11 @@ def _parameters(title: str, settings: type[Settings]) -> Iterator[tuple[str, ins
         if field.is_required():  # endpoints, which each command names by itself
             continue
         kind, metavar = _kind(field)
-        help_text = f"{field.description} ({variable(name)}; {_range(field)}default {shown(field.default)})"
+        notes = [variable(name), *_bounds(field)]
+        if field.default is not None:
+            notes.append(f"default {shown(field.default)}")
+            (variable(name),)
+        help_text = f"{field.description} ({'; '.join(notes)})"
         names = [f"{option(name)}/--no-{option(name)[2:]}"] if kind == bool | None else [option(name)]
         default = typer.Option(None, *names, metavar=metavar, help=help_text, show_default=False, rich_help_panel=title)
         yield name, inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
@@ -75,17 +79,19 @@ def _kind(field: FieldInfo) -> tuple[Any, str | None]:
     return str | None, metavars.get(annotation, "TEXT")
 
 
-def _range(field: FieldInfo) -> str:
-    """In words: `at least 1, `."""
+def _bounds(field: FieldInfo) -> Iterator[str]:
+    """In words: `at least 1 and at most 8192`."""
+    is_size = ByteSize in (field.annotation, *get_args(field.annotation))
     words = []
     for bound in field.metadata:
         match bound:
             case Ge(ge=limit):
-                words.append(f"at least {limit}")
+                words.append(f"at least {shown(ByteSize(limit)) if is_size and isinstance(limit, int) else limit}")
             case Gt(gt=limit):
                 words.append(f"over {limit}")
             case Le(le=limit):
                 words.append(f"at most {limit}")
             case Lt(lt=limit):
                 words.append(f"under {limit}")
-    return " and ".join(words) + "; " if words else ""
+    if words:
+        yield " and ".join(words)
