@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
 import tempfile
+import threading
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -11,8 +13,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from culet.gateway.upload_folder import UploadFolder
 from culet.rendering.panoramas import STUDIO
-from gateway.running import TETRAHEDRON, Endpoints, Gateway, gateway_before, png
+from gateway.running import PATIENCE, TETRAHEDRON, Endpoints, Gateway, gateway_before, png
 
 
 def form(name: str, data: bytes) -> dict[str, tuple[str, bytes]]:
@@ -153,3 +156,27 @@ async def test_of_uploads_kept_for_a_new_engine_the_oldest_go_first(engine: Endp
             answer = await gateway.http.post("/api/meshes", files=form("stone.obj", comment + TETRAHEDRON))
             assert answer.status_code == 201, answer.text
         assert gateway.parts.uploads.kept_bytes == 2 * (len(TETRAHEDRON) + 3)
+
+
+async def test_an_upload_that_is_forgotten_while_its_file_is_written_leaves_no_file(
+    engine: Endpoints, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, go_on = asyncio.Event(), threading.Event()
+    loop, write = asyncio.get_running_loop(), UploadFolder.write
+
+    def slow(folder: UploadFolder, name: str, kind: str, file_type: str, data: bytes) -> None:
+        if not begun.is_set():
+            loop.call_soon_threadsafe(begun.set)
+            assert go_on.wait(PATIENCE)
+        write(folder, name, kind, file_type, data)
+
+    monkeypatch.setattr(UploadFolder, "write", slow)
+    limits = {"max_kept_upload_bytes": len(TETRAHEDRON) + 10, "uploads_folder": tmp_path / "uploads"}
+    async with gateway_before(engine, web=tmp_path, **limits) as gateway:
+        first = asyncio.create_task(gateway.http.post("/api/meshes", files=form("stone.obj", b"#1\n" + TETRAHEDRON)))
+        async with asyncio.timeout(PATIENCE):
+            await begun.wait()
+        second = await gateway.http.post("/api/meshes", files=form("stone.obj", b"#2\n" + TETRAHEDRON))
+        go_on.set()
+        assert (await first).status_code == second.status_code == 201
+        assert [path.name for path in (tmp_path / "uploads").iterdir()] == [f"{second.json()['id']}.mesh.obj"]

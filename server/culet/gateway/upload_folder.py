@@ -45,7 +45,8 @@ class UploadFolder:
         except OSError as error:
             log.warning("an upload would be lost with this process: cannot write %s (%s)", path, error.strerror)
             if part:
-                part.unlink(missing_ok=True)
+                with contextlib.suppress(OSError):  # left over halves go when the next gateway reads
+                    part.unlink()
 
     def remove(self, name: str) -> None:
         """Forget an upload."""

@@ -105,6 +105,8 @@ class Uploads:
         self._keep(upload)
         if self._folder:
             await asyncio.to_thread(self._folder.write, upload.id, kind.name, upload.file_type, upload.data)
+            if upload.id not in self._kept:  # others needed its room before its file was there
+                self._folder.remove(upload.id)
         return upload.id, described
 
     async def request(
