@@ -14,7 +14,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from culet.errors import BusyError, TooLargeError
 from culet.gateway.client_address import client_of
 from culet.gateway.origins import Hosts, is_address, may_enter
-from culet.gateway.problems import RETRY_AFTER_SECONDS, problem
+from culet.gateway.problems import RETRY_AFTER_SECONDS, problem, problem_of
 from culet.gateway.settings import GatewaySettings
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -93,7 +93,8 @@ class Admission:
             return problem(421, "misdirected request", detail)
         client = client_of(scope)
         if self._open[client] >= self._settings.max_connections_per_address:
-            return _busy(f"{client} has {self._open[client]} requests and streams under way, which is the limit")
+            detail = f"{client} has {self._open[client]} requests and streams under way, which is the limit"
+            return problem_of(BusyError(detail))
         if scope["type"] == "websocket":
             return None  # told by a close code who may open streams
         method, path = scope["method"], scope["path"]
@@ -110,9 +111,9 @@ class Admission:
             limit = self._limit(path)
             if int(declared) > limit:
                 field = "file" if path in self._body_limits else None
-                return problem(TooLargeError.status, TooLargeError.title, f"{_too_large(limit)}, got {declared}", field)
+                return problem_of(TooLargeError(f"{_too_large(limit)}, got {declared}", field))
             if not self._bodies.room_for(client, int(declared)):
-                return _busy(f"{self._bodies.bytes} bytes of bodies are under way; try again later")
+                return problem_of(BusyError(self._no_room()))
         return None
 
     def _is_embedding(self, headers: Headers) -> bool:
@@ -135,8 +136,7 @@ class Admission:
                     raise TooLargeError(detail, "file")
                 raise HTTPException(TooLargeError.status, detail)  # FastAPI makes 400 of others, reading JSON
             if not self._bodies.room_for(client, size):
-                detail = f"{self._bodies.bytes} bytes of bodies are under way; try again later"
-                raise HTTPException(BusyError.status, detail, {"Retry-After": RETRY_AFTER_SECONDS})
+                raise HTTPException(BusyError.status, self._no_room(), {"Retry-After": RETRY_AFTER_SECONDS})
             self._bodies.take(client, size)
             came += size
             return message
@@ -149,10 +149,9 @@ class Admission:
     def _limit(self, path: str) -> int:
         return self._body_limits.get(path, self._settings.max_body_bytes)
 
+    def _no_room(self) -> str:
+        return f"{self._bodies.bytes} bytes of bodies are under way; try again later"
+
 
 def _too_large(limit: int) -> str:
     return f"expected a body of at most {limit} bytes"
-
-
-def _busy(detail: str) -> Response:
-    return problem(BusyError.status, BusyError.title, detail, headers={"Retry-After": RETRY_AFTER_SECONDS})

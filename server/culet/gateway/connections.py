@@ -24,7 +24,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 from culet.gateway.client_address import Network, client_at
 from culet.gateway.paced_stream import PacedStream
-from culet.gateway.problems import problem
+from culet.gateway.problems import RETRY_AFTER_SECONDS, problem
 from culet.gateway.settings import GatewaySettings
 
 log = logging.getLogger(__name__)
@@ -286,7 +286,8 @@ class GuardedHttp(H11Protocol):
             self.cycle.disconnected = True
             self.cycle.message_event.set()
         if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
-            answer = problem(status, title, detail)
+            later = {"Retry-After": RETRY_AFTER_SECONDS} if status == HTTPStatus.SERVICE_UNAVAILABLE else None
+            answer = problem(status, title, detail, headers=later)
             headers = [*answer.raw_headers, (b"connection", b"close")]
             head = h11.Response(status_code=status, headers=headers, reason=HTTPStatus(status).phrase.encode())
             for event in (head, h11.Data(data=bytes(answer.body))):
