@@ -19,10 +19,10 @@ ENDPOINTS = {"control": "ipc://unused", "frames": "ipc://unused"}
 @pytest.mark.parametrize(
     ("command", "kinds"), [("serve", [GatewaySettings, Limits]), ("gateway", [GatewaySettings]), ("engine", [Limits])]
 )
-def test_the_help_of_a_command_lists_every_setting_with_its_variable(
+def test_the_help_of_a_command_names_every_setting_and_its_variable_in_full_on_80_columns(
     command: str, kinds: list[type[Settings]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setenv("COLUMNS", "80")
     words = re.findall(r"[\w-]+", culet(command, "--help").stdout)
     fields = {name for kind in kinds for name, field in kind.model_fields.items() if not field.is_required()}
     assert len(fields) > 10
@@ -72,6 +72,12 @@ def test_a_bad_value_is_told_by_the_name_that_its_user_gave(
     with pytest.raises(InputError) as by_variable:
         Limits.read({})
     assert str(by_variable.value) == f"{variable(name)}: {wanted}; got {value!r}"
+
+
+@pytest.mark.parametrize("value", ["*", "proxy", "10.0.0.0/40", "10.0.0.1/8"])
+def test_a_proxy_that_is_no_address_is_told_by_the_name_that_its_user_gave(value: str) -> None:
+    with pytest.raises(InputError, match=r"^--trusted-proxy: expected an address or a network such as"):
+        GatewaySettings.read({"trusted_proxy": [value]}, **ENDPOINTS)
 
 
 def test_a_bad_setting_of_the_engine_is_one_line_of_serve() -> None:

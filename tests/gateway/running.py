@@ -176,7 +176,8 @@ async def gateway_before(engine: Endpoints, **limits: Any) -> AsyncIterator[Gate
 
 @contextlib.asynccontextmanager
 async def gateway_alone(**limits: Any) -> AsyncIterator[Gateway]:  # noqa: ANN401
-    """A web server with these settings that has no engine."""
+    """A web server with these settings that has no engine, and does not wait for one."""
+    limits = {"engine_start_seconds": 0} | limits
     settings = GatewaySettings(control="ipc:///nowhere/control", frames="ipc:///nowhere/frames", port=0, **limits)
     with Listener(settings) as listener:
         serving = asyncio.create_task(listener.run())

@@ -12,8 +12,6 @@ from ipaddress import IPv4Network, IPv6Network, ip_address, ip_network
 
 from starlette.types import Scope
 
-from culet.errors import InputError
-
 Network = IPv4Network | IPv6Network
 
 UNKNOWN = "unknown"
@@ -42,16 +40,13 @@ def client_at(host: str | None) -> str:
 
 
 def read_proxies(texts: Iterable[str]) -> tuple[Network, ...]:
-    """Trusted proxies given as addresses or networks, such as `10.0.0.7` or `172.16.0.0/12`; InputError."""
+    """Trusted proxies given as addresses or networks, such as `10.0.0.7` or `172.16.0.0/12`; ValueError."""
     proxies = []
     for text in texts:
         try:
             proxies.append(ip_network(text.strip()))
         except ValueError as error:
-            raise InputError(
-                f"trusted_proxy: expected an address or a network such as 172.16.0.0/12, got {text[:80]!r} ({error})",
-                "trusted_proxy",
-            ) from error
+            raise ValueError(f"expected an address or a network such as 172.16.0.0/12 ({error})") from error
     return tuple(proxies)
 
 

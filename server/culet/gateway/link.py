@@ -46,6 +46,9 @@ REOPEN_SECONDS = 5.0
 """An engine that was silent for so long is connected to anew: it may have forgotten this gateway, and a gateway that is
 not greeted asks nothing."""
 
+GREET_AGAIN_SECONDS = 1.0
+"""After a greeting that an engine which lives did not answer in time."""
+
 _ERROR_OF_STATUS: dict[int, type[CuletError]] = {404: NotFoundError, 429: BusyError, 503: EngineUnavailableError}
 
 
@@ -72,6 +75,9 @@ class EngineLink:
         self.on_down: Callable[[], None] = lambda: None
         self._settings = settings
         self._last_heard = 0.0
+        self._away_since = -float("inf")
+        self._greeted: str | None = None
+        """The instance that `on_up` was done with last."""
         self._numbers = 0
         self._pending: dict[int, asyncio.Future[tuple[Reply, bytes | memoryview]]] = {}
         self._greeting: asyncio.Task[None] | None = None
@@ -82,6 +88,7 @@ class EngineLink:
     async def run(self) -> None:
         """Serve the sockets until cancelled."""
         self._context = zmq.asyncio.Context()
+        self._away_since = asyncio.get_running_loop().time()
         try:
             frames = self._context.socket(zmq.SUB)
             keep_alive(frames)
@@ -100,6 +107,12 @@ class EngineLink:
             if self._greeting:
                 self._greeting.cancel()
             self._context.destroy(linger=0)
+
+    async def until_up(self) -> None:
+        """Wait for an engine that is starting: until it answers, or has been away for `engine_start_seconds`."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout_at(self._away_since + self._settings.engine_start_seconds):
+                await self.ready.wait()
 
     async def _keep_control(self) -> None:
         """A control socket, and another one whenever the engine was silent for long."""
@@ -152,6 +165,8 @@ class EngineLink:
         Raises what the engine answered as the error of that status, and EngineUnavailableError if it does not answer.
         """
         if self._control is None or not self.ready.is_set():
+            if self.instance is None:
+                raise EngineUnavailableError("the render process is starting, or cannot be reached; try again later")
             raise EngineUnavailableError("the render process is not running; it should be back in a few seconds")
         self._numbers += 1
         number = self._numbers
@@ -242,7 +257,6 @@ class EngineLink:
             return
         if self.ready.is_set():
             self.lose("the render process was replaced")
-        first = self.instance is None
         if new:
             self.instance = instance
             self.instances += 1
@@ -250,11 +264,18 @@ class EngineLink:
         if self.on_up:
             if self._greeting:
                 self._greeting.cancel()
-            self._greeting = asyncio.create_task(self._greet(self.on_up, new and not first))
+            self._greeting = asyncio.create_task(self._greet(self.on_up, instance))
 
-    async def _greet(self, on_up: Callable[[bool], Awaitable[None]], new: bool) -> None:
-        with contextlib.suppress(EngineUnavailableError):  # it went again: the next one is greeted anew
-            await on_up(new)
+    async def _greet(self, on_up: Callable[[bool], Awaitable[None]], instance: str) -> None:
+        while self.ready.is_set():  # or else it went again, and the next one is greeted anew
+            try:
+                await on_up(self._greeted not in (None, instance))
+            except EngineUnavailableError as error:
+                log.warning("the render process could not be greeted: %s", error)
+                await asyncio.sleep(GREET_AGAIN_SECONDS)
+            else:
+                self._greeted = instance
+                return
 
     async def _watch(self) -> None:
         silence = self._settings.engine_silence_seconds
@@ -270,6 +291,7 @@ class EngineLink:
             return
         log.warning("%s", reason)
         self.ready.clear()
+        self._away_since = asyncio.get_running_loop().time()
         self._fail_pending(reason)
         self.on_down()
 

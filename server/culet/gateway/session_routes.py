@@ -103,6 +103,7 @@ async def create_session(
 @router.get("/api/sessions/{session_id}", responses=answers(404, 429, 503))
 async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
     """A session as it is now."""
+    await gateway.sessions.settle(session_id)
     session = gateway.sessions.get(session_id)
     await gateway.sessions.describe(session)
     return _answer(session)

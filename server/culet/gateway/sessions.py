@@ -32,8 +32,6 @@ REOPENED_AT_ONCE = 4
 """Sessions, in a new engine: some of them need files that are read by processes."""
 FAREWELL_SECONDS = 1.0
 """For streams to say why they end."""
-SETTLING_SECONDS = 8.0
-"""A gateway that has just been started lets viewers wait for so long until it knows its sessions."""
 SESSION_ID = re.compile(r"[0-9a-f]{32}")
 DELETED = "the session was deleted"
 DELETED_KEPT = 4096
@@ -174,7 +172,7 @@ class Sessions:
         if self._knows(session):
             return
         with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(SETTLING_SECONDS):
+            async with asyncio.timeout(self._settings.engine_start_seconds):
                 await self.taken_over.wait()
 
     async def reopen(
@@ -186,6 +184,7 @@ class Sessions:
         """
         if session in self._deleted:
             raise NotFoundError("that session was deleted")
+        await self.settle(session)
         if session in self._sessions:
             return self.get(session)
         return await self.open(scene, client, session, snapshot)
@@ -197,7 +196,8 @@ class Sessions:
         name: str | None = None,
         snapshot: dict[str, Any] | None = None,
     ) -> Session:
-        """A new session in the engine; BusyError at the client's limit, or that of all."""
+        """A new session in the engine, which may be starting; BusyError at the client's limit, or that of all."""
+        await self._link.until_up()
         session = Session(name or secrets.token_hex(16), scene, client)
         self._sessions[session.id] = session  # before the engine tells its state, and before others count
         try:

@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ByteSize, Field, field_validator
 
 from culet.errors import InputError
+from culet.gateway.client_address import read_proxies
 from culet.gateway.origins import Hosts, read_origin
 from culet.settings import MEBIBYTE, Settings, Words
 
@@ -117,6 +118,9 @@ class GatewaySettings(Settings):
     request_seconds: float = Field(
         10, gt=0, description="An engine that lives but does not answer a small request for so long is unavailable."
     )
+    engine_start_seconds: float = Field(
+        10, ge=0, description="New sessions, and streams, wait so long for an engine that is starting."
+    )
     engine_silence_seconds: float = Field(
         3.5, gt=1, description="Without a heartbeat (one a second) for so long, the engine counts as down."
     )
@@ -135,6 +139,12 @@ class GatewaySettings(Settings):
         if None in found.values():
             raise ValueError("expected an origin such as https://gems.example")
         return tuple(map(str, found.values()))
+
+    @field_validator("trusted_proxy")
+    @classmethod
+    def _proxies(cls, given: tuple[str, ...]) -> tuple[str, ...]:
+        read_proxies(given)
+        return given
 
     @field_validator("frame_ancestor")
     @classmethod

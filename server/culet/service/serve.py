@@ -15,7 +15,6 @@ from typing import Any
 
 from culet.endpoints import check_free
 from culet.gateway.address import listening_socket, url_of
-from culet.gateway.client_address import read_proxies
 from culet.gateway.settings import settings_of
 from culet.service.command_lines import engine_command, gateway_command
 from culet.service.notify import Notice, notify
@@ -50,7 +49,6 @@ def serve(
     with socket_folder() as folder:
         control, own_frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
         settings = settings_of({"uploads_folder": folder / "uploads"} | dict(given), control, own_frames)
-        read_proxies(settings.trusted_proxy)  # before the child would complain of them
         command = engine_command(control, own_frames, *([frames] if frames else []), options=engine_options)
         engine = Part("engine", [*command, "--stand-by"], ENGINE_SILENCE_SECONDS, has_spare=spare)
         with listening_socket(settings.host, settings.port) as listening:
