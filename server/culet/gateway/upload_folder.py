@@ -5,12 +5,17 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 log = logging.getLogger(__name__)
+
+_NAME = re.compile(r"([0-9a-f]{32})\.([a-z]+)\.([a-z]+)")
+_PART = "half-of-an-upload-"
+"""Begins the name of a file that is being written."""
 
 
 class StoredUpload(NamedTuple):
@@ -38,7 +43,7 @@ class UploadFolder:
             return
         part = None
         try:
-            with tempfile.NamedTemporaryFile(dir=self._folder, suffix=".part", delete=False) as file:
+            with tempfile.NamedTemporaryFile(dir=self._folder, prefix=_PART, delete=False) as file:
                 part = Path(file.name)
                 file.write(data)
             part.replace(path)
@@ -54,11 +59,10 @@ class UploadFolder:
             path.unlink(missing_ok=True)
 
     def read(self) -> Iterator[StoredUpload]:
-        """All uploads that are there, the latest last."""
+        """All uploads that are there, the latest last. Halves of them are removed; what else is there is let be."""
         with contextlib.suppress(OSError):
             for entry in sorted(os.scandir(self._folder), key=lambda entry: entry.stat().st_mtime):
-                match entry.name.split("."):
-                    case [name, kind, file_type] if file_type != "part":
-                        yield StoredUpload(name, kind, file_type, Path(entry).read_bytes())
-                    case _:
-                        Path(entry).unlink(missing_ok=True)  # half of one
+                if upload := _NAME.fullmatch(entry.name):
+                    yield StoredUpload(*upload.groups(), Path(entry).read_bytes())
+                elif entry.name.startswith(_PART):
+                    Path(entry).unlink(missing_ok=True)
