@@ -62,7 +62,8 @@ class UploadFolder:
         """All uploads that are there, the latest last. Halves of them are removed; what else is there is let be."""
         with contextlib.suppress(OSError):
             for entry in sorted(os.scandir(self._folder), key=lambda entry: entry.stat().st_mtime):
-                if upload := _NAME.fullmatch(entry.name):
-                    yield StoredUpload(*upload.groups(), Path(entry).read_bytes())
+                if found := _NAME.fullmatch(entry.name):
+                    name, kind, file_type = found.groups()
+                    yield StoredUpload(name, kind, file_type, Path(entry).read_bytes())
                 elif entry.name.startswith(_PART):
                     Path(entry).unlink(missing_ok=True)
