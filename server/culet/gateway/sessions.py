@@ -324,7 +324,8 @@ class Sessions:
                     to_engine.Demand(session=session.id, frames_per_second=rate, width=width, height=height)
                 )
             except CuletError as error:
-                log.warning("demand of a session was refused: %s", error)
+                known = not isinstance(error, NotFoundError)  # or a new engine is about to be given the session
+                log.log(logging.WARNING if known else logging.DEBUG, "demand of a session was refused: %s", error)
                 session.demand = UNTOLD
                 return  # the next tick tries again
             await asyncio.sleep(DEMAND_SECONDS)
