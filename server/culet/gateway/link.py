@@ -13,7 +13,7 @@ import contextlib
 import json
 import logging
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, assert_never
 
 import zmq
 import zmq.asyncio
@@ -249,6 +249,8 @@ class EngineLink:
                     answer = self._pending.get(number)
                     if answer and not answer.done():
                         answer.set_result((message, parts[2].buffer if len(parts) > 2 else b""))
+                case _:
+                    assert_never(message)
 
     def _hear(self, instance: str) -> None:
         self._last_heard = asyncio.get_running_loop().time()
