@@ -48,7 +48,9 @@ def serve(
         check_free(frames, "frames")
     with socket_folder() as folder:
         control, own_frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
-        settings = settings_of({"uploads_folder": folder / "uploads"} | dict(given), control, own_frames)
+        settings = settings_of(given, control, own_frames)
+        if settings.uploads_folder is None:
+            settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
         command = engine_command(control, own_frames, *([frames] if frames else []), options=engine_options)
         engine = Part("engine", [*command, "--stand-by"], ENGINE_SILENCE_SECONDS, has_spare=spare)
         with listening_socket(settings.host, settings.port) as listening:
