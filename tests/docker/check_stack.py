@@ -206,6 +206,7 @@ async def check_faults(stack: Stack) -> None:
             await stack.tell(session, ToggleFall())
         await stack.tell(session, Orbit(yaw=0.3, pitch=0.1))
         before = await stack.described(session), await pose(stack, session)
+        check(not before[0]["falling"] and before[1] is not None, "the stone is held, and has a pose")
 
         engines = await containers.restarts("engine")
         async with fault(stack, watcher, "gateway", "the gateway is killed"):
