@@ -90,8 +90,11 @@ class Containers:
         try:
             yield
         finally:
-            async with asyncio.timeout(HANG_SECONDS):  # it ends with the engine
-                await process.wait()
+            try:
+                async with asyncio.timeout(HANG_SECONDS):  # it ends with the engine
+                    await process.wait()
+            except TimeoutError:
+                raise SystemExit(f"not true: an engine that hangs ends itself within {HANG_SECONDS:g} s") from None
 
     async def _container(self, service: str) -> str:
         return (await _said(*self._compose, "ps", "--all", "--quiet", service)).strip()
