@@ -70,7 +70,8 @@ def test_the_general_program_serves_until_there_is_room_again(monkeypatch: pytes
     general = programs.exact(special.general, variant)
     asked: list[Features] = []
 
-    def refuse(features: Features, _variant: Variant) -> bool:
+    def refuse(features: Features, _variant: Variant, *, urgent: bool) -> bool:
+        assert not urgent, "frames come first"
         asked.append(features)
         raise KernelCacheError("no space left")
 
