@@ -89,8 +89,8 @@ def test_a_decided_feature_shows_what_the_general_program_shows(
             assert difference.max() < 2e-3
             assert difference.mean() < 5e-7
             return
-        # measured 1.9e-7 of the radiance without dispersion, where the channels of one chain are summed in another order;
-        # otherwise every bit is the same
+        # measured 1.9e-7 of the radiance without dispersion, where the channels of one chain are summed in another
+        # order; otherwise every bit is the same
         assert radiance(decided) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
 
 
