@@ -261,7 +261,7 @@ def test_a_new_scene_replaces_camera_and_stone() -> None:
         (messages.PatchScene(patch={"camera": {"fov_degrees": 500}}), "camera.fov_degrees"),
         (messages.PatchScene(patch={"camera": {"fov_degrees": math.nan}}), "camera.fov_degrees"),
         (messages.PatchScene(patch={"colour": 1}), "colour"),
-        (messages.SetScene(scene={"floor": {"kind": "lava"}}), "floor"),
+        (messages.SetScene(scene={"floor": {"kind": "lava"}}), "floor.kind"),
         (messages.SetScene(scene={"stones": [{"mesh": "nowhere"}]}), "stones.0.mesh"),
         (messages.SetScene(scene={"stones": [{"mesh": "../etc/passwd"}]}), "stones.0.mesh"),
         (messages.SetScene(scene={"environment": {"kind": "image", "image": "nowhere"}}), "environment.image"),

@@ -75,7 +75,7 @@ async def snapshot_of(gateway: Gateway, scene: dict[str, Any]) -> dict[str, Any]
         ({"home": {"position": [0, 0, 0]}}, None),
         ({"simulation": {"version": 2}}, "version"),
         ({"simulation": []}, "snapshot.simulation"),
-        ({"environment": {"kind": "lava"}}, "snapshot.environment"),
+        ({"environment": {"kind": "lava"}}, "snapshot.environment.kind"),
         ({"more": 1}, "snapshot.more"),
     ],
 )

@@ -255,10 +255,11 @@ async def test_an_event_by_rest_does_what_it_does_by_the_stream(gateway: Gateway
 @pytest.mark.parametrize(
     ("event", "field"),
     [
-        ('{"type": "explode"}', None),
+        ('{"type": "explode"}', "type"),
+        ('{"yaw": 1, "pitch": 0}', "type"),
         ('{"type": "dolly", "target": "camera", "forward": "far"}', "dolly.forward"),
         ('{"type": "patch_scene", "patch": {"camera": {"fov_degrees": NaN}}}', "camera.fov_degrees"),
-        ('{"type": "ack", "sequence": 1}', None),
+        ('{"type": "ack", "sequence": 1}', "type"),
     ],
 )
 async def test_an_event_that_cannot_be_used_leaves_the_session_as_it_was(

@@ -105,7 +105,8 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "size 0": ({"stones": [{"size_mm": 0}]}, "stones.0.size_mm", "expected greater than 0; got 0"),
     "no orientation": ({"stones": [{"orientation": [0, 0, 0, 0]}]}, "stones.0.orientation", "length 0"),
     "lamp of another shape": (
-        {"environment": {"kind": "studio", "lamps": [{"shape": "star"}]}}, "environment.lamps.0", "'round' or 'box'"
+        {"environment": {"kind": "studio", "lamps": [{"shape": "star"}]}},
+        "environment.lamps.0.shape", "'round' or 'box'; got 'star'",
     ),
     "box without a width": (
         {"environment": {"kind": "studio", "lamps": [{"shape": "box", "direction": [0, 1, 0], "radiance": [1, 1, 1]}]}},
@@ -122,17 +123,18 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
         "environment.lamps", "at most 24",
     ),
     "gradient's colour": ({"backdrop": {"kind": "gradient", "colour": [1, 1, 1]}}, "backdrop.colour", "unknown field"),
-    "unknown backdrop": ({"backdrop": {"kind": "curtain"}}, "backdrop", "'gradient'.*'curtain'"),
+    "unknown backdrop": ({"backdrop": {"kind": "curtain"}}, "backdrop.kind", "'gradient'; got 'curtain'"),
     "mirror's colour": ({"floor": {"kind": "mirror", "colour": [1, 1, 1]}}, "floor.colour", "there are: kind"),
     "head of no size": ({"head": {"half_angle_degrees": 0}}, "head.half_angle_degrees", "at least 0.1"),
     "picture of no height": ({"camera": {"kind": "orthographic", "height": 0}}, "camera.height", "at least"),
-    "unknown floor": ({"floor": {"kind": "glossy"}}, "floor", "'mirror' or 'studio'; got .*'glossy'"),
+    "unknown floor": ({"floor": {"kind": "glossy"}}, "floor.kind", "'mirror' or 'studio'; got 'glossy'"),
     "floor by name": ({"floor": "mirror"}, "floor", "got 'mirror'"),
     "nine lights": ({"lights": [{"position": [0, 9, 0], "colour": [1, 1, 1]}] * 9}, "lights", "at most 8"),
     "dark light": ({"lights": [{"position": [0, 9, 0], "colour": [1, 1, -1]}]}, "lights.0.colour.2", "0; got -1"),
     "light without a place": ({"lights": [{"colour": [1, 1, 1]}]}, "lights.0.position", "expected a value"),
-    "unknown sky": ({"environment": {"kind": "cloudy"}}, "environment", "'studio'.*'cloudy'"),
-    "sky without a kind": ({"environment": {"radiance": [1, 1, 1]}}, "environment", "'kind'"),
+    "unknown sky": ({"environment": {"kind": "cloudy"}}, "environment.kind", "'studio'.*; got 'cloudy'"),
+    "sky without a kind": ({"environment": {"radiance": [1, 1, 1]}}, "environment.kind", "expected a value"),
+    "sky by name": ({"environment": "studio"}, "environment", "expected an object; got 'studio'"),
     "sky's colour": ({"environment": {"kind": "gradient", "top": [1, -2, 1]}}, "environment.top.1", "0; got -2"),
     "lamp nowhere": (
         {"environment": {"kind": "studio", "lamps": [{"direction": [0, 0, 0], **LAMP}]}},

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from culet.errors import InputError
 from culet.scene import Camera, Environment
+from culet.scene.model import scene_error
 from culet_protocol.messages import BALANCED, Exactness
 
 NUMBER_GAP = 1000
@@ -50,9 +51,8 @@ class Snapshot(BaseModel):
         try:
             return cls.model_validate(data)
         except ValidationError as error:
-            first = error.errors(include_url=False, include_context=False)[0]
-            field = ".".join(("snapshot", *(str(part) for part in first["loc"])))
-            raise InputError(f"{field}: {first['msg']}", field) from error
+            found = scene_error(error)
+            raise InputError(f"snapshot.{found}", f"snapshot.{found.field}") from error
 
     @property
     def next_step(self) -> int:

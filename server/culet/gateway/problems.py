@@ -16,7 +16,7 @@ from starlette.requests import ClientDisconnect
 from culet.errors import CuletError, InputError
 from culet.gateway.departure import ClientLeftError
 from culet.scene.model import field_of
-from culet.scene.wording import expected
+from culet.scene.wording import at_its_tag, expected
 from culet_protocol.messages import PatchScene, SessionEvent, SetScene, ViewerEvent
 
 MEDIA_TYPE = "application/problem+json"
@@ -119,7 +119,7 @@ async def _of_culet(_request: Request, error: CuletError) -> JSONResponse:
 async def _of_validation(request: Request, error: RequestValidationError) -> JSONResponse:
     # FastAPI's own answer repeats the input, and fails with a 500 if NaN is in it.
     findings = error.errors()
-    first = findings[0]
+    first = at_its_tag(findings[0])
     if first["loc"] == ("body",) and isinstance(first.get("input"), bytes):  # FastAPI did not read it
         got = request.headers.get("content-type", "none")
         return problem(415, "unsupported media type", f"expected Content-Type: application/json, got {got[:80]}")
@@ -127,7 +127,7 @@ async def _of_validation(request: Request, error: RequestValidationError) -> JSO
         detail = f"the body is not JSON: {first['ctx']['error']} at character {first['loc'][-1]}"
         return problem(InputError.status, InputError.title, detail)
     field = field_of(tuple(first["loc"][1:])) or None
-    came = "" if first["type"] == "missing" else f"; got {_short(first.get('input'))}"
+    came = "" if first["type"] in ("missing", "union_tag_not_found") else f"; got {_short(first.get('input'))}"
     more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
     where = field or first["loc"][0]
     return problem(InputError.status, InputError.title, f"{where}: {expected(first)}{came}{more}", field)

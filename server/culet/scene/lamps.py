@@ -53,6 +53,7 @@ AnyLamp = Annotated[
     Discriminator(
         _shape_of_lamp,
         custom_error_type="lamp",
+        custom_error_context={"discriminator": "'shape'"},
         custom_error_message="Input should be a lamp of shape 'round' or 'box'",
     ),
 ]

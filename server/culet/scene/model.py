@@ -22,7 +22,7 @@ from pydantic import (
 from culet.errors import SceneError
 from culet.scene.fields import Colour, Coordinate, Model, Vector
 from culet.scene.studio import Backdrop, GradientBackdrop, Head, StudioEnvironment, StudioFloor
-from culet.scene.wording import expected, unknown_field
+from culet.scene.wording import at_its_tag, expected, unknown_field
 
 Index = Annotated[float, Field(ge=1, le=10)]
 
@@ -152,6 +152,7 @@ Floor = Annotated[
     Discriminator(
         _form_of_floor,
         custom_error_type="floor",
+        custom_error_context={"discriminator": "'kind'"},
         custom_error_message="Input should be a floor of kind 'none', 'matte', 'mirror' or 'studio'",
     ),
 ]
@@ -415,7 +416,7 @@ def field_of(location: tuple[int | str, ...]) -> str:
 
 def scene_error(error: ValidationError) -> SceneError:
     """The first finding of pydantic as one line: the field, what was expected, what came."""
-    first = error.errors(include_url=False)[0]
+    first = at_its_tag(error.errors(include_url=False)[0])
     field = field_of(first["loc"])
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
     if first["type"] == "extra_forbidden":

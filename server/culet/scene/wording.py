@@ -22,8 +22,8 @@ _WHOLE = {
     "int_parsing": "expected a whole number",
     "int_from_float": "expected a whole number",
     "string_pattern_mismatch": "expected text that matches {pattern}",
-    "union_tag_invalid": "expected an object with {discriminator} one of {expected_tags}",
-    "union_tag_not_found": "expected an object with {discriminator}",
+    "union_tag_invalid": "expected one of {expected_tags}",
+    "union_tag_not_found": "expected a value, found none",
 }
 """By pydantic's type of the finding, with its own numbers. Others say it well enough, in the words below."""
 
@@ -34,6 +34,15 @@ _PHRASES = {
     "greater than or equal to": "at least",
     "less than or equal to": "at most",
 }
+
+
+def at_its_tag(finding: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The finding, but of an object's `kind` where that chooses none of a union's forms: pydantic names the object."""
+    tag, came = finding.get("ctx", {}).get("discriminator", "").strip("'"), finding.get("input")
+    if not tag or not isinstance(came, Mapping):
+        return finding
+    # Without the tag the whole object is shown, as for any other field that is missing.
+    return {**finding, "loc": (*finding["loc"], tag), "input": came.get(tag, came)}
 
 
 def expected(finding: Mapping[str, Any]) -> str:
