@@ -19,10 +19,12 @@ from command_line import Run, culet, invoke
 from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES
 from engine.peer import TETRAHEDRON, connected, running_engine
-from gateway.running import announced
+from gateway.running import announced, eventually
 
 COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record"]
 TINY = ("--width", "48", "--height", "27")
+ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
+"""A scene of whose sky nothing is hidden."""
 
 
 def refused(run: Run) -> str:
@@ -68,7 +70,7 @@ def test_a_rendered_picture_can_be_opened(tmp_path: Path, ending: str, format_: 
 
 def test_a_linear_picture_holds_radiance_not_pixels(tmp_path: Path) -> None:
     out = tmp_path / "gem.npy"
-    scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "constant", "radiance": [0.25, 2, 8]}}
+    scene = ALL_SKY | {"environment": {"kind": "constant", "radiance": [0.25, 2, 8]}}
     run = invoke("render", "-", "-o", out, *TINY, stdin=json.dumps(scene))
     assert run.returncode == 0, run.stderr
     assert np.load(out).reshape(-1, 3) == pytest.approx(np.tile([0.25, 2, 8], (48 * 27, 1)))
@@ -103,7 +105,7 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
         (["-"], '{"colour": "red"}', "standard input: colour: unknown field"),
         (["-"], '{"stonez": []}', "did you mean `stones`?"),
         (["-"], '{"stones": [{"cut": {"star_percent": 1}}]}', "standard input: "),
-        (["--preset", "ruby"], "", "classic"),
+        (["--preset", "opal"], "", "classic"),
         (["--mesh", "nowhere.obj"], "", "nowhere.obj: cannot be read"),
         (["--mesh", "/dev/null"], "", "/dev/null: "),
         (["--sky", "nowhere.exr"], "", "nowhere.exr: cannot be read"),
@@ -154,7 +156,7 @@ def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_pa
 def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:
     out, sky = tmp_path / "gem.npy", tmp_path / "sky.png"
     Image.new("RGB", (16, 8), (255, 0, 255)).save(sky)
-    scene = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": "image", "image": "aset", "scale": 2}}
+    scene = ALL_SKY | {"environment": {"kind": "image", "image": "aset", "scale": 2}}
     run = invoke("render", "-", "-o", out, *TINY, "--sky", sky, stdin=json.dumps(scene))
     assert run.returncode == 0, run.stderr
     assert np.load(out).mean((0, 1)) == pytest.approx([2, 0, 2], abs=1e-6)  # measured 0; the scale is the scene's
@@ -247,21 +249,25 @@ def test_a_folder_without_a_page_is_refused_at_once(tmp_path: Path) -> None:
     assert f"there is no {tmp_path / 'index.html'}" in refused(invoke("serve", "--port", "0", "--web", tmp_path))
 
 
-def test_serve_runs_and_ends_with_its_engine(tmp_path: Path) -> None:
+async def test_serve_runs_and_ends_with_all_its_processes(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "culet", "serve", "--port", "0"]
     with (
         (tmp_path / "log").open("wb") as log,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as server,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as server,  # noqa: ASYNC220
     ):
         try:
             assert announced(server)
-            engines = children(server.pid)
-            assert len(engines) == 1
+
+            async def complete() -> bool:
+                return len(children(server.pid)) == 4
+
+            await eventually(complete)  # gateway and engine, and another one of each that stands by
+            started = children(server.pid)
             server.send_signal(signal.SIGTERM)
             assert server.wait(15) == 0
         finally:
             server.kill()
-    assert not any(alive(engine) for engine in engines)
+    assert [child for child in started if alive(child)] == []
 
 
 def children(pid: int) -> list[int]:

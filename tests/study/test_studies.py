@@ -15,6 +15,7 @@ from culet.geometry.load import stone_of
 from culet.rendering.device import Device
 from culet.rendering.panoramas import Panorama, light_box
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from culet.study import race, studies
 from culet.study.frame import Frame, Studied
 from culet.study.journal import Journal
@@ -131,7 +132,7 @@ def test_limits_of_the_machine_are_no_less_than_what_the_renderer_takes(finished
 def test_the_folder_of_another_scene_is_refused(finished: Report, folder: Path) -> None:
     assert finished.points
     with pytest.raises(InputError, match="scene"):
-        study(folder / "report", folder / "cache", Told(), Scene(lights=()))
+        study(folder / "report", folder / "cache", Told(), Scene(head=None))
 
 
 def test_the_folder_of_another_sky_is_refused(finished: Report, folder: Path) -> None:
@@ -141,7 +142,7 @@ def test_the_folder_of_another_sky_is_refused(finished: Report, folder: Path) ->
 
 
 def test_a_sky_from_a_file_is_what_is_rendered(device: Device) -> None:
-    scene = Scene.read({"environment": {"kind": "image", "image": "file"}, "floor": {"kind": "none"}})
+    scene = legacy({"environment": {"kind": "image", "image": "file"}, "floor": {"kind": "none"}})
     stone = stone_of(scene.stones[0], {})
     grey, white = (np.full((4, 8, 3), level, np.float32) for level in (0.5, 1.0))
     means = []
