@@ -19,7 +19,8 @@ SPAN_NANOMETRES = (380.0, 780.0)
 
 MATCHED_PATH_MM = 5.0
 """Path after which three RGB coefficients leave the colour that the spectrum leaves: a few crossings of a stone of one
-carat. On shorter paths they are a little too weak or strong, on longer ones too saturated: it is the cheap mode."""
+carat. On shorter paths they are a little too weak or strong, on longer ones too saturated: it is the cheap mode. Linear
+sRGB of 2 mm is off by 0.12 for ruby, by less than 0.05 for sapphire and emerald; that of 10 mm by less than 0.08."""
 
 LEAST_TRANSMITTANCE = 1e-3
 """What a channel keeps after that path, at least: a colour outside the gamut would need an infinite coefficient."""
