@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from culet.gateway.settings import GatewaySettings, look_for_page
-from gateway.running import Endpoints, Gateway, gateway_before
+from culet_protocol.messages import Orbit
+from gateway.running import Endpoints, Gateway, eventually, gateway_before
 
 
 async def test_with_an_engine_the_gateway_is_healthy_and_ready(gateway: Gateway) -> None:
@@ -20,6 +21,12 @@ async def test_metrics_are_prometheus_text_without_a_label_that_grows(gateway: G
     session = await gateway.session()
     async with gateway.viewer(session) as viewer:
         await viewer.frame()
+        await viewer.say(Orbit(yaw=0.3, pitch=0))  # no frame was due before the first, which counts no wait
+
+        async def waited() -> bool:
+            return (await gateway.engine_status()).get("frame_wait_seconds_count", 0) >= 1
+
+        await eventually(waited)
         answer = await gateway.http.get("/metrics")
     assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
     line = re.compile(r'(# (HELP|TYPE) \w+ .+|\w+(\{(status|code|le)="[\w.+-]+"\})? -?[0-9.e+-]+)')
