@@ -21,7 +21,9 @@ test("a finished picture is called still, one that is late is not", () => {
 
 test("a stone that falls slower than in real time is said to", () => {
   const status = { framesPerSecond: 7, roundTripMs: null, viewers: 1 };
-  expect(statusText({ ...status, frame: { ...frame, flags: Flag.MOVING | Flag.SLOW } })).toContain(" \u00b7 slow motion \u00b7 ");
+  expect(statusText({ ...status, frame: { ...frame, flags: Flag.MOVING | Flag.SLOW } })).toContain(
+    " \u00b7 slow motion \u00b7 ",
+  );
   expect(statusText({ ...status, frame: { ...frame, flags: Flag.MOVING } })).not.toContain("slow");
 });
 
