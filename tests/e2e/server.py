@@ -97,8 +97,8 @@ class Server:
             os.kill(pid, signal.SIGKILL)
 
     def cpu_seconds(self) -> float:
-        """Processor time of the server and its engine so far."""
-        return sum(_cpu_seconds(pid) for pid in (self._process.pid, *_children(self._process.pid)))
+        """Processor time so far of the server, and of the engine and the gateway that work: others begin meanwhile."""
+        return sum(_cpu_seconds(pid) for pid in (self._process.pid, self.engine_pid(), self.gateway_pid()))
 
     def _announced(self) -> str:
         """The URL that it prints once it is ready."""

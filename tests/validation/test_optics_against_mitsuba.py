@@ -16,6 +16,7 @@ from culet.geometry.stone import Stone
 from culet.rendering.panoramas import directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from culet.scene.legacy import legacy
 from rendering.views import BARE, UPRIGHT
 from shared.stones import brilliant, ring, skew_block, step_cut
 from validation.comparison import Seen, Verdict, compare, seen
@@ -44,7 +45,7 @@ UPSAMPLED = 3e-4
 
 
 def scene_of(view: dict[str, Any], **optics: object) -> Scene:
-    return Scene.read(
+    return legacy(
         {
             **BARE,
             "stones": [{**UPRIGHT, "material": {"ior": INDICES}}],
