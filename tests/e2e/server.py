@@ -100,6 +100,13 @@ class Server:
         """Processor time so far of the server, and of the engine and the gateway that work: others begin meanwhile."""
         return sum(_cpu_seconds(pid) for pid in (self._process.pid, self.engine_pid(), self.gateway_pid()))
 
+    def until_compiled(self) -> None:
+        """Wait until no process compiles for the engine: its time would count as the engine's."""
+        threads = Path(f"/proc/{self.engine_pid()}/task")
+        for _ in self._looks():
+            if not any(thread.read_text() for thread in threads.glob("*/children")):
+                return
+
     def _announced(self) -> str:
         """The URL that it prints once it is ready."""
         assert self._process.stdout is not None

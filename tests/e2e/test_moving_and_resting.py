@@ -52,6 +52,7 @@ def test_the_status_line_tells_rate_cost_and_latency(bouncing: View) -> None:
 def test_a_finished_picture_costs_a_small_part_of_a_moving_one(bouncing: View, server: Server) -> None:
     view = bouncing
     spans = 2.0
+    server.until_compiled()
     began = server.cpu_seconds()
     server.live_for(spans)
     moving = server.cpu_seconds() - began
@@ -59,6 +60,7 @@ def test_a_finished_picture_costs_a_small_part_of_a_moving_one(bouncing: View, s
     view.page.keyboard.press("p")
     view.until("() => !culet.state.falling")
     view.at_rest()
+    server.until_compiled()
     before = server.metrics()
     began = server.cpu_seconds()
     server.live_for(spans)

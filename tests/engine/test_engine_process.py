@@ -6,6 +6,9 @@ import asyncio
 import io
 import itertools
 import math
+import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -377,3 +380,39 @@ async def test_sigterm_ends_the_engine_in_order_while_it_renders(tmp_path: Path)
             await watcher.next()
             process.process.terminate()
             assert await asyncio.to_thread(process.process.wait, 5) == 0
+
+
+COMPILING = """
+import sys, threading
+import pyopencl as cl
+from culet.engine.serve import run
+from culet.rendering.device import open_device
+
+device = open_device()
+
+def compile_for_ever():
+    number = 0
+    while True:
+        number += 1
+        cl.Program(device.context, "__kernel void k(__global int *a) { a[0] = %d; }" % number).build()
+
+threading.Thread(target=compile_for_ever, daemon=True).start()
+run(sys.argv[1], [sys.argv[2]])
+"""
+
+
+def test_sigterm_ends_the_engine_in_order_while_it_compiles(tmp_path: Path) -> None:
+    control, frames = tmp_path / "control", tmp_path / "frames"
+    command = [sys.executable, "-c", COMPILING, f"ipc://{control}", f"ipc://{frames}"]
+    compiler = {"PYOPENCL_NO_CACHE": "1", "POCL_CACHE_DIR": str(tmp_path)}
+    engine = subprocess.Popen(command, env={**os.environ, **compiler})
+    try:
+        deadline = time.monotonic() + PATIENCE
+        while not frames.exists():
+            assert time.monotonic() < deadline, "the engine did not begin"
+            time.sleep(0.02)  # between two looks at another process
+        engine.terminate()
+        assert engine.wait(PATIENCE) == 0
+    finally:
+        engine.kill()
+        engine.wait()

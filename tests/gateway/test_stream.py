@@ -171,7 +171,7 @@ async def test_viewers_are_told_when_the_stone_has_fallen_asleep(gateway: Gatewa
     ("message", "code", "field"),
     [
         ("not json", "malformed", None),
-        ('{"type": "fly"}', "malformed", None),
+        ('{"type": "fly"}', "malformed", "type"),
         ('{"type": "orbit", "yaw": "far", "pitch": 0}', "malformed", "orbit.yaw"),
         ('{"type": "orbit", "yaw": NaN, "pitch": 0}', "malformed", "orbit.yaw"),
         ('{"type": "balance", "exactness": 1.5, "pinned": false}', "malformed", "balance.exactness"),

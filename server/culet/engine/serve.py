@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
@@ -34,13 +36,27 @@ RETRY_SECONDS = 10.0
 
 
 def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, stand_by: bool = False) -> None:
-    """Serve until SIGTERM or SIGINT: control at one endpoint, frames at each of some.
+    """Serve until SIGTERM or SIGINT: control at one endpoint, frames at each of some. The process may end with it.
 
     With `stand_by` it gets everything ready but its sockets, and then waits for a line on the standard input.
     DeviceError without a working device, InputError for a bad endpoint.
     """
     start = asyncio.Event()
     asyncio.run(_run(control, frames, limits or Limits(), start, stand_by=stand_by))
+    _end_beside_compilers()
+
+
+def _end_beside_compilers() -> None:
+    """End the process here if a thread still compiles, or whatever else nobody waits for.
+
+    Python ends such a thread, when it comes back to Python, by unwinding its stack. In a driver's C++ that is
+    `std::terminate`, and the process would abort.
+    """
+    if any(thread.daemon for thread in threading.enumerate()):
+        logging.shutdown()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
 
 
 async def _run(control: str, frames: Sequence[str], limits: Limits, start: asyncio.Event, *, stand_by: bool) -> None:

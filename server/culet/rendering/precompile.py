@@ -6,6 +6,7 @@ A driver compiles under a lock that launches need too: in the same process, fram
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from dataclasses import asdict
@@ -13,6 +14,7 @@ from dataclasses import asdict
 import numpy as np
 
 from culet.errors import DeviceError
+from culet.parent import ending_with
 from culet.rendering.device import open_device
 from culet.rendering.features import Features
 from culet.rendering.program import Programs, Variant
@@ -30,7 +32,11 @@ def precompile(features: Features, variant: Variant, *, urgent: bool = False) ->
 
     If it fails, the caller's own build will say why.
     """
-    order = {"features": asdict(features), "variant": {**asdict(variant), "real": np.dtype(variant.real).name}}
+    order = {
+        "features": asdict(features),
+        "variant": {**asdict(variant), "real": np.dtype(variant.real).name},
+        "parent": os.getpid(),
+    }
     command = ["nice", "-n", str(0 if urgent else NICENESS), *COMMAND, json.dumps(order)]
     try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
@@ -42,6 +48,7 @@ def precompile(features: Features, variant: Variant, *, urgent: bool = False) ->
 def main() -> None:
     """Entry of that process."""
     order = json.loads(sys.argv[1])
+    ending_with(order["parent"])()  # nobody needs the program any more
     variant = Variant(**{**order["variant"], "real": np.dtype(order["variant"]["real"]).type})
     Programs(open_device(), own_process=True).exact(Features(**order["features"]), variant)
 

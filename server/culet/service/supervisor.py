@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import ctypes
 import itertools
 import logging
 import os
-import signal
 import socket
-import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from culet.errors import EngineUnavailableError
+from culet.parent import ending_with
 from culet.service.notify import ADDRESS, PATIENCE, Notice
 
 log = logging.getLogger(__name__)
@@ -35,8 +33,6 @@ STOP_SECONDS = 5.0
 """Between SIGTERM and SIGKILL."""
 SPARE_PAUSE_SECONDS = 3.0
 """From when a process is ready to the start of its spare, so that its first work comes first."""
-PR_SET_PDEATHSIG = 1
-"""linux/prctl.h: the signal a process gets when its parent dies."""
 
 
 @dataclass(frozen=True)
@@ -201,7 +197,7 @@ class _Process:
             env=os.environ | {ADDRESS: str(self._address)},
             pass_fds=part.inherited,
             start_new_session=True,
-            preexec_fn=_die_with_parent(),
+            preexec_fn=ending_with(os.getpid()),
         )
 
     def let_go(self) -> None:
@@ -251,20 +247,3 @@ class _Process:
             asyncio.get_running_loop().remove_reader(self._notices)
             self._notices.close()
             self._address.unlink(missing_ok=True)
-
-
-def _die_with_parent() -> Callable[[], None] | None:
-    """What the child does between fork and exec so that it does not outlive a killed parent (Linux only).
-
-    The library is loaded before the fork: after it, only this one call may be made safely.
-    """
-    if sys.platform != "linux":
-        return None
-    prctl, parent = ctypes.CDLL(None, use_errno=True).prctl, os.getpid()
-
-    def ask_the_kernel() -> None:
-        prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent:  # it died before the call: no signal would come
-            os._exit(1)
-
-    return ask_the_kernel
