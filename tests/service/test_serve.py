@@ -101,6 +101,17 @@ def ignores(pid: int, number: signal.Signals) -> bool:
     return bool(int(mask, 16) >> (number - 1) & 1)
 
 
+def cpu_seconds(pid: int) -> float:
+    """So far; proc(5): user and system time are fields 14 and 15."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+
+
+async def compiles_nothing(pid: int) -> bool:
+    """Whether no thread of the process has a child: each compiler is one."""
+    return not any(thread.read_text() for thread in Path(f"/proc/{pid}/task").glob("*/children"))  # noqa: ASYNC240 - procfs does not block
+
+
 async def ended(pid: int) -> None:
     async def gone() -> bool:
         return not alive(pid)
@@ -203,6 +214,20 @@ async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches_an
         assert (refused.status_code, refused.json()["title"]) == (503, "engine unavailable")
         assert "retry-after" in refused.headers
     assert not alive(engine)
+
+
+async def test_an_engine_that_nobody_asks_for_anything_sleeps(served: Served) -> None:
+    engine = served.engine()
+    assert engine
+
+    async def a_second_later() -> bool:
+        return time.monotonic() > began + 1
+
+    await eventually(lambda: compiles_nothing(engine))
+    began, before = time.monotonic(), cpu_seconds(engine)
+    await eventually(a_second_later)
+    used = (cpu_seconds(engine) - before) / (time.monotonic() - began)
+    assert used < 0.2, "of a core"
 
 
 async def test_frames_are_published_where_native_viewers_want_them_and_to_the_page(tmp_path: Path) -> None:

@@ -60,13 +60,19 @@ def _end_beside_compilers() -> None:
 
 
 async def _run(control: str, frames: Sequence[str], limits: Limits, start: asyncio.Event, *, stand_by: bool) -> None:
+    loop = asyncio.get_running_loop()
+
+    def begin() -> None:
+        loop.remove_reader(sys.stdin)  # the line, and the end of a closed input, would wake the loop for ever
+        start.set()
+
     if stand_by:
-        asyncio.get_running_loop().add_reader(sys.stdin, start.set)
+        loop.add_reader(sys.stdin, begin)
     else:
         start.set()
     await serve(control, frames, limits, open_renderer, encode_still, start)
     if stand_by:
-        asyncio.get_running_loop().remove_reader(sys.stdin)
+        loop.remove_reader(sys.stdin)
 
 
 def open_renderer() -> Renderer:
