@@ -10,8 +10,8 @@ import pytest
 NOT_LOADED = {
     "culet.gateway.serve": ("pyopencl", "culet.rendering", "culet.engine"),
     "culet.service.serve": ("pyopencl", "culet.rendering", "culet.engine", "fastapi", "uvicorn"),
-    "culet.engine.serve": ("fastapi", "uvicorn"),
-    "culet.engine.upload_reader": ("pyopencl",),
+    "culet.engine.process.serve": ("fastapi", "uvicorn"),
+    "culet.engine.library.upload_reader": ("pyopencl",),
     "culet_client.view": ("culet", "pyopencl", "numpy", "fastapi"),
     "culet_client.stream": ("culet", "pyopencl", "numpy", "fastapi"),
 }

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from command_line import culet
-from culet.engine.limits import Limits
+from culet.engine.process.limits import Limits
 from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
 from culet.settings import Settings, option, variable

@@ -17,7 +17,7 @@ from culet.command.settings import options_of
 from culet.command.subject import read_subject
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.endpoints import check_trusted
-from culet.engine.limits import Limits
+from culet.engine.process.limits import Limits
 from culet.errors import InputError, SceneError
 from culet.gateway.settings import GatewaySettings
 from culet.logs import configure
@@ -248,7 +248,7 @@ def engine(
     given: dict[str, Any],
 ) -> None:
     """Run the render process alone: sessions, simulation and frames over ZeroMQ."""
-    from culet.engine.serve import run
+    from culet.engine.process.serve import run
 
     with errors_in_one_line():
         limits = Limits.read(given)

@@ -49,7 +49,7 @@ OCTAHEDRON = b"""OFF
 """
 CONFINEMENT = """
 import json, pathlib, os
-from culet.engine.machine import memory_of_machine
+from culet.engine.process.machine import memory_of_machine
 status = dict(line.split(":", 1) for line in pathlib.Path("/proc/self/status").read_text().splitlines())
 mounts = [line.split() for line in pathlib.Path("/proc/self/mounts").read_text().splitlines()]
 root = next(options for _, place, _, options, *_ in mounts if place == "/")

@@ -13,8 +13,8 @@ from gateway.running import TETRAHEDRON, Endpoints, Gateway, engine_process, gat
 
 FORGETFUL = """
 import sys
-from culet.engine.limits import Limits
-from culet.engine.serve import run
+from culet.engine.process.limits import Limits
+from culet.engine.process.serve import run
 run(sys.argv[1], [sys.argv[2]], Limits(max_uploads=1))
 """
 SIZE = {"width": 16, "height": 9}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from culet.engine.session import Session
+from culet.engine.session.session import Session
 from culet.geometry.stone import Stone
 from culet.scene import Scene
 from culet.simulation.drop import DROP_HEIGHT, dropped

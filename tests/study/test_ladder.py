@@ -6,8 +6,8 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from culet.engine.governor import Setting
-from culet.engine.setting_error import SettingErrors
+from culet.engine.governing.governor import Setting
+from culet.engine.governing.measured_errors import SettingErrors
 from culet.study.ladder import BOUNCES, CUTOFFS, SCALES, Measured, errors_of, ladder_of
 
 

@@ -22,7 +22,8 @@ from culet.service.socket_folder import socket_folder
 from culet.service.supervisor import Part, Supervisor
 
 ENGINE_SILENCE_SECONDS = 22.0
-"""An engine whose loop or render thread stands ends itself before (engine/watchdog.py); this is for one that cannot."""
+"""An engine whose loop or render thread stands ends itself before (`culet.engine.process.watchdog`). This is for one
+that cannot."""
 GATEWAY_SILENCE_SECONDS = 60.0
 """The gateway's loop may be held up for up to 30 s, and goes on."""
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)

@@ -1,6 +1,6 @@
 """Measures the governor's ladder: which scale, cut-off and bounces give the least error for each time, moving.
 
-    python -m culet.study.ladder > server/culet/engine/ladder.json
+    python -m culet.study.ladder > server/culet/engine/governing/ladder.json
 
 Each setting draws the legacy default scene at one sample a pixel, as a moving frame is. They take turns, and what
 counts is the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them.
@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from culet.engine.governor import Setting
+from culet.engine.governing.governor import Setting
 from culet.geometry.load import stone_of
 from culet.geometry.stone import Stone
 from culet.optics.tone import tone_map
@@ -72,7 +72,7 @@ def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
 
 
 def errors_of(measured: list[Measured]) -> dict[str, Any]:
-    """As `culet.engine.setting_error` reads them: axes ascending, errors by scale, then cut-off, then bounces."""
+    """As `measured_errors` reads them: axes ascending, errors by scale, then cut-off, then bounces."""
     shape = len(SCALES), len(CUTOFFS), len(BOUNCES)
     shown = np.array([round(each.setting.error, 4) for each in measured]).reshape(shape)
     radiance = np.array([round(each.radiance_error, 4) for each in measured]).reshape(shape)

@@ -1,0 +1,1 @@
+"""How exact a moving picture can be in the time that it has."""

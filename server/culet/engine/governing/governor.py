@@ -1,0 +1,256 @@
+"""The governor: how good a frame may be while things move, so that the frame rate asked for is held.
+
+It chooses from a ladder of settings: the best, and below it the front of least error for each cost, which
+`python -m culet.study.ladder` has measured. Down at once when a frame has taken too long, up only after a run of frames
+that would have had time to spare, and then as far as there is time. The session's balance says which frame rate is
+asked for, or pins a setting. At rest nothing is chosen: the picture is refined as the scene has it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+
+from culet.engine.governing.measured_errors import SettingErrors, read_setting_errors
+from culet.scene import Scene
+from culet_protocol.messages import EXACTEST_RATE, FASTEST_RATE, Balance
+
+SHARE = 0.8
+"""Of a frame's time that the render thread may work for it; the rest is for encoding and the rest of the machine."""
+LEAST_SHARE = 0.3
+"""Of a frame's time that rendering gets, however long simulation and tone mapping take."""
+SPARE = 0.75
+"""A better setting must be expected to take less than this part of the time before it is tried."""
+PATIENCE = 12
+"""Frames with time to spare before a better setting is tried: 0.4 s at 30 frames/s, or quality would flicker."""
+TRIAL = 60
+"""Frames for which a better setting must hold: if it does not, twice as many frames pass before the next try."""
+MOST_PATIENCE = 4 * PATIENCE
+"""Until one has held, and the failures are forgotten."""
+MEMORY = 0.2
+"""Weight of the latest frame in the expected cost,"""
+LATE = 1.5
+"""but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
+LEAST_PIXELS = 640 * 360
+"""Of a frame, below which none is scaled unless the viewer asked for less, or many share the render thread: then down
+to this times the share, so that all frames together have as many pixels."""
+CROWDED_RATE = 8.0
+"""Frames per second for which a frame is made smaller than that: fewer look like a row of pictures. Frames of the
+cheapest setting at the least size may come oftener, if there is time, but are not made smaller for it."""
+SHRINK = 2**-0.25
+"""Of width and height, each time: a step that is hardly seen."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One rung of the ladder."""
+
+    scale: float
+    """Of width and height."""
+    cutoff: float
+    """At least, whatever the scene says."""
+    max_bounces: int
+    """At most, likewise."""
+    cost: float
+    """Time over that of the first rung, measured."""
+    error: float
+    """Root mean square error of what is shown, 0 to 1, at one sample a pixel; measured on the default scene."""
+
+    @property
+    def pixel_cost(self) -> float:
+        """Time of one pixel, over that of the first rung."""
+        return self.cost / self.scale**2
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How a moving frame is to be drawn."""
+
+    scene: Scene
+    """With the optics chosen."""
+    size: tuple[int, int]
+    """Pixels."""
+    wanted: tuple[int, int]
+    """Pixels that the viewer asked for."""
+    setting: Setting | None
+    """None if a balance is pinned to all that the scene asks for."""
+    error: float
+    """Root mean square error of the radiance, as measured for this scale, cut-off and bounces on the default scene; NaN
+    if such ones were not, as those of a whole scene."""
+
+
+def read_ladder() -> tuple[Setting, ...]:
+    """As measured, the best first, which is the dearest.
+
+    Its errors are not the least: a single sample of every pixel is sharper than a smaller picture, and so has more of
+    the error that more samples would take away. All others have more error the cheaper they are.
+    """
+    rungs = json.loads(files(__package__).joinpath("ladder.json").read_text(encoding="utf-8"))["rungs"]
+    return tuple(Setting(**rung) for rung in rungs)
+
+
+def asked_rate(balance: Balance, most: float) -> float:
+    """Frames per second to hold for viewers that take `most`; as many as they take if the quality is pinned."""
+    asked: float = FASTEST_RATE * (EXACTEST_RATE / FASTEST_RATE) ** balance.exactness
+    return most if balance.pinned else min(most, asked)
+
+
+ERRORS = read_setting_errors()
+
+
+class Governor:
+    """Of one session's moving frames. Times are in seconds."""
+
+    def __init__(self, ladder: tuple[Setting, ...], errors: SettingErrors = ERRORS) -> None:
+        self._ladder = ladder
+        self._errors = errors
+        self._rung = 0
+        self._shrunk = 0
+        """How many times frames are made smaller than the cheapest setting has them."""
+        self._easier = 0
+        """Frames that one step larger would have had time to spare."""
+        self._unit: float | None = None
+        """Expected time of the first rung for one pixel."""
+        self._overhead = 0.0
+        """Expected time of the render thread for a frame besides rendering it."""
+        self._spared = 0
+        self._patience = PATIENCE
+        self._held: int | None = None
+        """Frames for which a better setting has held that is on trial; None if none is."""
+
+    @property
+    def setting(self) -> Setting:
+        """For the next moving frame, unless one is pinned."""
+        return self._ladder[self._rung]
+
+    def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance) -> Plan:
+        """For the next moving frame: three indices, without polarisation; cut-off, bounces and size by the setting."""
+        setting = self._pinned(wanted, balance) if balance.pinned else self.setting
+        if setting is None:
+            return Plan(scene, wanted, wanted, None, math.nan)
+        changes = {
+            "bands": 3,
+            "polarised": False,
+            "cutoff": max(scene.optics.cutoff, setting.cutoff),
+            "max_bounces": min(scene.optics.max_bounces, setting.max_bounces),
+        }
+        simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
+        scale = _scale(setting, wanted) * (1 if balance.pinned else SHRINK**self._shrunk)
+        size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))
+        error = self._errors.radiance(scale, simplified.optics.cutoff, simplified.optics.max_bounces)
+        return Plan(simplified, size, wanted, setting, error)
+
+    def has_cheaper(self, plan: Plan) -> bool:
+        """Whether frames of that size can be cheaper than planned."""
+        cheapest = self._ladder[worthwhile_rungs(self._ladder, self._errors, plan.wanted)[-1]]
+        return plan.setting is not None and _cost(plan.setting, plan.wanted) > _cost(cheapest, plan.wanted)
+
+    def rendered(
+        self, plan: Plan, seconds: float, overhead: float, frames_per_second: float, share: float = 1.0
+    ) -> None:
+        """A moving frame took that long to render, and that long besides; the next ones are to come at that rate, with
+        that share of the render thread's time.
+
+        Chooses the next setting.
+        """
+        if plan.setting is None:  # other optics than the ladder's: its time says nothing of theirs
+            return
+        overhead = min(overhead, 1 / frames_per_second)  # a longer one was a stall, and says nothing of the next frame
+        unit = seconds / (plan.size[0] * plan.size[1] * plan.setting.pixel_cost)
+        late = seconds + overhead > LATE * share / frames_per_second
+        if self._unit is None or (late and unit > self._unit):
+            self._unit = unit
+        self._unit += MEMORY * (unit - self._unit)
+        self._overhead += MEMORY * (overhead - self._overhead)
+        self._choose(plan.wanted, self._budget(frames_per_second, share))
+        self._shrink(plan.wanted, self._budget(min(frames_per_second, CROWDED_RATE), share), share)
+
+    def _budget(self, frames_per_second: float, share: float) -> float:
+        """For rendering a frame."""
+        interval = share / frames_per_second
+        return max(SHARE * interval - self._overhead, LEAST_SHARE * interval)
+
+    def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
+        """Make frames of the cheapest setting so small that a crowd's rate is held, and larger when there is time."""
+        cost = self._expected(self._rung, wanted)
+        if self._rung != worthwhile_rungs(self._ladder, self._errors, wanted)[-1] or cost <= 0:
+            self._shrunk = 0
+            return
+        most = math.floor(math.log(max(share, 1e-6)) / 2 / math.log(SHRINK))
+        needed = min(most, max(0, math.ceil(math.log(budget / cost) / 2 / math.log(SHRINK))))
+        if needed > self._shrunk:
+            self._shrunk, self._easier = needed, 0
+            return
+        larger = cost * SHRINK ** (2 * (self._shrunk - 1))
+        self._easier = self._easier + 1 if self._shrunk > needed and larger < SPARE * budget else 0
+        if self._easier >= PATIENCE or self._shrunk > most:
+            self._shrunk, self._easier = self._shrunk - 1, 0
+
+    def _choose(self, wanted: tuple[int, int], budget: float) -> None:
+        cost = self._expected(self._rung, wanted)
+        best = self._best(wanted, budget)
+        if self._expected(best, wanted) < cost:
+            if self._held is not None:
+                self._patience = min(2 * self._patience, MOST_PATIENCE)
+            self._rung, self._spared, self._held = best, 0, None
+            return
+        self._hold()
+        better = self._best(wanted, SPARE * budget)
+        self._spared = self._spared + 1 if self._expected(better, wanted) > cost else 0
+        if self._spared >= self._patience:
+            self._rung, self._spared, self._held = better, 0, 0
+
+    def _hold(self) -> None:
+        """A better setting that holds for so long makes its failures forgotten."""
+        if self._held is not None:
+            self._held += 1
+            if self._held == TRIAL:
+                self._patience, self._held = PATIENCE, None
+
+    def _pinned(self, wanted: tuple[int, int], balance: Balance) -> Setting | None:
+        """The last rung for speed, up to more than the first one for exactness."""
+        worthwhile = worthwhile_rungs(self._ladder, self._errors, wanted)
+        place = round((1 - balance.exactness) * len(worthwhile))
+        return self._ladder[worthwhile[place - 1]] if place else None
+
+    def _best(self, wanted: tuple[int, int], budget: float) -> int:
+        """The best rung that is expected to take no longer, or the cheapest for that size."""
+        worthwhile = worthwhile_rungs(self._ladder, self._errors, wanted)
+        return next((rung for rung in worthwhile if self._expected(rung, wanted) <= budget), worthwhile[-1])
+
+    def _expected(self, rung: int, wanted: tuple[int, int]) -> float:
+        return (self._unit or 0) * wanted[0] * wanted[1] * _cost(self._ladder[rung], wanted)
+
+
+@lru_cache(maxsize=64)
+def worthwhile_rungs(ladder: tuple[Setting, ...], errors: SettingErrors, wanted: tuple[int, int]) -> tuple[int, ...]:
+    """Of the ladder, for a viewer of that size, the dearest first.
+
+    LEAST_PIXELS makes some rungs alike, of which the first was measured at the size nearest to what is drawn, and
+    others no better than cheaper ones. The ladder's first rung is worth its cost though its error is not less.
+    """
+    drawn: dict[tuple[float, float, int], int] = {}
+    for rung, setting in enumerate(ladder):
+        drawn.setdefault((_scale(setting, wanted), setting.cutoff, setting.max_bounces), rung)
+    chosen: list[int] = []
+    least = math.inf
+    for how, rung in sorted(drawn.items(), key=lambda item: _cost(ladder[item[1]], wanted)):
+        error = errors.shown(*how)
+        if error < least or rung == 0:
+            chosen.insert(0, rung)
+            least = min(least, error)
+    return tuple(chosen)
+
+
+def _cost(setting: Setting, wanted: tuple[int, int]) -> float:
+    """Expected time over that of all the pixels that the viewer asked for in the first rung."""
+    return _scale(setting, wanted) ** 2 * setting.pixel_cost
+
+
+def _scale(setting: Setting, wanted: tuple[int, int]) -> float:
+    """Of width and height, within the limit."""
+    least: float = (LEAST_PIXELS / (wanted[0] * wanted[1])) ** 0.5
+    return max(setting.scale, min(1.0, least))

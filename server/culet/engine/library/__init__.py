@@ -1,0 +1,1 @@
+"""Files that were uploaded: read by processes of their own, kept by their ids."""

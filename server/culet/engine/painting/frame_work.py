@@ -1,0 +1,99 @@
+"""One frame in the making: what it is to show, and the pieces of work that make it, none of them long."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from time import perf_counter
+
+from culet.engine.governing.governor import Plan
+from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
+from culet.engine.painting.shares import Account
+from culet.engine.session.session import Shown
+
+
+class Kind(Enum):
+    """What a frame is made of."""
+
+    PLANNED = auto()
+    """The first sample, as the governor or a pinned balance has it."""
+    FULL = auto()
+    """The first sample, as the scene has it."""
+    REFINED = auto()
+    """As many samples more as there are."""
+
+
+class Unprepared(Exception):  # noqa: N818 - nothing went wrong
+    """A picture would have to wait for a compiler, or for a tree of triangles."""
+
+
+@dataclass(eq=False)
+class FrameWork:
+    """Belongs to the painter; its pieces run in the render thread."""
+
+    kind: Kind
+    shown: Shown
+    wanted: tuple[int, int]
+    """Pixels that were asked for when it was begun."""
+    account: Account
+    begun_at: float
+    """s, steady clock."""
+    plan: Plan | None = None
+    picture: Picture | None = None
+    """Made by the first piece, unless it is refined."""
+    samples: int = 1
+    """That are added."""
+    piece_seconds: float = PIECE_SECONDS
+    """That a launch is meant to take."""
+    final: bool = False
+    """Nothing better will come."""
+    slow: bool = False
+    """The stone moves slower than in real time."""
+    simulate_seconds: float = 0.0
+    """Before it was begun."""
+    render_seconds: float = 0.0
+    """Of the samples that the picture has already."""
+    spent: float = 0.0
+    """s that the painter was at it so far, from the simulation on."""
+    part: float = 0.0
+    """Of the samples that is done."""
+    frame: LiveFrame | None = None
+    """When all is done."""
+    pieces: Iterator[object] = field(init=False)
+
+    def start(self, renderer: Renderer) -> None:
+        """To be called once, before any piece."""
+        self.pieces = self._made(renderer)
+
+    @property
+    def expected_seconds(self) -> float:
+        """That all of it would take, as far as the part that is done tells."""
+        return self.spent / self.part if self.part > 0 else self.spent
+
+    def _made(self, renderer: Renderer) -> Iterator[object]:
+        scene = self.shown.scene if self.plan is None else self.plan.scene
+        width, height = self.wanted if self.plan is None else self.plan.size
+        if self.picture is None:
+            if not renderer.is_ready(scene, self.shown.stone):
+                raise Unprepared
+            self.picture = renderer.picture(scene, self.shown.stone, width, height, panorama=self.shown.panorama)
+        picture = self.picture
+        for part in picture.refine_in_pieces(self.samples, self.piece_seconds):
+            self.part = part
+            yield part
+        self.render_seconds += picture.seconds
+        started = perf_counter()
+        yield from picture.develop_in_pieces()
+        develop_seconds = perf_counter() - started
+        spent = self.simulate_seconds, self.render_seconds
+        self.frame = LiveFrame.developed(
+            picture, self.shown, self.plan, spent, develop_seconds, final=self.final, slow=self.slow
+        )
+
+
+def proceed(pieces: Iterator[object], clock: Callable[[], float]) -> bool:
+    """Run a piece, and more of them while they are short; whether there are more to come. `clock` tells seconds."""
+    started = clock()
+    return any(clock() - started > PIECE_SECONDS / 2 for _ in pieces)

@@ -1,0 +1,117 @@
+"""A live frame on its way out: developed on the render thread, packed when its payload is encoded."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.engine.governing.governor import Plan
+from culet.engine.painting.renderer import Picture
+from culet.engine.painting.whereabouts import whereabouts
+from culet.engine.session.session import Session, Shown
+from culet.scene.model import Optics
+from culet_protocol.frame import Codec, Flags, Frame
+
+
+@dataclass(frozen=True, eq=False)
+class LiveFrame:
+    """Before its payload is there. Times are in seconds."""
+
+    rgb: NDArray[np.uint8]
+    """(height, width, 3)"""
+    shown: Shown
+    optics: Optics
+    """As drawn."""
+    samples: int
+    simulate_seconds: float
+    render_seconds: float
+    """Of all samples."""
+    develop_seconds: float
+    """Of tone mapping."""
+    cut: float
+    error: float
+    """Of the radiance: estimated, or NaN."""
+    expected_error: float
+    """That of the front, or NaN if the governor had no part in it."""
+    final: bool
+    slow: bool
+    """The stone moves slower than in real time."""
+
+    @classmethod
+    def developed(
+        cls,
+        picture: Picture,
+        shown: Shown,
+        plan: Plan | None,
+        spent: tuple[float, float],
+        develop_seconds: float,
+        *,
+        final: bool,
+        slow: bool,
+    ) -> LiveFrame:
+        """Of a picture that is done and developed, and took that long to simulate and to render.
+
+        Estimating its error costs nothing for the single sample of a moving one.
+        """
+        started = time.perf_counter()
+        rgb, cut, error = picture.rgb(), picture.cut(), picture.error_estimate()
+        return cls(
+            rgb=rgb,
+            shown=shown,
+            optics=picture.scene.optics,
+            samples=picture.samples,
+            simulate_seconds=spent[0],
+            render_seconds=spent[1],
+            develop_seconds=develop_seconds + time.perf_counter() - started,
+            cut=cut,
+            error=error,
+            expected_error=math.nan if plan is None else plan.error,
+            final=final,
+            slow=slow,
+        )
+
+    def pack(self, session: Session, payload: bytes, encode_seconds: float) -> bytes:
+        """The message to send."""
+        height, width, _ = self.rgb.shape
+        frontier = math.isnan(self.error) and not math.isnan(self.expected_error)
+        return Frame(
+            session=session.key,
+            codec=Codec.JPEG,
+            flags=self._flags(frontier) | self._unseen(),
+            sequence=session.sequence,
+            width=width,
+            height=height,
+            samples=self.samples,
+            bands=self.optics.bands,
+            max_bounces=self.optics.max_bounces,
+            cutoff=self.optics.cutoff,
+            step=self.shown.step,
+            simulation_time=self.shown.simulation_time,
+            timestamp=time.time(),
+            simulate_ms=self.simulate_seconds * 1e3,
+            render_ms=self.render_seconds * 1e3,
+            encode_ms=(self.develop_seconds + encode_seconds) * 1e3,
+            cut=self.cut,
+            error=self.expected_error if frontier else self.error,
+            payload=payload,
+        ).pack()
+
+    def _unseen(self) -> Flags:
+        """Where the stone is, if it is nowhere in the picture."""
+        height, width, _ = self.rgb.shape
+        scene = self.shown.scene
+        return whereabouts(scene.camera, scene.stones[0].position, width / height) if scene.stones else Flags.NONE
+
+    def _flags(self, frontier: bool) -> Flags:
+        flags = {
+            Flags.MOVING: self.shown.moving,
+            Flags.FINAL: self.final,
+            Flags.POLARISED: self.optics.polarised,
+            Flags.FRONTIER: frontier,
+            Flags.SLOW: self.slow,
+        }
+        return Flags(sum(flag for flag, is_set in flags.items() if is_set))

@@ -1,0 +1,299 @@
+"""The live picture of one session: who wants it, how good it is, and when its next frame is due."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from typing import assert_never
+
+from culet.engine.governing.governor import Governor, asked_rate, read_ladder
+from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.renderer import Picture
+from culet.engine.painting.shares import Account
+from culet.engine.session.session import Session, Shown
+from culet.scene.model import Optics
+from culet_protocol.messages import Balance
+
+NATIVE_RATE = 30.0
+"""Frames per second for viewers that only subscribe, and cannot say what they take."""
+NATIVE_SIZE = (960, 540)
+"""Pixels, likewise."""
+
+REST_SAMPLES = 16
+"""Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
+
+SETTLE_SECONDS = 0.2
+"""A picture whose camera or scene changes again so soon after it was drawn, however long that took, is being moved: it
+is governed as a falling one is, and drawn in full once this time has passed without a change. One that takes longer
+than this in full is governed at its first change too, or nothing would be seen of the change meanwhile."""
+
+REPEAT_SECONDS = 1.0
+"""A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
+
+REST_WEIGHT = 0.25
+"""Share of the render thread's time for a picture at rest beside one that moves: it can wait, motion cannot."""
+
+STALE_SECONDS = 0.25
+"""A reduced frame that takes longer is given up for something newer, unless the one before it was."""
+FIRST_LOOK_SECONDS = 0.5
+"""Of work on a picture in full of which nothing is to be seen yet: then a reduced one is made first."""
+DEAREST_SECONDS = 2.0
+"""Of work on one frame of a pinned quality. What takes longer is governed as if it were not pinned: of a stone that
+moves something is to be seen."""
+
+DEAR_SECONDS = 0.4
+"""Of work on one frame that the governor planned. It is given up for a cheaper one, if there is one."""
+
+UNSENT_FRAMES = 2
+"""That may wait to be encoded and sent before no other is begun."""
+
+NEVER = -1e9
+"""s, of a steady clock: when what has not happened yet last happened."""
+
+LADDER = read_ladder()
+
+
+class State(Enum):
+    """What there is of the picture that was drawn last."""
+
+    BLANK = auto()
+    """Nothing, or no longer anything that could be refined."""
+    REDUCED = auto()
+    """As the governor had it: it is to be drawn in full when things have settled."""
+    FULL = auto()
+    """In full, to be refined."""
+    FINAL = auto()
+    """With all its samples."""
+    REFUSED = auto()
+    """It could not be rendered."""
+
+
+@dataclass(eq=False)
+class LivePicture:
+    """Mutable; belongs to the painter."""
+
+    session: Session
+    watched: bool = False
+    """Somebody subscribes to the session's frames. That, and not what a gateway demanded, is why frames are made: a
+    subscription ends with its subscriber, however that ends."""
+    rate: float = 0.0
+    """Frames per second that the gateway's viewers can take; 0 if it has none."""
+    size: tuple[int, int] = NATIVE_SIZE
+    state: State = State.BLANK
+    picture: Picture | None = None
+    """That can be refined."""
+    painted: Shown | None = None
+    """What the picture drawn last shows, or what was refused."""
+    painted_size: tuple[int, int] = (0, 0)
+    work: FrameWork | None = None
+    """The frame in the making."""
+    governor: Governor = field(default_factory=lambda: Governor(LADDER))
+    settles_at: float = 0.0
+    """s, steady clock: from when on a reduced picture is to be drawn in full, if nothing moves."""
+    changed_at: float = NEVER
+    """s, steady clock: when something new had last been drawn, or been given up for something newer."""
+    full_seconds: float = 0.0
+    """Of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
+    too_dear: tuple[Balance, Optics, tuple[int, int]] | None = None
+    """The pinned balance, optics and size of which a frame took too long."""
+    gave_up: bool = False
+    """The frame begun last was given up for something newer."""
+    message: bytes | None = None
+    """The frame sent last."""
+    told_asleep: bool = False
+    """The gateway was told unasked that the stone sleeps."""
+    unwatched_at: float = NEVER
+    """s, steady clock: when nobody watched last."""
+    sent_at: float = 0.0
+    """s, steady clock."""
+    begun_at: float = NEVER
+    """s, steady clock: when the last frame was begun, or should have been if it was a little late."""
+    publishing: asyncio.Task[None] | None = None
+    """The frame that was finished last, on its way out."""
+    unsent: int = 0
+    """Frames on their way out."""
+    beginning: asyncio.Task[None] | None = None
+    """The next frame's simulation."""
+    preparing: asyncio.Task[None] | None = None
+    """What the next picture needs of programs and trees."""
+    render_seconds: float = 0.0
+    """Of all samples of the picture."""
+    frames: Account = field(init=False)
+    """Of frames that somebody waits for."""
+    rest: Account = field(init=False)
+    """Of what makes a picture at rest better."""
+
+    def __post_init__(self) -> None:
+        self.frames, self.rest = Account(self), Account(self, REST_WEIGHT)
+
+    @property
+    def frames_per_second(self) -> float:
+        """The rate to keep to; a native viewer takes what the gateway's viewers take, if there are any."""
+        return asked_rate(self.session.balance, self.rate or NATIVE_RATE)
+
+    @property
+    def current(self) -> bool:
+        """Whether the picture, and the frame made of it, still are what is shown."""
+        drawn = self.state is not State.REFUSED and self.painted is self.session.shown
+        return drawn and self.painted_size == self.size
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the picture is right until somebody changes something."""
+        return self.current and not self.session.moving
+
+    @property
+    def settled(self) -> bool:
+        """Whether the picture is a reduced one of what no longer changes."""
+        return self.state is State.REDUCED and self.at_rest
+
+    def due_at(self) -> float | None:
+        """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
+        if not self.watched or self.work is not None or self.unsent >= UNSENT_FRAMES:
+            return None
+        if self.beginning is not None or self.preparing is not None:
+            return None
+        if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
+            return None
+        next_at = self.begun_at + 1 / self.frames_per_second
+        match self.state:
+            case State.BLANK:
+                return next_at
+            case State.REDUCED:
+                return max(self.settles_at, next_at) if self.at_rest else next_at
+            case State.FULL | State.FINAL:
+                return None if self.at_rest else next_at
+            case State.REFUSED:  # not tried again until something else is to be shown
+                return None if self.painted is self.session.shown else next_at
+            case _:
+                assert_never(self.state)
+
+    @property
+    def next_account(self) -> Account:
+        """Whose time the next piece of work is."""
+        if self.work is not None:
+            return self.work.account
+        return self.rest if self.at_rest and self.state is not State.BLANK else self.frames
+
+    @property
+    def governed(self) -> bool:
+        """Whether the governor is to choose how the frame just begun is drawn."""
+        shown = self.session.shown
+        if shown.moving or shown is self.painted:  # in the latter case only the size changed, or it is drawn in full
+            return shown.moving
+        again = self.begun_at - self.changed_at < max(SETTLE_SECONDS, 2 / self.frames_per_second)
+        return again or self.full_seconds > SETTLE_SECONDS
+
+    @property
+    def balance(self) -> Balance:
+        """The session's, but not pinned to what has proven too dear."""
+        balance = self.session.balance
+        if self.too_dear == (balance, self.session.shown.scene.optics, self.size):
+            return balance.model_copy(update={"pinned": False})
+        return balance
+
+    def begin(self, now: float) -> None:
+        """A frame is begun. One that is late by less than a frame does not make those after it late."""
+        due = self.due_at()
+        little = due is not None and 0 <= now - due < 1 / self.frames_per_second
+        self.begun_at = due if due is not None and little else now
+
+    def drew(self, work: FrameWork, now: float) -> None:
+        """A frame is done."""
+        assert work.picture is not None  # noqa: S101 - of a frame that is done
+        if work.shown is not self.painted:
+            self.changed_at = now
+        self.work, self.gave_up = None, False
+        self.painted, self.painted_size, self.render_seconds = work.shown, work.wanted, work.render_seconds
+        self.picture = work.picture
+        match work.kind:
+            case Kind.PLANNED:
+                self.state, self.settles_at = State.REDUCED, now + SETTLE_SECONDS
+            case Kind.FULL:
+                self.state, self.full_seconds = State.FULL, work.render_seconds
+            case Kind.REFINED:
+                self.state = State.FULL
+            case _:
+                assert_never(work.kind)
+        if work.final:
+            self.state, self.picture = State.FINAL, None
+
+    def outdated(self, now: float) -> bool:
+        """Whether the frame in the making is to be given up."""
+        work = self.work
+        if work is None:
+            return False
+        if not self.watched:
+            return True
+        newer = work.shown is not self.session.shown or work.wanted != self.size
+        match work.kind:
+            case Kind.PLANNED:
+                if self._too_dear(work):
+                    return True
+                return newer and now - work.begun_at > STALE_SECONDS and not self.gave_up
+            case Kind.FULL:
+                unseen = self.painted is not work.shown
+                return newer or (unseen and work.spent > FIRST_LOOK_SECONDS)
+            case Kind.REFINED:
+                return newer
+            case _:
+                assert_never(work.kind)
+
+    def give_up(self, now: float) -> None:
+        """Drop the frame in the making."""
+        work, self.work = self.work, None
+        if work is None:
+            return
+        self.changed_at = now
+        match work.kind:
+            case Kind.PLANNED:
+                assert work.plan is not None  # noqa: S101 - of planned work
+                if not self._too_dear(work):
+                    self.gave_up = True
+                elif self.balance.pinned:
+                    self.too_dear = (self.session.balance, work.shown.scene.optics, work.wanted)
+                else:
+                    self.governor.rendered(work.plan, work.expected_seconds, 0.0, self.frames_per_second)
+            case Kind.FULL:
+                self.full_seconds = max(self.full_seconds, work.spent)
+            case Kind.REFINED:  # its sums are neither those of before nor those of after
+                self.picture, self.state = None, State.BLANK
+            case _:
+                assert_never(work.kind)
+
+    def _too_dear(self, work: FrameWork) -> bool:
+        """Whether planned work takes so long that another plan is better."""
+        if self.balance.pinned:
+            return work.spent > DEAREST_SECONDS
+        return work.plan is not None and work.spent > DEAR_SECONDS and self.governor.has_cheaper(work.plan)
+
+    def wants_refinement(self) -> bool:
+        """Whether more samples would improve what is seen."""
+        return (
+            self.watched and self.at_rest and self.state is State.FULL and self.work is None and self.beginning is None
+            and self.unsent < UNSENT_FRAMES
+        )  # fmt: skip
+
+    def refuse(self, shown: Shown) -> None:
+        """It cannot be rendered."""
+        self.work, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
+
+    def try_again(self) -> None:
+        """What could not be rendered may be rendered now."""
+        if self.state is State.REFUSED:
+            self.state = State.BLANK
+
+    def abandon(self, now: float) -> None:
+        """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
+        self.work, self.picture = None, None
+        self.session.pause()
+        self.unwatched_at = now
+        if self.state in (State.REDUCED, State.FULL):
+            self.state = State.BLANK
+        if self.painted is not self.session.shown:
+            self.painted = None
+
+    def repeat_at(self) -> float | None:
+        """When the frame sent last is to be sent again."""
+        return self.sent_at + REPEAT_SECONDS if self.watched and self.current and self.message else None

@@ -1,0 +1,142 @@
+"""Stills: pictures asked for once, at full quality, rendered in pieces between live frames."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
+from culet.engine.painting.shares import Account, Shares
+from culet.errors import BusyError
+from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
+from culet.scene import Scene
+from culet_protocol.engine import Format
+
+SESSION_STILL_SAMPLES = 16
+"""Samples per pixel, at least, of a still of a session: no worse than the live picture gets at rest."""
+
+STILLS_WEIGHT = 0.5
+"""Share of the render thread's time for all stills together beside a picture that moves."""
+
+LINEAR_FORMATS = frozenset({"exr"})
+"""Of radiance, which is not tone-mapped."""
+
+SMALL_PART = 0.25
+"""Of the largest still's pixels, that smaller ones may have together beside it: they need not wait for its end."""
+
+
+@dataclass(eq=False)
+class Still:
+    """A picture that somebody waits for."""
+
+    scene: Scene
+    stone: Stone | None
+    width: int
+    height: int
+    samples: int
+    format: Format
+    panorama: Panorama | None = None
+    client: str = ""
+    """On whose behalf."""
+    asked_at: float = 0.0
+    """s, steady clock."""
+    done: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
+    picture: Picture | None = None
+    pieces: Iterator[object] | None = None
+    rendered: bool = False
+    """It is only to be encoded, which is no work of the render thread."""
+    spent: float = 0.0
+    """s of the render thread so far."""
+
+    @property
+    def pixels(self) -> int:
+        """Of the picture."""
+        return self.width * self.height
+
+    def paint(self, renderer: Renderer) -> Iterator[object]:
+        """Render, yielding between pieces of work. Runs in the render thread."""
+        picture = renderer.picture(self.scene, self.stone, self.width, self.height, panorama=self.panorama)
+        self.picture = picture
+        yield from picture.refine_in_pieces(self.samples, PIECE_SECONDS)
+        if self.format not in LINEAR_FORMATS:
+            yield from picture.develop_in_pieces()
+
+
+class StillQueue:
+    """Clients take turns, by the time that theirs have had; of one client first come, first served.
+
+    Those that are begun keep their sums, 32 bytes a pixel: together they have no more pixels than a largest one and
+    SMALL_PART of it.
+    """
+
+    def __init__(self, limit: int, most_pixels: int) -> None:
+        """At most `limit` stills, of at most `most_pixels` each. One client has at most half of the places."""
+        self.account = Account(self, STILLS_WEIGHT)
+        self.served_at = -1e9
+        """s, steady clock."""
+        self._limit = limit
+        self._own_limit = max(1, limit // 2)
+        self._most_pixels = most_pixels * (1 + SMALL_PART)
+        self._stills: list[Still] = []
+        self._accounts: dict[str, Account] = {}
+        """Of the clients whose stills wait."""
+        self._shares = Shares()
+
+    def __len__(self) -> int:
+        self._drop_abandoned()
+        return len(self._stills)
+
+    def put(self, still: Still) -> None:
+        """Queue a still, or BusyError."""
+        self._drop_abandoned()
+        own = Counter(waiting.client for waiting in self._stills)[still.client]
+        if len(self._stills) >= self._limit:
+            raise BusyError(f"{self._limit} stills are waiting already; try again later")
+        if still.client and own >= self._own_limit:
+            raise BusyError(f"{own} stills of yours are waiting already, of {self._limit} in all; try again later")
+        self._stills.append(still)
+        self._accounts.setdefault(still.client, Account(still.client))
+
+    def next(self) -> Still | None:
+        """The still that is to be worked on."""
+        self._drop_abandoned()
+        begun = sum(still.pixels for still in self._stills if still.pieces is not None)
+        firsts: dict[str, Still] = {}
+        for still in self._stills:
+            if not still.rendered:
+                firsts.setdefault(still.client, still)
+        candidates = [
+            still for still in firsts.values() if still.pieces is not None or begun + still.pixels <= self._most_pixels
+        ]
+        return min(candidates, key=lambda still: self._shares.start(self._accounts[still.client]), default=None)
+
+    def charge(self, still: Still, seconds: float, now: float) -> None:
+        """A still was worked on for so long."""
+        still.spent += seconds
+        self.served_at = now
+        if still.client in self._accounts:
+            self._shares.charge(self._accounts[still.client], seconds, now)
+
+    def remove(self, still: Still) -> None:
+        """The still is done, or failed."""
+        if still in self._stills:
+            self._stills.remove(still)
+        self._forget_clients()
+
+    def _drop_abandoned(self) -> None:
+        if any(still.done.done() for still in self._stills):
+            self._stills = [still for still in self._stills if not still.done.done()]
+            self._forget_clients()
+
+    def _forget_clients(self) -> None:
+        """Of those who wait for nothing. One who has had more than others is remembered while those still wait, or it
+        could begin anew with every still."""
+        waiting = {still.client for still in self._stills}
+        self._accounts = {
+            client: account
+            for client, account in self._accounts.items()
+            if client in waiting or (waiting and not self._shares.is_due(account))
+        }

@@ -1,0 +1,389 @@
+"""What is drawn in full and what the governor reduces, however slow the frames: on a simulated clock, no device."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from culet.engine.governing.governor import Governor, Plan, read_ladder
+from culet.engine.painting.live_picture import REST_SAMPLES, SETTLE_SECONDS, LivePicture
+from culet.engine.painting.painter import Painter
+from culet.engine.painting.still import StillQueue
+from culet.engine.session.session import Session
+from culet.engine.session.viewpoint import orbit
+from culet.geometry.load import stone_of
+from culet.geometry.stone import Stone
+from culet.rendering.panoramas import Panorama
+from culet.scene import Scene
+from culet_protocol.messages import Balance
+
+WANTED = 1280, 800
+SLOW = 0.9
+"""s of a full frame: the default scene with 16 bands and polarisation takes as long on two cores."""
+LADDER_SHARE = 0.1
+"""Of that, what the first rung of the ladder takes, which follows three indices without polarisation."""
+POINTER_RATE = 60
+"""Events per second of a drag."""
+QUICKEST = min(rung.cost for rung in read_ladder() if rung.scale >= 0.5)
+"""Cost of the quickest rung at the least size, over the first's."""
+IDLE = 0.005
+"""s that pass when there is nothing to draw."""
+
+
+@dataclass
+class Drawn:
+    """The first sample of one picture."""
+
+    begun: float
+    size: tuple[int, int]
+    full: bool
+    ended: float = math.nan
+    """NaN if it was given up."""
+
+
+class World:
+    """A clock, what happens when, and a device whose pictures take their time on that clock."""
+
+    def __init__(self, full_seconds: float, *, with_stone: bool = False, now: float = 100.0) -> None:
+        self.now = now
+        self.full_seconds = full_seconds
+        self.drawn: list[Drawn] = []
+        self.samples = 0
+        """Of the picture that got some last."""
+        scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
+        stone = stone_of(scene.stones[0], {}) if with_stone else None
+        self.session = Session("0" * 32, scene, stone)
+        self.events: list[float] = []
+        """When the camera turns a little."""
+
+    def spend(self, seconds: float) -> None:
+        """Let time go by, with what happens in it."""
+        self.now += seconds
+        while self.events and self.events[0] <= self.now:
+            self.events.pop(0)
+            scene = self.session.scene
+            self.session.change(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
+
+    def picture(
+        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+    ) -> TimedPicture:
+        del stone, panorama
+        return TimedPicture(self, scene, (width, height))
+
+    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+        return True
+
+    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+        """There is nothing to be made."""
+
+    def describe(self) -> dict[str, str]:
+        return {}
+
+    def forget(self, panorama: Panorama) -> None:
+        pass
+
+    def held(self) -> dict[str, int]:
+        return {}
+
+    def release(self) -> None:
+        pass
+
+    def turn(self, *, since: float, seconds: float) -> None:
+        """Drag, from so long after now on, for so long."""
+        self.events += [self.now + since + number / POINTER_RATE for number in range(int(seconds * POINTER_RATE))]
+
+
+class TimedPicture:
+    """Nothing to see."""
+
+    def __init__(self, world: World, scene: Scene, size: tuple[int, int]) -> None:
+        self.scene, self.samples, self.seconds = scene, 0, 0.0
+        self._world, self._size = world, size
+        self.clock = world
+
+    def refine(self, samples: int = 1) -> None:
+        for _ in self.refine_in_pieces(samples, math.inf):
+            pass
+
+    def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
+        first, full = self.samples == 0, self.scene.optics.polarised
+        part = self._size[0] * self._size[1] / (WANTED[0] * WANTED[1])
+        in_all = samples * part * self._world.full_seconds * (1 if full else LADDER_SHARE * self._rung_cost())
+        pieces = max(1, math.ceil(in_all / seconds))
+        drawn = Drawn(self.clock.now, self._size, full)
+        if first:
+            self._world.drawn.append(drawn)
+        for piece in range(pieces):
+            self.clock.spend(in_all / pieces)
+            yield (piece + 1) / pieces
+        self.samples += samples
+        self._world.samples = self.samples
+        self.seconds = in_all
+        drawn.ended = self.clock.now
+
+    def develop_in_pieces(self) -> Iterator[None]:
+        return iter(())
+
+    def rgb(self) -> NDArray[np.uint8]:
+        return np.zeros((16, 16, 3), np.uint8)
+
+    def cut(self) -> float:
+        return 0.0
+
+    def error_estimate(self) -> float:
+        return math.nan
+
+    def _rung_cost(self) -> float:
+        optics = self.scene.optics
+        return next(
+            rung.pixel_cost
+            for rung in read_ladder()
+            if rung.cutoff == optics.cutoff and rung.max_bounces == optics.max_bounces
+        )
+
+
+Play = Callable[..., asyncio.Future[None]]
+
+
+@pytest.fixture
+async def play() -> AsyncIterator[Play]:
+    """Paint a world for so long on its clock."""
+    with ThreadPoolExecutor(1) as thread:
+        painters: dict[int, Painter] = {}
+
+        async def paint(world: World, seconds: float, rate: float = 60) -> None:
+            if id(world) not in painters:
+                painter = Painter(
+                    world, thread, StillQueue(1, 2**25),
+                    send=lambda _: None, report=_fail, encode_still=lambda _, __: b"", clock=lambda: world.now,
+                )  # fmt: skip
+                painter.pictures["a"] = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
+                painters[id(world)] = painter
+            end = world.now + seconds
+            while world.now < end:
+                worked = await painters[id(world)].work()
+                if (beginning := painters[id(world)].pictures["a"].beginning) is not None:
+                    await beginning
+                if (publishing := painters[id(world)].pictures["a"].publishing) is not None:
+                    await publishing  # encoding takes no time of this world
+                if not worked:
+                    world.spend(IDLE)
+
+        yield lambda world, seconds, **how: asyncio.ensure_future(paint(world, seconds, **how))
+
+
+def _fail(_session: str, error: Exception) -> None:
+    raise error
+
+
+@pytest.mark.parametrize(
+    ("full_seconds", "least_rate"),
+    # measured 29.9, 30, 29.9 and 7.75 frames/s, the last of the 8.5 that the quickest setting allows
+    [(0.1, 29), (0.3, 29), (SLOW, 29), (10 * SLOW, 0.9 / (LADDER_SHARE * 10 * SLOW * QUICKEST))],
+)
+async def test_a_drag_is_governed_however_long_a_frame_takes(
+    play: Play, full_seconds: float, least_rate: float
+) -> None:
+    """In the last case the best governed frame takes 0.9 s, and the quickest 0.12 s, by the ladder's costs."""
+    world = World(full_seconds)
+    await play(world, 30 * full_seconds)
+    world.drawn.clear()
+    world.turn(since=0, seconds=8)
+    await play(world, 8)
+    dragged = [drawn for drawn in world.drawn if not math.isnan(drawn.ended)]
+    assert not any(drawn.full for drawn in dragged[1:])
+    assert len(dragged) / 8 > least_rate
+
+
+async def test_after_a_drag_the_picture_is_drawn_in_full(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.turn(since=0, seconds=1)
+    await play(world, 4)
+    last = world.drawn[-1]
+    assert (last.full, last.size) == (True, WANTED)
+    assert SETTLE_SECONDS <= last.begun - world.drawn[-2].ended < SETTLE_SECONDS + 0.05, "measured 0.205 s"
+
+
+async def test_an_edit_of_a_slow_scene_is_seen_at_once(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    edited = world.now
+    await play(world, 3)
+    assert [drawn.full for drawn in world.drawn] == [False, True]
+    assert world.drawn[0].ended - edited < 0.15, "measured 0.095 s"
+
+
+async def test_an_edit_of_a_quick_scene_is_drawn_in_full_alone(play: Play) -> None:
+    world = World(0.1)
+    await play(world, 3)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    await play(world, 1)
+    assert [drawn.full for drawn in world.drawn] == [True]
+
+
+async def test_a_full_frame_is_given_up_for_what_is_newer(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    world.turn(since=0.5, seconds=1 / POINTER_RATE)  # in the middle of the full frame that follows the reduced one
+    edited = world.now + 0.5
+    await play(world, 4)
+    assert [(drawn.full, math.isnan(drawn.ended)) for drawn in world.drawn] == [
+        (False, False), (True, True), (False, False), (True, False),
+    ]  # fmt: skip
+    assert world.drawn[2].ended - edited < 0.15, "measured 0.050 s: a band, and a reduced frame"
+
+
+@pytest.mark.parametrize(
+    ("full_seconds", "rate", "now"),
+    [
+        pytest.param(0.1, 60, 100.0, id="quick"),
+        pytest.param(SLOW, 60, 100.0, id="slow-scene"),
+        pytest.param(0.1, 5, 100.0, id="slow-viewer"),
+        pytest.param(0.1, 60, 2200.0, id="clock-that-rounds-down"),  # by the double that is 2200 + 0.2
+    ],
+)
+async def test_a_stone_that_fell_asleep_is_drawn_in_full_once_and_refined(
+    play: Play, full_seconds: float, rate: float, now: float
+) -> None:
+    """When time went on for a stone that slept, each of its frames showed something new, and was governed in turn."""
+    world = World(full_seconds, with_stone=True, now=now)
+    await play(world, 30 * full_seconds, rate=rate)
+    world.session.set_falling(True)
+    await play(world, 40 * full_seconds + 30, rate=rate)
+    assert world.session.asleep
+    assert [(drawn.full, drawn.size == WANTED) for drawn in world.drawn[-1:]] == [(True, True)]
+    assert not world.drawn[-2].full
+    assert world.samples == REST_SAMPLES
+    drawn = len(world.drawn)
+    await play(world, 3, rate=rate)
+    assert len(world.drawn) == drawn
+
+
+async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(
+    play: Play, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world, overheads = World(SLOW), []
+
+    class SlowLock(asyncio.Lock):
+        async def acquire(self) -> Literal[True]:
+            world.spend(1.5)
+            return await super().acquire()
+
+    def rendered(_: Governor, _plan: Plan, _seconds: float, overhead: float, _rate: float, _share: float) -> None:
+        overheads.append(overhead)
+
+    monkeypatch.setattr(Governor, "rendered", rendered)
+    await play(world, 30 * SLOW)
+    world.session.lock = SlowLock()
+    world.turn(since=0, seconds=1)
+    await play(world, 4)
+    assert overheads == pytest.approx([0] * len(overheads), abs=1e-9)
+    assert overheads
+
+
+async def test_a_pinned_quality_that_is_far_too_dear_gives_way_while_the_stone_moves(play: Play) -> None:
+    """In full each frame takes a minute and a half: what is seen instead is what the governor makes of it."""
+    world = World(100 * SLOW, with_stone=True)
+    world.session.balance = Balance(exactness=1, pinned=True)
+    world.session.set_falling(True)
+    await play(world, 6)
+    done = [drawn for drawn in world.drawn if not math.isnan(drawn.ended)]
+    assert world.drawn[0].full
+    assert math.isnan(world.drawn[0].ended), "given up"
+    assert len(done) >= 2
+    assert not any(drawn.full for drawn in done)
+
+
+async def test_of_a_picture_that_takes_long_in_full_a_reduced_one_is_seen_first(play: Play) -> None:
+    world = World(10 * SLOW)
+    await play(world, 4)
+    first = next(drawn for drawn in world.drawn if not math.isnan(drawn.ended))
+    assert not first.full
+    assert first.ended - 100 < 3, "measured 1.8 s"
+    await play(world, 30)
+    assert any(drawn.full and not math.isnan(drawn.ended) for drawn in world.drawn)
+
+
+async def test_of_dear_frames_at_most_every_other_is_given_up_for_something_newer(play: Play) -> None:
+    """A drag of a scene whose cheapest frame takes a second: it must be seen to move."""
+    world = World(SLOW / (LADDER_SHARE * QUICKEST))
+    await play(world, 60)
+    world.drawn.clear()
+    world.turn(since=0, seconds=20)
+    await play(world, 20)
+    given_up = [math.isnan(drawn.ended) for drawn in world.drawn[:-1]]
+    assert given_up.count(False) >= 8
+    assert not any(before and after for before, after in pairwise(given_up[4:]))
+
+
+WAKEFUL: dict[str, Any] = {
+    "floor": {"kind": "none"},
+    "optics": {"bands": 16},
+    "simulation": {"restitution": 1, "friction": 0, "sleeping": False},
+}
+"""A stone that never rests."""
+
+
+class Crowd(World):
+    """One more session, whose pictures cost something else."""
+
+    def __init__(self, full_seconds: float, other_seconds: float) -> None:
+        super().__init__(full_seconds, with_stone=True)
+        self.other = World(other_seconds, with_stone=True)
+
+    def picture(
+        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+    ) -> TimedPicture:
+        world = self.other if scene.floor.kind == "none" else self
+        picture = TimedPicture(world, scene, (width, height))
+        picture.clock = self
+        return picture
+
+
+async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_its_rate() -> None:
+    """One frame of the one takes a minute and a half; the other's best ones take 20 ms, 30 times a second alone."""
+    rates = []
+    for company in (False, True):
+        world = Crowd(100 * SLOW, 0.02 / LADDER_SHARE)
+        cheap = Session("1" * 32, Scene.read(WAKEFUL), world.session.stone)
+        world.session.balance = Balance(exactness=1, pinned=True)
+        with ThreadPoolExecutor(1) as thread:
+            painter = Painter(
+                world, thread, StillQueue(1, 2**25),
+                send=lambda _: None, report=_fail, encode_still=lambda _, __: b"", clock=partial(getattr, world, "now"),
+            )  # fmt: skip
+            sessions = [cheap, world.session] if company else [cheap]
+            for session in sessions:
+                session.set_falling(True)
+                painter.pictures[session.name] = LivePicture(session, watched=True, rate=30, size=WANTED)
+            while world.now < 110:
+                worked = await painter.work()
+                for live in painter.pictures.values():
+                    if live.beginning is not None:
+                        await live.beginning
+                    if live.publishing is not None:
+                        await live.publishing
+                if not worked:
+                    world.spend(IDLE)
+        assert painter.durations.render_hold.longest < 0.07, "measured 0.05 s alone, 0.026 s in company"
+        rates.append(sum(not math.isnan(drawn.ended) for drawn in world.other.drawn) / 10)
+    alone, beside = rates
+    assert alone > 25
+    assert beside >= 0.4 * alone, "measured 29.8 of 30 frames/s"
+    assert any(not math.isnan(drawn.ended) for drawn in world.drawn), "the dear one is seen too"

@@ -1,0 +1,155 @@
+"""Pictures of real sessions in given situations; what is to be done next."""
+
+import pytest
+
+from culet.engine.painting import schedule
+from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, UNSENT_FRAMES, LivePicture, State
+from culet.engine.painting.shares import Shares
+from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
+from culet.engine.session.session import Session
+from culet.geometry.mesh import stone_from_mesh
+from culet.rendering.renderer import Renderer
+from culet.scene import Light, Scene
+from engine.peer import TETRAHEDRON
+
+SCENE = Scene()
+LAMP = Light(position=(1, 2, 3), colour=(1, 1, 1))
+STONE = stone_from_mesh(TETRAHEDRON, "off")
+RENDERER = Renderer()
+
+
+def live(*, watched: bool = True, begun_at: float = 0, rate: float = 10) -> LivePicture:
+    return LivePicture(Session("0" * 32, SCENE, STONE), watched=watched, begun_at=begun_at, rate=rate)
+
+
+def painted(picture: LivePicture, *, final: bool) -> LivePicture:
+    picture.picture = None if final else RENDERER.picture(SCENE, STONE, 16, 16)
+    picture.painted, picture.painted_size = picture.session.shown, picture.size
+    picture.state = State.FINAL if final else State.FULL
+    picture.message, picture.sent_at = b"frame", 0
+    return picture
+
+
+def in_work(picture: LivePicture, kind: Kind = Kind.FULL) -> LivePicture:
+    picture.work = FrameWork(kind, picture.session.shown, picture.size, picture.frames, begun_at=0)
+    return picture
+
+
+def next_of(
+    pictures: list[LivePicture], now: float, *, stills: StillQueue | None = None, shares: Shares | None = None
+) -> LivePicture | StillQueue | None:
+    return schedule.next_work(pictures, stills or StillQueue(4, 2**25), shares or Shares(), now)
+
+
+def test_a_picture_that_nobody_watches_is_never_due() -> None:
+    assert next_of([live(watched=False)], now=1e9) is None
+    assert schedule.idle_seconds([live(watched=False)], now=1e9) is None
+
+
+def test_a_frame_is_due_one_interval_after_the_one_before() -> None:
+    picture = live(begun_at=5, rate=10)
+    assert next_of([picture], now=5.09) is None
+    assert abs((schedule.idle_seconds([picture], now=5.04) or 0) - 0.06) < 1e-9
+    assert next_of([picture], now=5.11) is picture
+
+
+def test_a_frame_that_is_a_little_late_does_not_make_the_next_one_late() -> None:
+    picture = live(begun_at=5, rate=10)
+    picture.begin(now=5.17)
+    assert picture.begun_at == pytest.approx(5.1)
+    assert picture.due_at() == pytest.approx(5.2)
+    picture.begin(now=5.31)
+    assert picture.begun_at == 5.31, "more than a frame is not made up for"
+
+
+def test_of_two_frames_due_the_one_begun_longest_ago_goes_first() -> None:
+    older, newer = live(begun_at=1), live(begun_at=2)
+    assert next_of([newer, older], now=100) is older
+
+
+def test_a_picture_at_rest_is_refined_until_it_is_final() -> None:
+    refining, final = painted(live(), final=False), painted(live(), final=True)
+    assert next_of([refining, final], now=100) is refining
+    assert refining.next_account is refining.rest
+    assert next_of([final], now=100) is None
+
+
+def test_a_reduced_picture_is_drawn_in_full_when_things_have_settled() -> None:
+    reduced = painted(live(begun_at=4), final=False)
+    reduced.state, reduced.settles_at = State.REDUCED, 5
+    assert next_of([reduced], now=4.9) is None
+    assert next_of([reduced], now=5) is reduced
+    assert reduced.next_account is reduced.rest, "something is to be seen of it already"
+
+
+def test_a_change_a_new_size_or_motion_make_it_due_again() -> None:
+    changed, resized, falling = (painted(live(), final=True) for _ in range(3))
+    changed.session.change(SCENE.model_copy(update={"lights": (LAMP,)}))
+    resized.size = (32, 32)
+    falling.session.set_falling(True)
+    for picture in (changed, resized, falling):
+        assert next_of([picture], now=100) is picture
+        assert not picture.wants_refinement()
+        assert picture.next_account is picture.frames
+
+
+def test_what_could_not_be_rendered_is_tried_again_only_when_it_changed() -> None:
+    picture = live()
+    picture.refuse(picture.session.shown)
+    assert next_of([picture], now=100) is None
+    picture.session.change(SCENE.model_copy(update={"lights": (LAMP,)}))
+    assert next_of([picture], now=100) is picture
+
+
+async def test_nobody_waits_for_a_session_whose_stone_is_being_made() -> None:
+    picture = live()
+    async with picture.session.lock:
+        assert next_of([picture], now=100) is None
+    assert next_of([picture], now=100) is picture
+
+
+def test_a_frame_in_the_making_goes_on_as_long_as_somebody_watches() -> None:
+    picture = in_work(live(begun_at=100))
+    assert next_of([picture], now=100) is picture, "though the next one is not due"
+    picture.watched = False
+    assert next_of([picture], now=100) is None
+
+
+def test_no_frame_is_begun_while_those_before_it_wait_to_be_sent() -> None:
+    picture = live()
+    picture.unsent = UNSENT_FRAMES
+    assert next_of([picture], now=100) is None
+    picture.unsent -= 1
+    assert next_of([picture], now=100) is picture
+
+
+def test_of_two_frames_the_one_of_who_has_had_less_goes_on() -> None:
+    dear, cheap, shares = in_work(live()), live(begun_at=99), Shares()
+    shares.charge(dear.frames, 0.03, 100)
+    assert next_of([dear, cheap], now=100, shares=shares) is cheap
+    shares.charge(cheap.frames, 0.05, 100)
+    assert next_of([dear, cheap], now=100, shares=shares) is dear
+
+
+async def test_refinements_and_stills_get_their_smaller_share_beside_a_moving_picture() -> None:
+    moving, refining = in_work(live()), painted(live(), final=False)
+    stills, shares, now = StillQueue(4, 2**25), Shares(), 100.0
+    still = Still(SCENE, STONE, 16, 16, 1, "tga")
+    stills.put(still)
+    had: dict[int, float] = {}
+    for _ in range(7000):
+        chosen = next_of([moving, refining], now, stills=stills, shares=shares)
+        assert chosen is not None
+        now += 0.01
+        shares.charge(chosen.account if isinstance(chosen, StillQueue) else chosen.next_account, 0.01, now)
+        had[id(chosen)] = had.get(id(chosen), 0) + 1
+    assert had[id(refining)] / had[id(moving)] == pytest.approx(REST_WEIGHT, rel=0.01)
+    assert had[id(stills)] / had[id(moving)] == pytest.approx(STILLS_WEIGHT, rel=0.01)
+
+
+def test_a_frame_at_rest_is_repeated_after_a_second_of_silence() -> None:
+    picture = painted(live(), final=True)
+    assert schedule.next_repeat([picture], now=REPEAT_SECONDS * 0.99) is None
+    assert schedule.next_repeat([picture], now=REPEAT_SECONDS) is picture
+    assert schedule.idle_seconds([picture], now=0.25) == REPEAT_SECONDS - 0.25

@@ -1,0 +1,53 @@
+"""On which side of the picture a stone is said to be, against the picture's own edges."""
+
+from __future__ import annotations
+
+import pytest
+
+from culet.engine.painting.whereabouts import whereabouts
+from culet.scene import Camera, Scene, Vector
+from culet_protocol.frame import Flags
+
+SQUARE_ANGLE = Camera(position=(0, 0, 10), target=(0, 0, 0), fov_degrees=90)
+
+
+# At a distance of 10 a picture of 90 degrees reaches up to 10, and a ball of radius 1 is out of it from 10 + sqrt 2
+# (11.414) on; one twice as wide reaches to 20 at the side, and the ball is out of it from 20 + sqrt 5 (22.236) on.
+@pytest.mark.parametrize(
+    ("position", "where"),
+    [
+        ((0, 0, 0), Flags.NONE),
+        ((0, 11.41, 0), Flags.NONE),
+        ((0, 11.42, 0), Flags.ABOVE),
+        ((0, -11.41, 0), Flags.NONE),
+        ((0, -11.42, 0), Flags.BELOW),
+        ((22.23, 0, 0), Flags.NONE),
+        ((22.24, 0, 0), Flags.RIGHT),
+        ((-22.23, 0, 0), Flags.NONE),
+        ((-22.24, 0, 0), Flags.LEFT),
+        ((30, -20, 0), Flags.RIGHT | Flags.BELOW),
+        ((0, 0, 10.9), Flags.NONE),
+        ((0, 0, 11.1), Flags.BEHIND),
+        ((50, 50, 11.1), Flags.BEHIND),
+        ((0, 0, -1e5), Flags.NONE),
+    ],
+)
+def test_a_stone_is_out_of_the_picture_once_its_ball_is(position: Vector, where: Flags) -> None:
+    assert whereabouts(SQUARE_ANGLE, position, 2) == where
+
+
+def test_it_is_seen_less_far_at_the_side_of_an_upright_picture() -> None:
+    assert whereabouts(SQUARE_ANGLE, (8, 0, 0), 0.5) == Flags.RIGHT
+    assert whereabouts(SQUARE_ANGLE, (8, 0, 0), 1) == Flags.NONE
+
+
+def test_sides_are_those_of_the_picture_and_not_of_the_world() -> None:
+    upside_down = SQUARE_ANGLE.model_copy(update={"up": (0, -1, 0)})
+    assert whereabouts(upside_down, (0, 12, 0), 1) == Flags.BELOW
+    assert whereabouts(upside_down, (12, 0, 0), 1) == Flags.LEFT
+
+
+def test_the_default_stone_is_in_the_default_picture_until_it_is_put_at_the_end_of_the_page_s_slider() -> None:
+    scene = Scene()
+    assert whereabouts(scene.camera, scene.stones[0].position, 1.6) == Flags.NONE
+    assert whereabouts(scene.camera, (0, 8, 0), 1.6) == Flags.ABOVE

@@ -1,0 +1,277 @@
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from culet.engine.library.assets import Assets
+from culet.engine.session import events
+from culet.engine.session.session import Session
+from culet.engine.session.snapshot import Snapshot
+from culet.errors import InputError, SceneError
+from culet.rendering.sky_files.picture import SkyPicture
+from culet.scene import Scene
+from culet.scene.legacy import LEGACY_DEFAULT, legacy
+from culet_protocol import messages
+from culet_protocol.messages import SessionEvent
+
+SKIES = {
+    name: SkyPicture(np.full((4, 8, 3), grey, np.float32)) for name, grey in {"sunrise": 0.5, "sunset": 0.25}.items()
+}
+ASSETS = Assets({}, SKIES)
+
+
+def session(**scene: Any) -> Session:  # noqa: ANN401
+    settings = legacy(scene)
+    sky = events.sky_for(settings, None, ASSETS)
+    return Session("0" * 32, settings, events.stone_for(settings, None, ASSETS), sky=sky)
+
+
+def after(subject: Session, *happened: SessionEvent) -> Scene:
+    for event in happened:
+        events.apply(subject, event, ASSETS)
+    return subject.scene
+
+
+def falling(subject: Session, seconds: float = 0.2) -> Session:
+    after(subject, messages.ToggleFall())
+    subject.advance(0)
+    subject.advance(seconds)
+    return subject
+
+
+def test_the_camera_orbits_moves_and_goes_home() -> None:
+    subject = session()
+    start = subject.scene.camera
+    moved = after(
+        subject, messages.Orbit(yaw=1, pitch=0.1), messages.Translate(right=1, up=0), messages.Dolly(forward=1)
+    )
+    assert moved.camera != start
+    assert after(subject, messages.ResetCamera()).camera == start
+
+
+def test_the_camera_looks_at_the_stone_where_that_is_now_and_goes_home_again() -> None:
+    subject = falling(session(stones=[{"position": [5, 8, 0]}]))
+    start, shown = subject.scene.camera, subject.shown.scene.stones[0].position
+    assert shown[1] < 8
+    camera = after(subject, messages.LookAtStone()).camera
+    assert camera.target == shown
+    assert np.subtract(camera.position, camera.target) == pytest.approx(np.subtract(start.position, start.target))
+    assert after(subject, messages.ResetCamera()).camera == start
+
+
+def test_without_a_stone_there_is_nothing_to_look_at() -> None:
+    with pytest.raises(InputError, match="expected a scene with a stone, got none"):
+        after(session(stones=[]), messages.LookAtStone())
+
+
+@pytest.mark.parametrize(("target", "number"), [("light_1", 0), ("light_2", 1)])
+def test_each_light_moves_alone(target: Any, number: int) -> None:  # noqa: ANN401
+    subject = session()
+    before = subject.scene
+    moved = after(subject, messages.Translate(target=target, right=0.5, up=0))
+    assert math.dist(moved.lights[number].position, before.lights[number].position) == pytest.approx(0.5)
+    assert moved.lights[1 - number] == before.lights[1 - number]
+    assert moved.lights[number].colour == before.lights[number].colour
+    assert moved.camera == before.camera
+
+
+def test_a_light_that_is_not_there_cannot_be_moved() -> None:
+    subject = session(lights=[])
+    with pytest.raises(InputError, match="0 lights, no light_2") as caught:
+        after(subject, messages.Orbit(target="light_2", yaw=1, pitch=0))
+    assert caught.value.field == "target"
+
+
+def test_nothing_can_be_moved_out_of_the_world() -> None:
+    subject = session(camera={"position": [0, 0, 9.999e8], "target": [0, 0, 0]})
+    before = subject.shown
+    with pytest.raises(InputError, match="out of the world"):
+        after(subject, messages.Dolly(forward=-1e6))
+    assert subject.shown is before
+
+
+def test_mirror_switches_floor_and_those_walls_that_are_shown() -> None:
+    assert kinds(after(session(), messages.ToggleMirror())) == ("matte", "none")
+    walled = session(walls={"kind": "mirror"})
+    assert kinds(after(walled, messages.ToggleMirror())) == ("matte", "matte")
+    assert kinds(after(walled, messages.ToggleMirror())) == ("mirror", "mirror")
+
+
+def test_walls_come_in_the_floors_kind_and_go() -> None:
+    subject = session(floor={"kind": "mirror"})
+    assert kinds(after(subject, messages.ToggleWalls())) == ("mirror", "mirror")
+    assert kinds(after(subject, messages.ToggleWalls())) == ("mirror", "none")
+    assert kinds(after(session(floor={"kind": "none"}), messages.ToggleWalls())) == ("none", "matte")
+
+
+def kinds(scene: Scene) -> tuple[str, str]:
+    return scene.floor.kind, scene.walls.kind
+
+
+@pytest.mark.parametrize(
+    "own", [{}, {"environment": {"kind": "dark"}}, {"environment": {"kind": "image", "image": "sunset"}}]
+)
+def test_the_sky_switches_between_light_and_the_scenes_own(own: dict[str, Any]) -> None:
+    subject = session(**own)
+    before = subject.shown
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
+    assert after(subject, messages.ToggleEnvironment()).environment == before.scene.environment
+    assert subject.shown.panorama is before.panorama
+
+
+def test_a_scene_that_is_light_itself_switches_to_dark() -> None:
+    subject = session(environment={"kind": "light"})
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "dark"
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
+
+
+def test_a_new_sky_is_the_scenes_own_from_then_on() -> None:
+    subject = session()
+    after(subject, messages.ToggleEnvironment(), messages.PatchScene(patch={"environment": {"kind": "half"}}))
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
+    assert after(subject, messages.ToggleEnvironment()).environment.kind == "half"
+
+
+def test_a_switched_sky_survives_in_another_engine() -> None:
+    subject = session()
+    own = subject.scene.environment
+    after(subject, messages.ToggleEnvironment())
+    snapshot = Snapshot.read(json.loads(subject.snapshot().model_dump_json()))
+    assert snapshot.environment is not None
+    sky = events.own_sky(snapshot.environment, ASSETS)
+    other = Session.restored(subject.name, subject.scene, subject.stone, snapshot, sky=sky)
+    assert after(other, messages.ToggleEnvironment()).environment == own
+
+
+def test_a_patched_sky_brings_its_panorama_and_another_edit_keeps_it() -> None:
+    subject = session(environment={"kind": "image", "image": "sunrise"})
+    sunrise, sunset = ASSETS.skies["sunrise"].pixels, ASSETS.skies["sunset"].pixels
+    assert subject.shown.panorama is sunrise
+    after(subject, messages.PatchScene(patch={"environment": {"image": "sunset"}}))
+    assert subject.shown.panorama is sunset
+    after(subject, messages.PatchScene(patch={"environment": {"turn_degrees": 90}}))
+    after(subject, messages.ToggleMirror())
+    assert subject.shown.panorama is sunset
+    after(subject, messages.SetScene(scene={"environment": {"kind": "image", "image": "sunrise"}}))
+    assert subject.shown.panorama is sunrise
+
+
+def test_the_stone_falls_pauses_and_goes_back() -> None:
+    subject = session()
+    start = subject.pose()
+    falling(subject)
+    fallen = subject.pose()
+    assert fallen is not None
+    assert start is not None
+    assert fallen["position"][1] < start["position"][1] - 0.1
+    after(subject, messages.ToggleFall())
+    subject.advance(10)
+    assert subject.pose() == fallen
+    after(subject, messages.ResetStone())
+    assert subject.pose() == start
+    assert not subject.falling
+
+
+def test_a_stone_that_sleeps_is_dropped_anew_by_the_same_key() -> None:
+    subject = falling(session(simulation={"restitution": 0, "gravity": 100}))
+    for tenth in range(20):  # it sleeps after 1 s
+        subject.advance(tenth / 10)
+    assert (subject.asleep, subject.falling, subject.moving) == (True, True, False)
+    assert subject.report(edited=False).asleep
+    after(subject, messages.ToggleFall())
+    assert subject.pose() == session().pose(), "its start"
+    assert (subject.asleep, subject.falling, subject.moving) == (False, True, True)
+    subject.advance(100)
+    subject.advance(100.2)
+    assert 0 < subject.shown.simulation_time <= 0.2
+
+
+def test_nothing_falls_in_a_scene_without_a_stone() -> None:
+    with pytest.raises(InputError, match="nothing can fall"):
+        after(session(stones=[]), messages.ToggleFall())
+
+
+def test_a_patch_of_what_is_not_about_motion_leaves_the_stone_in_the_air() -> None:
+    subject = falling(session())
+    pose = subject.pose()
+    material: dict[str, Any] = subject.scene.model_dump(mode="json")["stones"][0] | {"material": "classic"}
+    after(subject, messages.PatchScene(patch={"stones": [material], "floor": {"kind": "matte"}}))
+    assert subject.pose() == pose
+    assert subject.falling
+    assert subject.shown.scene.stones[0].material == "classic"
+
+
+def test_another_shape_is_put_at_the_start_at_rest() -> None:
+    subject = falling(session())
+    scene = after(subject, messages.PatchScene(patch={"stones": [{"cut": {"table_percent": 60}}]}))
+    assert subject.shown.scene.stones[0].position == scene.stones[0].position
+    assert not subject.falling
+
+
+@pytest.mark.parametrize(
+    "patch",
+    [
+        {"stones": [{"position": [0, 3, 0]}]},
+        {"stones": [{"orientation": [1, 0, 0, 0]}]},
+        {"simulation": {"spin": [0, 9, 0]}},
+        {"simulation": {"velocity": [1, 0, 0]}},
+    ],
+)
+@pytest.mark.parametrize("falls", [True, False])
+def test_another_start_is_shown_and_a_falling_stone_falls_from_there(patch: dict[str, Any], falls: bool) -> None:
+    subject = falling(session(), 0.204)  # between two steps
+    if not falls:
+        after(subject, messages.ToggleFall())
+    scene = after(subject, messages.PatchScene(patch=patch))
+    assert subject.pose() == session(**scene.model_dump(mode="json")).pose()
+    assert subject.shown.simulation_time == 0
+    assert (subject.falling, subject.moving) == (falls, falls)
+    fresh = session(**scene.model_dump(mode="json"))
+    fresh.set_falling(falls)
+    for one in (subject, fresh):
+        one.advance(50)
+        one.advance(50.2)
+    assert subject.pose() == fresh.pose()
+
+
+def test_a_patched_camera_is_shown_and_becomes_home() -> None:
+    subject = session()
+    after(subject, messages.Orbit(yaw=1, pitch=0))
+    orbited = subject.scene.camera
+    after(subject, messages.PatchScene(patch={"camera": {"fov_degrees": 30}}))
+    assert subject.scene.camera == orbited.model_copy(update={"fov_degrees": 30})
+    home = after(subject, messages.ResetCamera()).camera
+    assert home == LEGACY_DEFAULT.camera.model_copy(update={"fov_degrees": 30})
+
+
+def test_a_new_scene_replaces_camera_and_stone() -> None:
+    subject = falling(session())
+    after(subject, messages.Orbit(yaw=1, pitch=0))
+    scene = after(subject, messages.SetScene(scene={"stones": [{"position": [0, 2, 0]}]}))
+    assert scene == Scene.read({"stones": [{"position": [0, 2, 0]}]})
+    assert subject.shown.scene == scene
+    assert not subject.falling
+
+
+@pytest.mark.parametrize(
+    ("event", "field"),
+    [
+        (messages.PatchScene(patch={"camera": {"fov_degrees": 500}}), "camera.fov_degrees"),
+        (messages.PatchScene(patch={"camera": {"fov_degrees": math.nan}}), "camera.fov_degrees"),
+        (messages.PatchScene(patch={"colour": 1}), "colour"),
+        (messages.SetScene(scene={"floor": {"kind": "lava"}}), "floor.kind"),
+        (messages.SetScene(scene={"stones": [{"mesh": "nowhere"}]}), "stones.0.mesh"),
+        (messages.SetScene(scene={"stones": [{"mesh": "../etc/passwd"}]}), "stones.0.mesh"),
+        (messages.SetScene(scene={"environment": {"kind": "image", "image": "nowhere"}}), "environment.image"),
+        (messages.SetScene(scene={"environment": {"kind": "image", "image": "../sky"}}), "environment.image"),
+    ],
+)
+def test_a_bad_scene_is_refused_by_field_and_changes_nothing(event: SessionEvent, field: str) -> None:
+    subject = falling(session())
+    shown, scene = subject.shown, subject.scene
+    with pytest.raises(SceneError) as caught:
+        after(subject, event)
+    assert caught.value.field == field
+    assert (subject.shown, subject.scene, subject.falling) == (shown, scene, True)

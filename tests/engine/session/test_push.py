@@ -1,0 +1,90 @@
+"""A push with the pointer: where it strikes, and what a session does then."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from culet.engine.session.picking import struck_point
+from culet.engine.session.session import Session
+from culet.errors import InputError
+from culet.geometry.load import stone_of
+from culet.scene import Camera, Scene
+from culet.scene.legacy import LEGACY_DEFAULT
+
+SCENE = LEGACY_DEFAULT
+STONE = stone_of(SCENE.stones[0], {})
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+AHEAD = Camera(position=(0, 0, 5), target=(0, 0, 0), fov_degrees=90)
+"""At distance 5 half the picture's height is 5 R."""
+
+
+def test_a_line_of_sight_strikes_the_facet_in_front() -> None:
+    point = struck_point(AHEAD, STONE, (0, 0, 0), UPRIGHT, 0.02, 0.01)
+    assert point is not None
+    slopes = [point[0] / (5 - point[2]), point[1] / (5 - point[2])]
+    assert slopes == pytest.approx([0.02, 0.01], rel=1e-12)
+    distances = STONE.planes[:, :3] @ np.array(point) - STONE.planes[:, 3]
+    assert distances.max() == pytest.approx(0, abs=1e-12)
+    assert point[2] > 0.5  # the near side
+
+
+@pytest.mark.parametrize("at", [(0.3, 0.0), (0.0, 0.5), (-2.0, 0.0)])
+def test_a_line_of_sight_past_the_stone_strikes_nothing(at: tuple[float, float]) -> None:
+    assert struck_point(AHEAD, STONE, (0, 0, 0), UPRIGHT, *at) is None
+
+
+def test_a_stone_behind_the_camera_is_not_struck() -> None:
+    assert struck_point(AHEAD, STONE, (0, 0, 9), UPRIGHT, 0, 0) is None
+    hollow = replace(STONE, convex=False)
+    assert struck_point(AHEAD, hollow, (0, 0, 9), UPRIGHT, 0, 0) is None
+
+
+def test_a_stone_that_is_not_convex_is_struck_on_its_sphere() -> None:
+    point = struck_point(AHEAD, replace(STONE, convex=False), (0, 0, 0), UPRIGHT, 0, 0)
+    assert point == pytest.approx((0, 0, 1))
+    assert struck_point(AHEAD, replace(STONE, convex=False), (0, 0, 0), UPRIGHT, 0.3, 0) is None
+
+
+def test_a_push_moves_a_paused_stone_by_that_speed_and_lets_time_go_on() -> None:
+    session = Session("0" * 32, SCENE, STONE)
+    session.push(0, 0, 0.5, 0)  # the camera looks at the stone, and its right is +x
+    assert session.moving
+    session.advance(100.0)
+    session.advance(100.1)
+    pose = session.pose()
+    assert pose is not None
+    fallen = 0.1 - SCENE.simulation.time_step  # drawn one step behind
+    assert pose["position"][0] == pytest.approx(0.5 * fallen, rel=0.01)
+    assert math.dist(pose["orientation"], SCENE.stones[0].orientation) > 1e-3
+
+
+def test_a_push_wakes_a_stone_that_rests_without_a_jump_in_time() -> None:
+    session = Session("0" * 32, SCENE, STONE)
+    session.set_falling(True)
+    now = 0.0
+    while session.moving and now < 60:
+        session.advance(now)
+        now += 0.2
+    assert not session.moving
+    time = session.shown.simulation_time
+    session.push(0, -0.2, 1, 1)
+    assert session.shown.moving
+    session.advance(now + 1000)
+    assert session.shown.simulation_time == pytest.approx(time, abs=0.01)
+
+
+def test_a_push_past_the_stone_changes_nothing() -> None:
+    session = Session("0" * 32, SCENE, STONE)
+    before = session.shown
+    session.push(5, 5, 1, 1)
+    assert session.shown == before
+    assert not session.moving
+
+
+def test_nothing_can_be_pushed_in_a_scene_without_a_stone() -> None:
+    with pytest.raises(InputError, match="nothing can be pushed"):
+        Session("0" * 32, Scene(stones=()), None).push(0, 0, 1, 0)
