@@ -10,7 +10,7 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.model import Camera, Plane
@@ -33,7 +33,7 @@ def scene_of(**settings: object) -> Scene:
 def sheet(file: Path) -> None:
     """The same drop in both models, row by row; the camera stands still."""
     renderer, width, height = Renderer(), 240, 200
-    stone = stone_of(Scene().stones[0], {})
+    stone = shape_of(Scene().stones[0], {})
     picture = Image.new("RGB", (width * len(TIMES), 2 * height), "white")
     draw, font = ImageDraw.Draw(picture), ImageFont.load_default(size=14)
     for row, model in enumerate(("classic", "rigid")):
@@ -53,7 +53,7 @@ def sheet(file: Path) -> None:
 
 def main(what: list[str]) -> None:
     if not what or "plot" in what:
-        stone = stone_of(Scene().stones[0], {})
+        stone = shape_of(Scene().stones[0], {})
         plot(record(scene_of(), stone, 8), HERE / "drop.png")
     if not what or "sheet" in what:
         sheet(HERE / "drops.png")

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
 from culet.scene.model import StoneSettings
@@ -35,9 +35,9 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> object:  # n
 
 
 @pytest.fixture(scope="session")
-def brilliant() -> Stone:
+def brilliant() -> Shape:
     """The default cut."""
-    return stone_of(StoneSettings(), {})
+    return shape_of(StoneSettings(), {})
 
 
 @pytest.fixture(scope="session")

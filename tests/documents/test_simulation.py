@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.simulation.paths import record
 
 PAGE = (Path(__file__).parents[2] / "docs/simulation.md").read_text(encoding="utf-8")
 
 
-def test_the_table_of_columns_names_the_columns_of_a_path_and_no_others(brilliant: Stone) -> None:
+def test_the_table_of_columns_names_the_columns_of_a_path_and_no_others(brilliant: Shape) -> None:
     section = PAGE.split("\n## The path\n")[1].split("\n## ")[0]
     cells = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
     written = [name for cell in cells for name in re.findall(r"`(\w+)`", cell)]

@@ -10,7 +10,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 
 Polygons = Sequence[Sequence[int]]
 Points = NDArray[np.float64]
@@ -76,7 +76,7 @@ def stl(corners: Points, triangles: NDArray[np.int64]) -> bytes:
     return bytes(80) + struct.pack("<I", len(rows)) + b"".join(rows)
 
 
-def as_trimesh(stone: Stone) -> trimesh.Trimesh:
+def as_trimesh(stone: Shape) -> trimesh.Trimesh:
     """To export it."""
     return trimesh.Trimesh(stone.vertices, stone.triangles, process=False)
 
@@ -87,6 +87,6 @@ def exported(mesh: trimesh.Trimesh | trimesh.Scene, file_type: str) -> bytes:
     return data.encode() if isinstance(data, str) else bytes(data)
 
 
-def said(stone: Stone, *words: str) -> bool:
+def said(stone: Shape, *words: str) -> bool:
     """Whether one of the findings holds all of these words."""
     return any(all(word in finding for word in words) for finding in stone.findings)

@@ -9,8 +9,8 @@ import pytest
 
 from culet.errors import MeshError
 from culet.geometry.brilliant import brilliant
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.scene.model import BrilliantCut
 from geometry.shapes import Points, Polygons, cube, obj, said, stl
 
@@ -19,8 +19,8 @@ BRILLIANT = brilliant(BrilliantCut())
 CUBE, FACES = cube()
 
 
-def from_obj(corners: Points, polygons: Polygons) -> Stone:
-    return stone_from_mesh(obj(corners, polygons), "obj")
+def from_obj(corners: Points, polygons: Polygons) -> Shape:
+    return shape_from_mesh(obj(corners, polygons), "obj")
 
 
 def boxes(*cells: tuple[int, int, int], diagonals: int = 0) -> tuple[Points, list[list[int]]]:
@@ -35,7 +35,7 @@ def boxes(*cells: tuple[int, int, int], diagonals: int = 0) -> tuple[Points, lis
 
 
 def test_a_doublet_whose_wall_is_cut_by_other_diagonals_is_one_stone() -> None:
-    stone = stone_from_mesh((WILD / "doublet_wall_other_diagonal.obj").read_bytes(), "obj")
+    stone = shape_from_mesh((WILD / "doublet_wall_other_diagonal.obj").read_bytes(), "obj")
     assert (stone.convex, len(stone.planes)) == (True, 6)
     assert stone.mass.volume == pytest.approx(2 / 1.5**1.5)  # 2 x 1 x 1, its half diagonal sqrt(1.5)
     assert said(stone, "4 triangles of inner walls: dropped")
@@ -58,7 +58,7 @@ def test_bodies_wall_to_wall_become_one_whatever_their_diagonals(
 ) -> None:
     corners, polygons = boxes(*cells)
     data = obj(corners, polygons) if file_type == "obj" else stl(corners, np.array(polygons, np.int64))
-    stone = stone_from_mesh(data, file_type)
+    stone = shape_from_mesh(data, file_type)
     assert len(stone.planes) == facets
     extent = np.ptp(np.array(cells), axis=0) + 1
     if facets == 6:

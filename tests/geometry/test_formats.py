@@ -16,7 +16,7 @@ import trimesh
 from culet.errors import MeshError, TooLargeError
 from culet.geometry.brilliant import brilliant
 from culet.geometry.formats import FORMATS
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.polygons import edges_of_facets
 from culet.scene.model import BrilliantCut
 from geometry.shapes import as_trimesh, binary_ply, cube, exported, fans, obj, off, prism, said, star_outline, stl
@@ -32,7 +32,7 @@ def matched(found: np.ndarray, wanted: np.ndarray) -> float:
 
 @pytest.mark.parametrize("written", [*FORMATS, "stl_ascii"])
 def test_the_brilliant_comes_back_from_every_format(written: str) -> None:
-    stone = stone_from_mesh(exported(as_trimesh(BRILLIANT), written), written[:3])
+    stone = shape_from_mesh(exported(as_trimesh(BRILLIANT), written), written[:3])
     assert stone.convex
     assert (len(stone.planes), len(stone.vertices), len(edges_of_facets(stone))) == (73, 57, 128)
     assert matched(stone.vertices, BRILLIANT.vertices) < 3e-7  # measured 5e-8: single precision
@@ -43,7 +43,7 @@ def test_the_brilliant_comes_back_from_every_format(written: str) -> None:
 
 @pytest.mark.parametrize("written", [*FORMATS, "stl_ascii"])
 def test_the_half_spaces_hold_every_vertex_and_touch_the_stone(written: str) -> None:
-    stone = stone_from_mesh(exported(as_trimesh(BRILLIANT), written), written[:3])
+    stone = shape_from_mesh(exported(as_trimesh(BRILLIANT), written), written[:3])
     height = stone.vertices @ stone.planes[:, :3].T - stone.planes[:, 3]
     assert height.max() < 1e-12  # supporting: measured 4e-16
     assert abs(height.max(axis=0)).max() < 1e-12
@@ -65,7 +65,7 @@ def test_the_half_spaces_hold_every_vertex_and_touch_the_stone(written: str) -> 
 )
 def test_concave_ten_sided_faces_are_cut_without_folds(file_type: str, data: bytes) -> None:
     """A fan from a tip covers ground outside the star; the areas of the ends add up only when it was cut again."""
-    stone = stone_from_mesh(data, file_type)
+    stone = shape_from_mesh(data, file_type)
     assert not stone.convex
     assert (len(stone.planes), len(edges_of_facets(stone))) == (12, 30)
     a, b, c = (stone.vertices[stone.triangles[:, k]] for k in range(3))
@@ -80,7 +80,7 @@ def test_an_l_shaped_prism_with_corners_in_a_line_keeps_its_surface_whole() -> N
     outline = np.array([(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), (0, 1)], np.float64)
     for turn in range(8):
         corners, faces = prism(outline, 1)
-        stone = stone_from_mesh(obj(corners, [list(np.roll(face, turn)) for face in faces]), "obj")
+        stone = shape_from_mesh(obj(corners, [list(np.roll(face, turn)) for face in faces]), "obj")
         assert not stone.convex
         assert len(stone.planes) == 8
         a, b, c = (stone.vertices[stone.triangles[:, k]] for k in range(3))
@@ -95,7 +95,7 @@ def test_obj_indices_may_be_negative_slashed_and_continued() -> None:
     lines += ["mtllib /etc/passwd", "usemtl a"]
     lines += [f"f {a - 8}/1/1 {b - 8}/1/1 \\\n {c - 8}//1 {d + 1}" for a, b, c, d in faces]
     lines += ["v 9 9 9", "usemtl b", "o another"]
-    stone = stone_from_mesh("\r\n".join(lines).encode(), "obj")
+    stone = shape_from_mesh("\r\n".join(lines).encode(), "obj")
     assert stone.convex
     assert len(stone.planes) == 6
     assert said(stone, "1 vertex that no face uses left out")
@@ -113,13 +113,13 @@ def test_names_and_comments_may_be_in_any_encoding(encoding: str) -> None:
         "ply": exported(mesh, "ply").replace(b"element", b"comment " + name + b"\nelement", 1),
     }
     for file_type, data in files.items():
-        assert len(stone_from_mesh(data, file_type).planes) == 73
+        assert len(shape_from_mesh(data, file_type).planes) == 73
 
 
 def test_duplicate_vertices_are_joined_and_said() -> None:
     corners, faces = cube()
     loose = np.vstack([corners[face] for face in faces])
-    stone = stone_from_mesh(binary_ply(loose, [[4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3] for k in range(6)]), "ply")
+    stone = shape_from_mesh(binary_ply(loose, [[4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3] for k in range(6)]), "ply")
     assert (len(stone.vertices), len(stone.planes)) == (8, 6)
     assert said(stone, "24 vertices, 8 of them distinct")
 
@@ -129,7 +129,7 @@ def test_a_scene_graphs_transforms_are_applied() -> None:
     turn = np.array([(0, -1, 0, 4), (1, 0, 0, 5), (0, 0, 1, 6), (0, 0, 0, 1)], np.float64)
     scene.add_geometry(trimesh.creation.box((1, 1, 1)), transform=turn)
     scene.add_geometry(as_trimesh(BRILLIANT), transform=np.diag([3, 3, 3, 1]))
-    stone = stone_from_mesh(exported(scene, "glb"), "glb")
+    stone = shape_from_mesh(exported(scene, "glb"), "glb")
     assert matched(stone.vertices, BRILLIANT.vertices) < 3e-7
     assert said(stone, "2 meshes")
     assert said(stone, "2 bodies", "largest closed one by volume", "110 triangles", "1 smaller closed body left out")
@@ -138,7 +138,7 @@ def test_a_scene_graphs_transforms_are_applied() -> None:
 def test_a_mirrored_node_is_not_inside_out() -> None:
     scene = trimesh.Scene()
     scene.add_geometry(as_trimesh(BRILLIANT), transform=np.diag([-1, 1, 2, 1]))
-    stone = stone_from_mesh(exported(scene, "glb"), "glb")
+    stone = shape_from_mesh(exported(scene, "glb"), "glb")
     assert stone.convex
     assert not said(stone, "inside out")
 
@@ -155,7 +155,7 @@ def test_no_other_file_is_ever_opened(tmp_path: Path) -> None:
     buffer.write_bytes(bytes(36))
     for uri in (str(buffer), "file://" + str(buffer), "data:;base64,AAAA"):
         with pytest.raises(MeshError, match="refers to another file"):
-            stone_from_mesh(glb({"asset": {"version": "2.0"}, "buffers": [{"uri": uri, "byteLength": 36}]}), "glb")
+            shape_from_mesh(glb({"asset": {"version": "2.0"}, "buffers": [{"uri": uri, "byteLength": 36}]}), "glb")
 
 
 POSITION = {"componentType": 5126, "type": "VEC3", "bufferView": 0}
@@ -191,7 +191,7 @@ def one_mesh(count: int, nodes: Sequence[Mapping[str, object]], **more: object) 
 )
 def test_a_glb_that_lies_is_refused(data: bytes, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
-        stone_from_mesh(data, "glb")
+        shape_from_mesh(data, "glb")
 
 
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_a_glb_that_lies_is_refused(data: bytes, error: type[Exception], message
 )
 def test_what_is_not_a_mesh_is_refused_by_name(file_type: str, data: bytes, message: str) -> None:
     with pytest.raises(MeshError, match=re.escape(message)):
-        stone_from_mesh(data, file_type)
+        shape_from_mesh(data, file_type)
 
 
 def big_ply(faces: int) -> bytes:
@@ -258,13 +258,13 @@ def test_too_many_triangles_are_refused_before_work(file_type: str, data: bytes)
     limit = 7 if file_type == "glb" else 200_000
     start = time.process_time()
     with pytest.raises(TooLargeError, match=f"at most {limit} triangles"):
-        stone_from_mesh(data, file_type, max_triangles=limit)
+        shape_from_mesh(data, file_type, max_triangles=limit)
     assert time.process_time() - start < 2  # measured 0.35 s, obj faces
 
 
 def test_too_many_bytes_are_refused() -> None:
     with pytest.raises(TooLargeError, match="at most 1000 bytes, got 5584"):
-        stone_from_mesh(exported(as_trimesh(BRILLIANT), "stl"), "stl", max_bytes=1000)
+        shape_from_mesh(exported(as_trimesh(BRILLIANT), "stl"), "stl", max_bytes=1000)
 
 
 @pytest.mark.parametrize("file_type", FORMATS)
@@ -280,7 +280,7 @@ def test_random_bytes_are_refused_and_never_crash(file_type: str) -> None:
     for size in (1, 7, 83, 84, 200, 3000):
         for start in (b"", starts[file_type]):
             with pytest.raises((MeshError, TooLargeError)):
-                stone_from_mesh(start + random.bytes(size), file_type)
+                shape_from_mesh(start + random.bytes(size), file_type)
 
 
 @pytest.mark.parametrize("file_type", FORMATS)
@@ -299,7 +299,7 @@ def test_damaged_files_are_stones_or_refused(file_type: str) -> None:
             case _:
                 del data[random.integers(len(data)) :]
         try:
-            stone = stone_from_mesh(bytes(data), file_type)
+            stone = shape_from_mesh(bytes(data), file_type)
         except (MeshError, TooLargeError):
             refused += 1
             continue

@@ -13,7 +13,7 @@ import pytest
 from culet.errors import MeshError, TooLargeError
 from culet.geometry.formats import read_triangles
 from culet.geometry.formats.reader import Soup
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.mesh import shape_from_mesh
 from geometry.gltf import Document
 from geometry.shapes import cube, fans, said
 
@@ -37,7 +37,7 @@ def rows(points: np.ndarray) -> set[tuple[float, ...]]:
 
 def test_two_quantised_bodies_stay_where_their_nodes_put_them() -> None:
     """Two halves of a box side by side, each -1 to 1 as normalised shorts: taken for lengths, each is 65 000 wide."""
-    stone = stone_from_mesh((WILD / "two_quant_norm.glb").read_bytes(), "glb")
+    stone = shape_from_mesh((WILD / "two_quant_norm.glb").read_bytes(), "glb")
     assert said(stone, "4 triangles of inner walls: dropped")
     assert stone.mass.volume == pytest.approx(2 * 1 * 1 / 1.5**1.5)  # a box of 2 x 1 x 1, its half diagonal sqrt(1.5)
 
@@ -202,10 +202,10 @@ def test_a_file_that_is_cut_off_says_so() -> None:
     document.show(document.mesh(document.accessor(CORNERS.astype(np.float32)), document.accessor(FLAT)))
     data = document.data()
     with pytest.raises(MeshError, match=f"announces {len(data)} bytes, got {len(data) - 8}: the file is cut off"):
-        stone_from_mesh(data[:-8], "glb")
+        shape_from_mesh(data[:-8], "glb")
     shorter = struct.pack("<4sII", b"glTF", 2, len(data) - 8) + data[12:-8]  # its header mended, its chunk not
     with pytest.raises(MeshError, match="binary chunk of 168 bytes, got 160: the file is cut off"):
-        stone_from_mesh(shorter, "glb")
+        shape_from_mesh(shorter, "glb")
 
 
 def test_many_nodes_of_a_mesh_with_few_triangles_and_many_vertices_take_no_memory() -> None:

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.errors import MeshError
-from culet.geometry.half_spaces import stone_from_half_spaces
+from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.polygons import edges_of_facets
 
 CUBE = np.array([(*s * axis, 1.0) for s in (1, -1) for axis in np.eye(3)])
@@ -28,7 +28,7 @@ def random_planes(count: int, stretch: tuple[float, float, float]) -> NDArray[np
 @pytest.mark.parametrize("count", [4, 50, 5000])
 def test_simple_polyhedra_have_2f_minus_4_corners(count: int, stretch: tuple[float, float, float]) -> None:
     """Three facets meet at every corner of a random one, so V = 2F - 4 and E = 3F - 6 (Euler)."""
-    stone = stone_from_half_spaces("random", random_planes(count, stretch))
+    stone = shape_from_half_spaces("random", random_planes(count, stretch))
     assert len(stone.planes) == count
     assert len(stone.vertices) == 2 * count - 4
     assert len(edges_of_facets(stone)) == 3 * count - 6
@@ -41,8 +41,8 @@ def test_simple_polyhedra_have_2f_minus_4_corners(count: int, stretch: tuple[flo
 @pytest.mark.parametrize("size", [1e-12, 1e12])
 def test_small_and_large_numbers_give_the_same_stone(size: float) -> None:
     planes = random_planes(50, (1, 1, 1000))
-    wanted = stone_from_half_spaces("one", planes)
-    found = stone_from_half_spaces("other", planes * [1, 1, 1, size])
+    wanted = shape_from_half_spaces("one", planes)
+    found = shape_from_half_spaces("other", planes * [1, 1, 1, size])
     assert found.vertices == pytest.approx(wanted.vertices, abs=1e-11)
 
 
@@ -51,7 +51,7 @@ def test_size_and_place_do_not_matter(size: float) -> None:
     planes = CUBE.copy()
     planes[:, 3] += planes[:, :3] @ [5, -7, 11]
     planes[:, 3] *= size
-    stone = stone_from_half_spaces("cube", planes)
+    stone = shape_from_half_spaces("cube", planes)
     assert abs(stone.vertices) == pytest.approx(np.full((8, 3), 3**-0.5), rel=1e-12, abs=0)
     # a cube of sides s = 2 / sqrt 3 has moments (s^2 + s^2) / 12
     assert stone.mass.volume == pytest.approx(8 * 3**-1.5, rel=1e-12, abs=0)
@@ -60,14 +60,14 @@ def test_size_and_place_do_not_matter(size: float) -> None:
 
 def test_normals_may_have_any_length() -> None:
     scale = np.array([1, 20, 0.3, 4, 5, 6])[:, None]
-    assert stone_from_half_spaces("cube", CUBE * scale).planes == pytest.approx(
-        stone_from_half_spaces("cube", CUBE).planes
+    assert shape_from_half_spaces("cube", CUBE * scale).planes == pytest.approx(
+        shape_from_half_spaces("cube", CUBE).planes
     )
 
 
 def test_planes_that_bound_nothing_are_left_out_and_said() -> None:
     outside = np.array([(1, 1, 1, 9.0)])
-    stone = stone_from_half_spaces("cube", np.vstack([CUBE, CUBE[:1], outside]))
+    stone = shape_from_half_spaces("cube", np.vstack([CUBE, CUBE[:1], outside]))
     assert len(stone.planes) == 6
     assert stone.findings == ("2 half-spaces bound nothing and were left out.",)
 
@@ -87,11 +87,11 @@ def test_planes_that_bound_nothing_are_left_out_and_said() -> None:
 )
 def test_what_is_no_stone_is_refused(planes: NDArray[np.float64], message: str) -> None:
     with pytest.raises(MeshError, match=message):
-        stone_from_half_spaces("stone", planes)
+        shape_from_half_spaces("stone", planes)
 
 
 def test_edges_run_counter_clockwise_about_their_first_facet() -> None:
-    stone = stone_from_half_spaces("random", random_planes(50, (1, 1, 1)))
+    stone = shape_from_half_spaces("random", random_planes(50, (1, 1, 1)))
     for v0, v1, a, b in edges_of_facets(stone).tolist():
         along = stone.vertices[v1] - stone.vertices[v0]
         inward = np.cross(stone.planes[a, :3], along)  # into facet a, away from facet b

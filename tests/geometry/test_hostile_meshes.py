@@ -16,9 +16,9 @@ from geometry.shapes import exported
 READ = r"""
 import pathlib, re, sys
 from culet.errors import InputError
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.mesh import shape_from_mesh
 try:
-    stone = stone_from_mesh(pathlib.Path(sys.argv[1]).read_bytes(), "ply")
+    stone = shape_from_mesh(pathlib.Path(sys.argv[1]).read_bytes(), "ply")
     print("read", len(stone.planes))
 except InputError as error:
     print(type(error).__name__, error)

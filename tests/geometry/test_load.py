@@ -7,35 +7,35 @@ import pytest
 
 from culet.errors import MeshError, SceneError
 from culet.geometry.brilliant import brilliant
-from culet.geometry.half_spaces import stone_from_half_spaces
-from culet.geometry.load import stone_of
+from culet.geometry.half_spaces import shape_from_half_spaces
+from culet.geometry.load import shape_of
 from culet.scene.model import BrilliantCut, StoneSettings
 
-TETRAHEDRON = stone_from_half_spaces(
+TETRAHEDRON = shape_from_half_spaces(
     "t", np.array([(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1), (-1, -1, 1, 1)], np.float64)
 )
 
 
 def test_the_default_is_the_default_brilliant() -> None:
-    assert stone_of(StoneSettings.model_validate({}), {}) is brilliant(BrilliantCut())
+    assert shape_of(StoneSettings.model_validate({}), {}) is brilliant(BrilliantCut())
 
 
 def test_proportions_are_used() -> None:
     cut = BrilliantCut(table_percent=60)
-    assert stone_of(StoneSettings.model_validate({"cut": cut}), {}) is brilliant(cut)
+    assert shape_of(StoneSettings.model_validate({"cut": cut}), {}) is brilliant(cut)
 
 
 def test_a_mesh_takes_the_place_of_the_cut() -> None:
-    assert stone_of(StoneSettings.model_validate({"mesh": "id"}), {"id": TETRAHEDRON}) is TETRAHEDRON
+    assert shape_of(StoneSettings.model_validate({"mesh": "id"}), {"id": TETRAHEDRON}) is TETRAHEDRON
 
 
 def test_an_unknown_mesh_is_an_error_at_its_field() -> None:
     with pytest.raises(SceneError, match="no uploaded mesh 'gone'") as refusal:
-        stone_of(StoneSettings.model_validate({"mesh": "gone"}), {"id": TETRAHEDRON})
+        shape_of(StoneSettings.model_validate({"mesh": "gone"}), {"id": TETRAHEDRON})
     assert refusal.value.field == "stones.0.mesh"
 
 
 def test_impossible_proportions_are_an_error_at_their_field() -> None:
     with pytest.raises(MeshError, match="star_percent must be above") as refusal:
-        stone_of(StoneSettings.model_validate({"cut": {"star_percent": 1}}), {})
+        shape_of(StoneSettings.model_validate({"cut": {"star_percent": 1}}), {})
     assert refusal.value.field == "stones.0.cut.star_percent"

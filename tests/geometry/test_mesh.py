@@ -10,9 +10,9 @@ import trimesh
 
 from culet.errors import MeshError
 from culet.geometry.brilliant import brilliant
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.polygons import edges_of_facets
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import BrilliantCut
 from geometry.shapes import Points, Polygons, cube, exported, fans, obj, prism, said, star_outline, stl
 
@@ -21,8 +21,8 @@ CUBE, FACES = cube()
 TRIANGLES = fans(FACES)
 
 
-def from_obj(corners: Points, polygons: Polygons) -> Stone:
-    return stone_from_mesh(obj(corners, polygons), "obj")
+def from_obj(corners: Points, polygons: Polygons) -> Shape:
+    return shape_from_mesh(obj(corners, polygons), "obj")
 
 
 def moved_copies(*offsets: tuple[float, float, float]) -> tuple[Points, Polygons]:
@@ -30,7 +30,7 @@ def moved_copies(*offsets: tuple[float, float, float]) -> tuple[Points, Polygons
     return corners, [[c + 8 * k for c in face] for k in range(len(offsets)) for face in FACES]
 
 
-def is_the_cube(stone: Stone) -> bool:
+def is_the_cube(stone: Shape) -> bool:
     return stone.convex and len(stone.planes) == 6 and bool(np.allclose(abs(stone.vertices), 3**-0.5))
 
 
@@ -64,7 +64,7 @@ def test_a_ground_plane_beside_the_gem_is_left_out() -> None:
     """The plane is 100 times as wide as the stone: the stone keeps its facets all the same."""
     ground = [(-99, -1, -99), (99, -1, -99), (99, -1, 99), (-99, -1, 99)]
     corners = np.vstack([BRILLIANT.vertices, ground])
-    stone = stone_from_mesh(stl(corners, np.vstack([BRILLIANT.triangles, [(57, 59, 58), (57, 60, 59)]])), "stl")
+    stone = shape_from_mesh(stl(corners, np.vstack([BRILLIANT.triangles, [(57, 59, 58), (57, 60, 59)]])), "stl")
     assert (len(stone.planes), len(stone.vertices)) == (73, 57)
     assert said(stone, "2 bodies", "1 surface that is not closed (2 triangles) left out")
 
@@ -120,7 +120,7 @@ def test_an_open_surface_is_refused_with_its_boundary() -> None:
         from_obj(CUBE, FACES[1:])
     corners, _ = moved_copies((0, 0, 0), (9, 0, 0))
     with pytest.raises(MeshError, match="2 bodies are all unusable; the largest is open: 3 boundary edges"):
-        stone_from_mesh(stl(corners, np.vstack([TRIANGLES[1:], TRIANGLES[2:] + 8])), "stl")
+        shape_from_mesh(stl(corners, np.vstack([TRIANGLES[1:], TRIANGLES[2:] + 8])), "stl")
 
 
 @pytest.mark.parametrize("height", [0.0, 1e-7])
@@ -159,7 +159,7 @@ def test_coordinates_that_are_not_finite_are_refused(file_type: str, value: floa
     triangles = BRILLIANT.triangles.astype(np.int64)
     data = stl(corners, triangles) if file_type == "stl" else exported(mesh, file_type)
     with pytest.raises(MeshError, match=r"coordinates that are not finite \(NaN or infinity\)"):
-        stone_from_mesh(data, file_type)
+        shape_from_mesh(data, file_type)
 
 
 def voxels(filled: set[tuple[int, int, int]]) -> tuple[Points, Polygons]:
@@ -213,9 +213,9 @@ def test_walls_that_pass_through_each_other_are_refused(outline: Points) -> None
 def test_a_spindle_torus_is_refused_and_a_ring_is_not() -> None:
     spindle = trimesh.creation.torus(0.5, 0.7, major_sections=40, minor_sections=40)
     with pytest.raises(MeshError, match="crosses itself"):
-        stone_from_mesh(exported(spindle, "ply"), "ply")
+        shape_from_mesh(exported(spindle, "ply"), "ply")
     ring = trimesh.creation.torus(1, 0.3, major_sections=40, minor_sections=40)
-    stone = stone_from_mesh(exported(ring, "ply"), "ply")
+    stone = shape_from_mesh(exported(ring, "ply"), "ply")
     assert not stone.convex
     assert len(stone.vertices) - len(edges_of_facets(stone)) + len(stone.planes) == 0  # Euler: one hole
 
@@ -279,7 +279,7 @@ def test_a_cube_in_many_triangles_has_six_facets_and_eight_corners() -> None:
     box = trimesh.creation.box()
     for _ in range(4):
         box = box.subdivide()
-    stone = stone_from_mesh(exported(box, "stl"), "stl")
+    stone = shape_from_mesh(exported(box, "stl"), "stl")
     assert len(box.faces) == 3072
     assert (len(stone.planes), len(stone.vertices), len(stone.triangles)) == (6, 8, 12)
 
@@ -289,7 +289,7 @@ def test_thin_stones_in_single_precision_keep_their_facets(stretch: float) -> No
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     turn *= np.sign(np.linalg.det(turn))
     corners = BRILLIANT.vertices * [1, stretch, 1] @ turn
-    stone = stone_from_mesh(stl(corners, BRILLIANT.triangles.astype(np.int64)), "stl")
+    stone = shape_from_mesh(stl(corners, BRILLIANT.triangles.astype(np.int64)), "stl")
     assert (stone.convex, len(stone.planes), len(stone.vertices)) == (True, 73, 57)
 
 
@@ -310,8 +310,8 @@ def test_the_origin_is_the_centre_of_mass_or_the_mean_vertex() -> None:
     """A pyramid's centre of mass is a quarter of its height up, its mean vertex a fifth."""
     corners = np.array([(1, 0, 1), (1, 0, -1), (-1, 0, -1), (-1, 0, 1), (0, 4, 0)], np.float64)
     data = obj(corners, [[3, 2, 1, 0], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    by_mass = stone_from_mesh(data, "obj")
-    by_mean = stone_from_mesh(data, "obj", centre="vertex_mean")
+    by_mass = shape_from_mesh(data, "obj")
+    by_mean = shape_from_mesh(data, "obj", centre="vertex_mean")
     assert by_mass.vertices[:, 1].min() == pytest.approx(-1 / 3)  # 1 below, 3 above
     assert by_mean.vertices[:, 1].min() == pytest.approx(-0.8 / 3.2)
     assert abs(by_mean.vertices.mean(axis=0)).max() < 1e-15
@@ -326,7 +326,7 @@ def test_a_large_ball_loads_in_seconds() -> None:
     ball = trimesh.creation.icosphere(subdivisions=6)
     data = exported(ball, "ply")
     start = time.process_time()
-    stone = stone_from_mesh(data, "ply")
+    stone = shape_from_mesh(data, "ply")
     assert time.process_time() - start < 20
     assert stone.convex
     assert len(stone.planes) == 81_920

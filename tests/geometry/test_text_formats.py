@@ -12,7 +12,7 @@ import pytest
 from culet.errors import MeshError, TooLargeError
 from culet.geometry.formats import read_triangles
 from culet.geometry.formats.reader import Soup
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.mesh import shape_from_mesh
 from geometry.shapes import binary_ply, cube, fans, obj, off, said, stl
 
 WILD = Path(__file__).with_name("wild")
@@ -70,7 +70,7 @@ def test_a_byte_order_mark_tells_the_encoding(file_type: str, mark: bytes, encod
 
 
 def test_the_obj_in_utf_16_is_read() -> None:
-    stone = stone_from_mesh((WILD / "obj_utf16.obj").read_bytes(), "obj")
+    stone = shape_from_mesh((WILD / "obj_utf16.obj").read_bytes(), "obj")
     assert said(stone, "Convex: 12 triangles in the file")
 
 
@@ -112,7 +112,7 @@ def test_a_number_that_is_none_is_refused_by_its_line(file_type: str, word: str,
 
 def test_decimal_commas_are_named() -> None:
     with pytest.raises(MeshError, match="line 1: expected a number with a decimal point, got '-1,000000'"):
-        stone_from_mesh((WILD / "obj_comma.obj").read_bytes(), "obj")
+        shape_from_mesh((WILD / "obj_comma.obj").read_bytes(), "obj")
 
 
 def test_a_continued_line_keeps_the_numbers_of_those_after_it() -> None:
@@ -194,7 +194,7 @@ def test_an_off_is_refused_by_its_true_cause(text: str, cause: str) -> None:
 
 
 def test_a_text_stl_without_its_end_is_read_and_told() -> None:
-    stone = stone_from_mesh((WILD / "stl_txt_noend.stl").read_bytes(), "stl")
+    stone = shape_from_mesh((WILD / "stl_txt_noend.stl").read_bytes(), "stl")
     assert said(stone, "The file ends in line 85 without 'endsolid': its whole facets were read")
     assert said(stone, "Convex: 12 triangles in the file, 9 facets")
 
@@ -202,11 +202,11 @@ def test_a_text_stl_without_its_end_is_read_and_told() -> None:
 def test_a_text_stl_that_is_cut_off_is_refused_as_that() -> None:
     lines = text_stl().decode().split("\n")
     with pytest.raises(MeshError, match=r"cut off: it ends in line 80, within a facet; expected 'endsolid'"):
-        stone_from_mesh("\n".join(lines[:80]).encode(), "stl")
+        shape_from_mesh("\n".join(lines[:80]).encode(), "stl")
     with pytest.raises(
         MeshError, match=r"open: 3 boundary edges.*; the file ends in line 78 without 'endsolid': cut off"
     ):
-        stone_from_mesh("\n".join(lines[:78]).encode(), "stl")
+        shape_from_mesh("\n".join(lines[:78]).encode(), "stl")
 
 
 @pytest.mark.parametrize(
@@ -225,7 +225,7 @@ def test_a_text_stl_is_refused_by_its_line(change: tuple[str, str], cause: str) 
 
 
 def test_several_solids_are_joined_and_told() -> None:
-    stone = stone_from_mesh(text_stl() + text_stl().replace(b"1.0", b"0.5"), "stl")
+    stone = shape_from_mesh(text_stl() + text_stl().replace(b"1.0", b"0.5"), "stl")
     assert said(stone, "The file shows 2 meshes")
 
 

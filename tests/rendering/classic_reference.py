@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.optics.dispersion import channel_indices
 from culet.scene import Scene
 from rendering.room_reference import SURFACES, sky
@@ -22,14 +22,14 @@ EPSILON = 1e-9
 """R that a ray is moved off a surface; the report's 1e-3 suits single precision."""
 
 
-def classic_picture(scene: Scene, stone: Stone, width: int, height: int) -> Array:
+def classic_picture(scene: Scene, stone: Shape, width: int, height: int) -> Array:
     """(height, width, 3) linear radiance."""
     directions = pixel_directions(scene, width, height).reshape(-1, 3)
     channels = [_paths(scene, stone, directions, channel) for channel in range(3)]
     return np.stack(channels, axis=-1).reshape(height, width, 3)
 
 
-def _paths(scene: Scene, stone: Stone, direction: Array, channel: int) -> Array:
+def _paths(scene: Scene, stone: Shape, direction: Array, channel: int) -> Array:
     settings = scene.stones[0]
     eta = channel_indices(settings.material)[channel]
     corners = stone.vertices @ _rotation(settings.orientation).T + np.array(settings.position)

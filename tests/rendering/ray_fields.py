@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from rendering.views import Array
 
 Field = NDArray[np.complex128]
@@ -47,7 +47,7 @@ def bent(direction: Array, normal: Array, n_i: float, n_t: float) -> Array | Non
 
 
 def seen(
-    stone: Stone, eta: float, eye: Array, direction: Array, sky: Callable[[Array], float], averaged: bool = False
+    stone: Shape, eta: float, eye: Array, direction: Array, sky: Callable[[Array], float], averaged: bool = False
 ) -> float:
     """Radiance along one ray from the eye; `averaged` forgets the polarisation at each boundary."""
     normals, offsets = stone.planes[:, :3], stone.planes[:, 3]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.scene.lamps import BoxLamp
 from culet.scene.model import (
@@ -84,7 +84,7 @@ def sky(environment: Environment, direction: Array) -> Array:
             return np.array((0.05, 0.05, 0.1)) * (1 - height) + np.array((0.2, 0.2, 0.3)) * height
 
 
-def world_half_spaces(scene: Scene, stone: Stone | None) -> Array:
+def world_half_spaces(scene: Scene, stone: Shape | None) -> Array:
     """(F, 4) the stone's facets where the scene has it."""
     if stone is None or not scene.stones:
         return np.array([[1.0, 0, 0, -1e9], [-1.0, 0, 0, -1e9]])  # nothing is inside both
@@ -121,7 +121,7 @@ def lighting(scene: Scene, planes: Array, point: Array, normal: Array) -> Array:
     return total
 
 
-def look_around(scene: Scene, stone: Stone | None, width: int, height: int) -> Seen:
+def look_around(scene: Scene, stone: Shape | None, width: int, height: int) -> Seen:
     """(height, width) what the pixels' centres see of the room."""
     direction = pixel_directions(scene, width, height).reshape(-1, 3)
     origin = np.tile(np.array(scene.camera.position, float), (len(direction), 1))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
@@ -28,7 +28,7 @@ def scene(**optics: object) -> Scene:
 def means_by_sample(renderer: Renderer, samples: int, **optics: object) -> Array:
     """(samples,) the whole picture's mean radiance in each sample."""
     shown = scene(**optics)
-    picture = renderer.picture(shown, stone_of(shown.stones[0], {}), 48, 28)
+    picture = renderer.picture(shown, shape_of(shown.stones[0], {}), 48, 28)
     sums = [0.0]
     for number in range(samples):
         picture.refine()

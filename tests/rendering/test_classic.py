@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene import preset
 from culet.scene.legacy import legacy
@@ -38,7 +38,7 @@ def test_the_classic_estimator_draws_what_the_report_describes(exact: Renderer, 
     stone["absorption"] = changes.pop("absorption", stone["absorption"])
     scene = legacy({**data, **changes, "stones": [stone]})
     ours = radiance(take(exact, scene, size=SIZE))
-    theirs = classic_picture(scene, stone_of(scene.stones[0], {}), *SIZE)
+    theirs = classic_picture(scene, shape_of(scene.stones[0], {}), *SIZE)
     with compared(ours, theirs):
         assert np.abs(ours - theirs).max() < 1e-7
     assert theirs.std() > 0.01

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
@@ -19,7 +19,7 @@ from rendering.views import BARE, UPRIGHT, radiance, take
 from shared.stones import brilliant, prism, ring, skew_block, slab, step_cut
 
 STONES = [brilliant(), step_cut(), skew_block(), prism(40)]
-STAR = stone_from_mesh(obj(*extruded(star_outline(), 0.8)), "obj", name="star")
+STAR = shape_from_mesh(obj(*extruded(star_outline(), 0.8)), "obj", name="star")
 BRANCHING = [ring(), finer_ring(), STAR]
 
 MODE = pytest.mark.parametrize("optics", [{}, {"polarised": True}, {"bands": 8}], ids=["scalar", "polarised", "bands"])
@@ -45,7 +45,7 @@ def views(optics: dict[str, object], random: np.random.Generator | None = None) 
         )
 
 
-def largest_error(renderer: Renderer, stone: Stone, scene: Scene, rounding: float = 1e-6) -> float:
+def largest_error(renderer: Renderer, stone: Shape, scene: Scene, rounding: float = 1e-6) -> float:
     """Of any pixel; each is within its bound. What is cut is the mean over channels: one may bear three times that."""
     picture = take(renderer, scene, stone, (64, 36))
     error, cut = abs(radiance(picture) - 1).max(axis=-1), picture.cut_map()
@@ -57,7 +57,7 @@ def largest_error(renderer: Renderer, stone: Stone, scene: Scene, rounding: floa
 @MODE
 @pytest.mark.parametrize("stone", STONES, ids=lambda stone: stone.name)
 def test_every_pixel_is_one_to_a_hundred_thousandth(
-    renderer: Renderer, stone: Stone, optics: dict[str, object]
+    renderer: Renderer, stone: Shape, optics: dict[str, object]
 ) -> None:
     for scene in views(optics):
         assert largest_error(renderer, stone, scene) < 1e-5  # measured 1.4e-6
@@ -66,7 +66,7 @@ def test_every_pixel_is_one_to_a_hundred_thousandth(
 @MODE
 @pytest.mark.parametrize("stone", BRANCHING, ids=lambda stone: stone.name)
 def test_where_light_branches_pixels_lose_no_more(
-    renderer: Renderer, exact: Renderer, stone: Stone, optics: dict[str, object]
+    renderer: Renderer, exact: Renderer, stone: Shape, optics: dict[str, object]
 ) -> None:
     """Light that has left these stones meets them again, and each of many chains ends on its own. If all end at the
     same weight, pixels are off by 7.7e-5 in the ring, 5.6e-5 in the finer one, and 1.0e-4 in the star."""
@@ -77,12 +77,12 @@ def test_where_light_branches_pixels_lose_no_more(
         assert largest_error(used, stone, scene) < 1e-5  # measured 6.9e-6, 8.8e-6, 9.3e-6
 
 
-def triangle(angle_a: float, angle_b: float, height: float) -> Stone:
+def triangle(angle_a: float, angle_b: float, height: float) -> Shape:
     """A prism over the triangle with these two angles, degrees."""
     a, b = np.radians((angle_a, angle_b))
     side = np.sin(b) / np.sin(a + b)
     corners = np.array([(0, 0), (1, 0), (side * np.cos(a), side * np.sin(a))])
-    return stone_from_mesh(obj(*extruded(corners - corners.mean(axis=0), height)), "obj", name="prism")
+    return shape_from_mesh(obj(*extruded(corners - corners.mean(axis=0), height)), "obj", name="prism")
 
 
 def test_in_boxes_light_keeps_its_angle(renderer: Renderer, exact: Renderer) -> None:

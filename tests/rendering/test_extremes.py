@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from pictures import compared
@@ -67,7 +67,7 @@ def test_a_stone_looks_the_same_from_far_and_from_farther(exact: Renderer, rende
 
 
 @pytest.mark.parametrize("stone", THIN_STONES.values(), ids=THIN_STONES.keys())
-def test_thin_stones_lose_and_gain_no_light(renderer: Renderer, exact: Renderer, stone: Stone) -> None:
+def test_thin_stones_lose_and_gain_no_light(renderer: Renderer, exact: Renderer, stone: Shape) -> None:
     """The furnace on shapes of 1000 : 1 and more: all light is seen or counted."""
     camera = looking([0.8, 1.5, 2.5], [0, 0, 0], fov_degrees=40)
     for used, tolerance in ((renderer, 3e-7), (exact, 1e-15)):  # measured 9.4e-8 and 2.3e-16

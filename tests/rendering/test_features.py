@@ -11,7 +11,7 @@ import pyopencl as cl
 import pytest
 
 from conftest import RendererOf
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import PRESETS
@@ -138,7 +138,7 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
 
 def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> None:
     """Lights, boxes and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
-    stone = stone_of(LEGACY_DEFAULT.stones[0], {})
+    stone = shape_of(LEGACY_DEFAULT.stones[0], {})
     left = {
         name: {
             field.name for field in fields(Features) if getattr(features_of(preset.scene, stone), field.name) == RUNTIME

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
@@ -32,7 +32,7 @@ def furnace(camera: dict[str, Any], **optics: object) -> Scene:
 @pytest.mark.parametrize("polarised", [False, True])
 @pytest.mark.parametrize("stone", STONES.values(), ids=STONES.keys())
 def test_every_pixel_is_one_within_what_was_cut(
-    renderer: Renderer, exact: Renderer, stone: Stone, polarised: bool
+    renderer: Renderer, exact: Renderer, stone: Shape, polarised: bool
 ) -> None:
     camera = {"position": [1.2, 1.4, 1.9], "target": [0, 0, 0], "fov_degrees": 40}
     for used, tolerance in ((renderer, 1e-6), (exact, 1e-12)):

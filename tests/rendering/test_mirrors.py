@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.rendering.features import features_of
 from culet.rendering.mirrors import makes_finite_group
 from culet.scene.legacy import LEGACY_DEFAULT
@@ -21,18 +21,18 @@ FINITE = {
     "60, 60, 60": prism(60),
     "45, 45, 90": prism(90),
     "40, 70, 70": prism(40),
-    "L": stone_from_mesh(obj(*extruded(L_SHAPE, 0.7)), "obj", name="L"),
+    "L": shape_from_mesh(obj(*extruded(L_SHAPE, 0.7)), "obj", name="L"),
 }
 ENDLESS = [brilliant(), step_cut(), skew_block(), ring(), ball(5000)()]
 
 
 @pytest.mark.parametrize("stone", FINITE.values(), ids=FINITE.keys())
-def test_of_boxes_and_prisms_the_mirrors_are_few(stone: Stone) -> None:
+def test_of_boxes_and_prisms_the_mirrors_are_few(stone: Shape) -> None:
     assert makes_finite_group(stone)
     assert features_of(LEGACY_DEFAULT, stone).few_mirrors == 1
 
 
 @pytest.mark.parametrize("stone", ENDLESS, ids=lambda stone: stone.name)
-def test_other_stones_have_no_end_of_mirrors(stone: Stone) -> None:
+def test_other_stones_have_no_end_of_mirrors(stone: Shape) -> None:
     assert not makes_finite_group(stone)
     assert features_of(LEGACY_DEFAULT, stone).few_mirrors == 0

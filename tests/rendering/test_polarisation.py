@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene, StoneSettings
 from culet.scene.legacy import legacy
@@ -72,9 +72,9 @@ def gradient(direction: Array) -> float:
 
 
 @pytest.mark.parametrize(("eta", "sky"), [(1.5, half), (2.42, gradient)], ids=["1.5, half", "2.42, gradient"])
-@pytest.mark.parametrize("stone", [stone_of(StoneSettings(), {}), skew_block()], ids=["brilliant", "skew block"])
+@pytest.mark.parametrize("stone", [shape_of(StoneSettings(), {}), skew_block()], ids=["brilliant", "skew block"])
 def test_rays_see_what_their_electric_fields_say(
-    renderer: Renderer, exact: Renderer, stone: Stone, eta: float, sky: Callable[[Array], float]
+    renderer: Renderer, exact: Renderer, stone: Shape, eta: float, sky: Callable[[Array], float]
 ) -> None:
     """Dozens of skew reflections each, many of them total: a wrong rotation, sign or phase shows in the third digit."""
     random = np.random.default_rng(3)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from optics.closed_forms import DIAMOND, deviation, fresnel, minimum_deviation
@@ -19,7 +19,7 @@ LEFT = 0
 
 
 def measured_deviation(
-    renderer: Renderer, stone: Stone, apex: float, indices: tuple[float, float, float], incidence: float
+    renderer: Renderer, stone: Shape, apex: float, indices: tuple[float, float, float], incidence: float
 ) -> list[float]:
     """Degrees by which each channel's ray is turned; it enters in the middle of the left facet, rising.
 

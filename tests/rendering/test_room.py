@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
@@ -35,7 +35,7 @@ SKIES: dict[str, dict[str, Any]] = {
 ROOMS = [(floor, walls) for floor in ("none", "matte", "mirror") for walls in ("none", "matte", "mirror")]
 
 
-def compare(renderer: Renderer, scene: Scene, stone: Stone | None, tolerance: float, doubtful: int) -> None:
+def compare(renderer: Renderer, scene: Scene, stone: Shape | None, tolerance: float, doubtful: int) -> None:
     """Pixels that see the room alone agree, but for those whose ray meets a checker's or a shadow's edge."""
     expected = look_around(scene, stone, *SIZE)
     seen = radiance(take(renderer, scene, stone, SIZE))
@@ -122,7 +122,7 @@ def test_shadows_lie_where_the_stone_is_in_the_way(
     camera = {"position": [x, 5, z + 5], "target": [x, -1, z], "fov_degrees": 60}
     data = {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}, "camera": camera, "stones": [place], "optics": FINE}
     scene = legacy({**data, **light})
-    compare(exact, scene, stone_of(scene.stones[0], {}), 1e-11, 0)
+    compare(exact, scene, shape_of(scene.stones[0], {}), 1e-11, 0)
 
 
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES.keys())
@@ -144,4 +144,4 @@ def test_a_mirror_shows_the_stones_shadow(exact: Renderer) -> None:
     camera = {"position": [0, 1, 4], "target": [0, 0.3, -8], "fov_degrees": 60}
     data = {"floor": {"kind": "matte"}, "walls": {"kind": "mirror"}, "camera": camera, "optics": FINE}
     scene = legacy({**data, "stones": [{"position": [0, 0.2, -4]}]})
-    compare(exact, scene, stone_of(scene.stones[0], {}), 1e-11, 0)
+    compare(exact, scene, shape_of(scene.stones[0], {}), 1e-11, 0)

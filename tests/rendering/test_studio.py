@@ -13,8 +13,8 @@ import pytest
 import trimesh
 
 from conftest import RendererOf
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.rendering.features import ESTIMATOR, Features, features_of, geometry_of
 from culet.rendering.panoramas import directions
 from culet.rendering.projection import rotation_matrix
@@ -42,7 +42,7 @@ BEFORE = np.load(Path(__file__).parent / "legacy_default.npz")
 
 
 def shown(
-    renderer: Renderer, scene: Scene, stone: Stone | None = None, size: tuple[int, int] = SIZE, samples: int = 1
+    renderer: Renderer, scene: Scene, stone: Shape | None = None, size: tuple[int, int] = SIZE, samples: int = 1
 ) -> Array:
     """The picture by the general program, which is compiled once for all."""
     features = Features(geometry_of(stone if scene.stones else None), estimator=ESTIMATOR[scene.optics.estimator])
@@ -66,7 +66,7 @@ def floor_points(scene: Scene) -> tuple[Array, Array]:
 
 
 @pytest.mark.parametrize("name", ["legacy", *PRESETS])
-def test_a_scene_that_asks_for_none_of_it_has_a_program_without_it(name: str, brilliant: Stone) -> None:
+def test_a_scene_that_asks_for_none_of_it_has_a_program_without_it(name: str, brilliant: Shape) -> None:
     scene = LEGACY_DEFAULT if name == "legacy" else PRESETS[name].scene
     asks = scene.head is not None or scene.backdrop.kind != "none" or not scene.optics.glare
     features = features_of(scene, brilliant)
@@ -75,7 +75,7 @@ def test_a_scene_that_asks_for_none_of_it_has_a_program_without_it(name: str, br
     assert (found == OFF) is not (asks or any(lamp.shape == "box" for lamp in lamps))
 
 
-def test_the_legacy_default_is_drawn_as_before(exact: Renderer, brilliant: Stone) -> None:
+def test_the_legacy_default_is_drawn_as_before(exact: Renderer, brilliant: Shape) -> None:
     """To the bit as version 0.1 drew it on the same machine; another processor rounds at edges otherwise."""
     picture = take(exact, LEGACY_DEFAULT, brilliant, SIZE)
     assert radiance(picture) == pytest.approx(BEFORE["radiance"], abs=1e-6)
@@ -144,7 +144,7 @@ def test_a_mirror_floor_shows_the_backdrop_too(exact: Renderer) -> None:
     assert seen[~below] == pytest.approx(np.tile((0.1, 0.2, 0.3), ((~below).sum(), 1)), abs=1e-12)
 
 
-def test_what_stones_see_is_no_backdrop(exact: Renderer, brilliant: Stone) -> None:
+def test_what_stones_see_is_no_backdrop(exact: Renderer, brilliant: Shape) -> None:
     """The stone's pixels are those without it; all others differ."""
     stone = {"stones": [{**UPRIGHT}]}
     plain = {"backdrop": {"kind": "plain", "colour": [7, 7, 7]}}
@@ -157,7 +157,7 @@ def test_what_stones_see_is_no_backdrop(exact: Renderer, brilliant: Stone) -> No
     assert meets.sum() > 50
 
 
-def test_a_head_as_bright_as_the_sky_is_not_seen(exact: Renderer, brilliant: Stone) -> None:
+def test_a_head_as_bright_as_the_sky_is_not_seen(exact: Renderer, brilliant: Shape) -> None:
     constant = {"kind": "constant", "radiance": [0.5, 1, 2]}
     plain, headed = (
         shown(exact, scene_of(stones=[{}], environment=constant, head=head), brilliant)
@@ -166,7 +166,7 @@ def test_a_head_as_bright_as_the_sky_is_not_seen(exact: Renderer, brilliant: Sto
     assert headed == pytest.approx(plain, abs=1e-12)
 
 
-def test_the_head_hides_the_sky_around_the_camera_from_stones_alone(exact: Renderer, brilliant: Stone) -> None:
+def test_the_head_hides_the_sky_around_the_camera_from_stones_alone(exact: Renderer, brilliant: Shape) -> None:
     """From below, a head of 90 degrees is all that is under the horizon: what is left is `half`, lit from above. The
     camera itself sees the sky, below too."""
     camera = {"position": [0, -40, 0.001], "target": [0, 0, 0], "fov_degrees": 4}
@@ -182,7 +182,7 @@ def test_the_head_hides_the_sky_around_the_camera_from_stones_alone(exact: Rende
     assert (abs(headed - half)[stone].max(axis=-1) < 1e-6).mean() > 0.7  # measured 0.78
 
 
-def test_the_head_follows_the_camera(exact: Renderer, brilliant: Stone) -> None:
+def test_the_head_follows_the_camera(exact: Renderer, brilliant: Shape) -> None:
     """The whole scene turned about the vertical, camera included: the same picture."""
     head = {"half_angle_degrees": 25}
     pictures = []
@@ -198,7 +198,7 @@ def test_the_head_follows_the_camera(exact: Renderer, brilliant: Stone) -> None:
     assert pictures[0].min() < 0.5
 
 
-def test_a_studio_as_a_panorama_shows_the_same_stone(renderer: Renderer, brilliant: Stone) -> None:
+def test_a_studio_as_a_panorama_shows_the_same_stone(renderer: Renderer, brilliant: Shape) -> None:
     """All of it painted into a picture of all directions by numpy: lamps, boxes, the head, the floor's colour."""
     common: dict[str, Any] = {
         "stones": [{"position": [0, 0.5, 0]}],
@@ -226,7 +226,7 @@ def test_a_studio_as_a_panorama_shows_the_same_stone(renderer: Renderer, brillia
     assert apart.mean() < 0.01 * expected[stone].mean()  # measured 0.4 %
 
 
-def test_the_floor_shows_a_stone_by_its_reflectance_and_height(exact: Renderer, brilliant: Stone) -> None:
+def test_the_floor_shows_a_stone_by_its_reflectance_and_height(exact: Renderer, brilliant: Shape) -> None:
     """A stone of index 1 does not change light, so that what the floor mirrors of it is the sky behind it, of radiance
     1: on a black floor each such pixel shows reflectance e^(-height / fade)."""
     floor = {"kind": "studio", "colour": [0, 0, 0], "reflectance": 0.5, "fade": 0.7, "shadow": 0}
@@ -251,7 +251,7 @@ def test_the_floor_shows_a_stone_by_its_reflectance_and_height(exact: Renderer, 
     assert (seen[bare] == 0).all()
 
 
-def test_more_samples_soften_the_reflection_far_above_the_floor(renderer: Renderer, brilliant: Stone) -> None:
+def test_more_samples_soften_the_reflection_far_above_the_floor(renderer: Renderer, brilliant: Shape) -> None:
     """The first sample is sharp; the mean of many is that of a floor tilted to all sides."""
     camera = {"position": [0, 6, 8], "target": [0, -0.5, 0], "fov_degrees": 24}
     common: dict[str, Any] = {"stones": [{"position": [0, 0.2, 0]}], "camera": camera}
@@ -277,7 +277,7 @@ def sky_kept_away(planes: Array, points: Array, directions_: int = 4000) -> Arra
     return np.array([passes_through(planes, np.tile(point, (len(d), 1)), d).mean() for point in points])
 
 
-def shown_shadow(exact: Renderer, scene: Scene, stone: Stone) -> tuple[Array, Array]:
+def shown_shadow(exact: Renderer, scene: Scene, stone: Shape) -> tuple[Array, Array]:
     """(N, 3) points of the floor around the stone that the camera sees, and the part of their light that is missing."""
     seen = 1 - shown(exact, scene, stone)[..., 0].ravel()
     points, d = floor_points(scene)
@@ -297,7 +297,7 @@ SHADOWED: dict[str, Any] = {
 def test_the_contact_shadow_of_a_ball_is_that_of_an_even_sky(exact: Renderer) -> None:
     """The ball is whole above each point's horizon, so that it keeps away height x radius^2 / distance^3 of the light
     (plane element to sphere, Howell's catalogue of configuration factors). What is darker is led towards all of it."""
-    ball = stone_from_mesh(trimesh.creation.icosphere(4).export(file_type="obj").encode(), "obj", name="ball.obj")
+    ball = shape_from_mesh(trimesh.creation.icosphere(4).export(file_type="obj").encode(), "obj", name="ball.obj")
     middle = np.array([0, 0.3, 0])
     points, seen = shown_shadow(exact, scene_of(**SHADOWED, stones=[{"position": middle.tolist()}]), ball)
     truth = 1.3 / np.linalg.norm(middle - points, axis=1) ** 3
@@ -306,7 +306,7 @@ def test_the_contact_shadow_of_a_ball_is_that_of_an_even_sky(exact: Renderer) ->
 
 
 def test_the_contact_shadow_of_a_brilliant_at_rest_is_near_that_of_an_even_sky(
-    exact: Renderer, brilliant: Stone
+    exact: Renderer, brilliant: Shape
 ) -> None:
     scene = scene_of(**SHADOWED, stones=[{"position": [0, -0.373345, 0]}])
     points, seen = shown_shadow(exact, scene, brilliant)
@@ -316,7 +316,7 @@ def test_the_contact_shadow_of_a_brilliant_at_rest_is_near_that_of_an_even_sky(
     assert abs(seen - truth).max() < 0.25
 
 
-def test_the_shadows_ellipsoid_has_the_stones_moments(brilliant: Stone) -> None:
+def test_the_shadows_ellipsoid_has_the_stones_moments(brilliant: Shape) -> None:
     """A slab's: second moments of a box are a third of its half widths squared (uniform density)."""
     plate = slab(0.3)
     half = np.array([np.sqrt((1 - 0.09) / 2), 0.3, np.sqrt((1 - 0.09) / 2)])
@@ -347,7 +347,7 @@ def test_without_glare_the_first_reflection_is_missing_and_nothing_else(exact: R
     assert without == pytest.approx(1 - fresnel(float(np.sqrt(1 - cos_i**2)), 1, 2), abs=1e-7)
 
 
-def test_parallel_rays_are_those_of_a_pinhole_far_away(exact: Renderer, brilliant: Stone) -> None:
+def test_parallel_rays_are_those_of_a_pinhole_far_away(exact: Renderer, brilliant: Shape) -> None:
     """From 1e5 R, where the angle between two rays is at most 3e-5."""
     away, height = 1e5, 3.0
     way = np.array([0, 0.6, 0.8])
@@ -363,7 +363,7 @@ def test_parallel_rays_are_those_of_a_pinhole_far_away(exact: Renderer, brillian
 
 
 @pytest.mark.parametrize("distance", [-5.0, 0.0, 0.5, 2.0, 50.0])
-def test_a_plane_of_parallel_rays_is_never_within_the_stone(exact: Renderer, brilliant: Stone, distance: float) -> None:
+def test_a_plane_of_parallel_rays_is_never_within_the_stone(exact: Renderer, brilliant: Shape, distance: float) -> None:
     """Wherever on the line of sight the camera is put, it shows the same stone."""
     pictures = [
         shown(
@@ -393,7 +393,7 @@ EVERYTHING: dict[str, Any] = {
 @pytest.mark.parametrize(
     "more", [{}, {"walls": {"kind": "matte"}}, {"walls": {"kind": "mirror"}}], ids=["", "matte", "mirror"]
 )
-def test_the_general_program_shows_the_same(renderer: Renderer, brilliant: Stone, more: dict[str, Any]) -> None:
+def test_the_general_program_shows_the_same(renderer: Renderer, brilliant: Shape, more: dict[str, Any]) -> None:
     """Walls too: the studio floor is one of the room's surfaces then."""
     scene = scene_of(**EVERYTHING, **more)
     own, general = (radiance(take(renderer, scene, brilliant, features=which)) for which in (None, Features()))
@@ -406,7 +406,7 @@ def test_the_general_program_shows_the_same(renderer: Renderer, brilliant: Stone
 def test_packets_of_any_width_show_the_same(
     renderer_of: RendererOf,
     exact: Renderer,
-    brilliant: Stone,
+    brilliant: Shape,
     lanes: int,
 ) -> None:
     scene = scene_of(**EVERYTHING)

@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 import culet_kernels
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.device import Device, Real
 from culet.rendering.parameters import layout
 from culet.rendering.program import FLAGS, Variant
@@ -27,7 +27,7 @@ TURNS = 4
 """Orientations of the stone, the first of which is that of its file."""
 
 
-STONES: dict[str, Callable[[], Stone]] = {
+STONES: dict[str, Callable[[], Shape]] = {
     "brilliant": brilliant,
     "ring": ring,
     "star": star,
@@ -68,7 +68,7 @@ ENOUGH = {np.float32: 5e-5, np.float64: 3e-12}
 precision."""
 
 
-def aimed(stone: Stone, count: int, random: np.random.Generator) -> Array:
+def aimed(stone: Shape, count: int, random: np.random.Generator) -> Array:
     """(count, 6) starts and unit directions: from all around, at vertices, middles of edges and anywhere on edges; one
     in ten along an edge."""
     triangles = stone.triangles
@@ -85,7 +85,7 @@ def aimed(stone: Stone, count: int, random: np.random.Generator) -> Array:
 
 
 def walk(
-    device: Device, real: Real, stone: Stone, count: int, last_widening: float = 16
+    device: Device, real: Real, stone: Shape, count: int, last_widening: float = 16
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Of `count` rays, those that meet the stone: how many segments each has inside, and how far from the centre.
     Triangles that a ray inside misses are widened until they are so by `last_widening` R or more."""

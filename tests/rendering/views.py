@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
@@ -26,14 +26,14 @@ UPRIGHT: dict[str, Any] = {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}
 def take(
     renderer: Renderer,
     scene: Scene,
-    stone: Stone | None = None,
+    stone: Shape | None = None,
     size: tuple[int, int] = (96, 54),
     samples: int = 1,
     features: Features | None = None,
 ) -> Picture:
     """A finished picture; the stone is the scene's own cut unless another is given."""
     if stone is None and scene.stones:
-        stone = stone_of(scene.stones[0], {})
+        stone = shape_of(scene.stones[0], {})
     picture = renderer.picture(scene, stone, *size, features=features)
     picture.refine(samples)
     return picture

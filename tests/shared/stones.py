@@ -13,10 +13,10 @@ import numpy as np
 import trimesh
 from scipy.spatial import ConvexHull
 
-from culet.geometry.half_spaces import stone_from_half_spaces
-from culet.geometry.load import stone_of
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.half_spaces import shape_from_half_spaces
+from culet.geometry.load import shape_of
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.scene import StoneSettings
 from culet.study.extremes import ball, box, tetrahedron
 from geometry.shapes import obj, star_outline
@@ -28,12 +28,12 @@ __all__ = [
 ]  # fmt: skip
 
 
-def brilliant() -> Stone:
+def brilliant() -> Shape:
     """The default cut: 57 facets and a girdle."""
-    return stone_of(StoneSettings(), {})
+    return shape_of(StoneSettings(), {})
 
 
-def step_cut() -> Stone:
+def step_cut() -> Shape:
     """An emerald cut of 3 : 2 with three steps above and below the girdle, and a culet.
 
     It has 54 facets, since the lowest step ends before the corners. Each step lies on the girdle's outline or inside
@@ -52,27 +52,27 @@ def step_cut() -> Stone:
             tilt = math.radians(degrees)
             sine, up = abs(math.sin(tilt)), math.copysign(math.cos(tilt), degrees)
             planes.append([across[0] * sine, up, across[1] * sine, (distance - inset) * sine + height * up])
-    return stone_from_half_spaces("step cut", np.array(planes))
+    return shape_from_half_spaces("step cut", np.array(planes))
 
 
-def ring() -> Stone:
+def ring() -> Shape:
     """A faceted torus, which is not convex: light that has left it may meet it again."""
     torus = trimesh.creation.torus(major_radius=0.66, minor_radius=0.34, major_sections=14, minor_sections=9)
     turn = np.array([[0.36, -0.48, 0.8], [0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0, 0, 0]])
     turned = torus.apply_transform(np.column_stack([turn, [0, 0, 0, 1]]))
-    return stone_from_mesh(turned.export(file_type="obj").encode(), "obj", name="ring")
+    return shape_from_mesh(turned.export(file_type="obj").encode(), "obj", name="ring")
 
 
-def skew_block() -> Stone:
+def skew_block() -> Shape:
     """Six faces, no two of them parallel or at right angles: each reflection turns the plane of incidence."""
     planes = [
         [1, 0.2, 0.1, 0.6], [-1, 0.15, 0.25, 0.6], [0.15, 1, -0.2, 0.5],
         [0.25, -1, -0.3, 0.5], [-0.2, 0.1, 1, 0.6], [0.1, 0.3, -1, 0.6],
     ]  # fmt: skip
-    return stone_from_half_spaces("skew block", np.array(planes))
+    return shape_from_half_spaces("skew block", np.array(planes))
 
 
-def slab(half_height: float) -> Stone:
+def slab(half_height: float) -> Shape:
     """A plate between y = -half_height and half_height, of square outline; its corners are at distance 1."""
     half_width = math.sqrt((1 - half_height**2) / 2)
     planes = [
@@ -80,31 +80,31 @@ def slab(half_height: float) -> Stone:
         for axis, extent in enumerate((half_width, half_height, half_width))
         for sign in (1, -1)
     ]
-    return stone_from_half_spaces("slab", np.array(planes))
+    return shape_from_half_spaces("slab", np.array(planes))
 
 
-def prism(apex_degrees: float) -> Stone:
+def prism(apex_degrees: float) -> Shape:
     """A prism along z with its apex up: facet 0 faces -x, facet 1 faces +x, both half the apex angle from vertical."""
     half = math.radians(apex_degrees) / 2
     left, right = [-math.cos(half), math.sin(half), 0, 0], [math.cos(half), math.sin(half), 0, 0]
-    return stone_from_half_spaces("prism", np.array([left, right, [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1.0]]))
+    return shape_from_half_spaces("prism", np.array([left, right, [0, -1, 0, 1], [0, 0, 1, 1], [0, 0, -1, 1.0]]))
 
 
-def needle() -> Stone:
+def needle() -> Shape:
     """A thousand times as long as it is wide."""
     sides = [[x, y, 0, 0.001] for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))]
-    return stone_from_half_spaces("needle", np.array([*sides, [0, 0, 1, 1], [0, 0, -1, 1.0]]))
+    return shape_from_half_spaces("needle", np.array([*sides, [0, 0, 1, 1], [0, 0, -1, 1.0]]))
 
 
-def star() -> Stone:
+def star() -> Shape:
     """Ten dents and points between two flat faces."""
-    return stone_from_mesh(obj(*extruded(star_outline(), 0.8)), "obj", name="star")
+    return shape_from_mesh(obj(*extruded(star_outline(), 0.8)), "obj", name="star")
 
 
-def thorns(seed: int) -> Callable[[], Stone]:
+def thorns(seed: int) -> Callable[[], Shape]:
     """300 random directions, at random distances from the centre: skinny triangles, sharp peaks and dents."""
 
-    def make() -> Stone:
+    def make() -> Shape:
         random = np.random.default_rng(seed)
         directions = random.normal(size=(300, 3))
         directions /= np.linalg.norm(directions, axis=1)[:, None]
@@ -112,6 +112,6 @@ def thorns(seed: int) -> Callable[[], Stone]:
         a, b, c = directions[triangles].transpose(1, 0, 2)
         inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
         triangles[inward] = triangles[inward][:, ::-1]
-        return stone_from_mesh(obj(directions * random.uniform(0.3, 1, (300, 1)), triangles), "obj", name="thorns")
+        return shape_from_mesh(obj(directions * random.uniform(0.3, 1, (300, 1)), triangles), "obj", name="thorns")
 
     return make

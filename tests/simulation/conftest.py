@@ -4,30 +4,30 @@ from __future__ import annotations
 
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from shared import trimesh_stones
 
 
 @pytest.fixture(scope="session")
-def box() -> Stone:
+def box() -> Shape:
     return trimesh_stones.box()
 
 
 @pytest.fixture(scope="session")
-def exact_box() -> Stone:
+def exact_box() -> Shape:
     return trimesh_stones.exact_box()
 
 
 @pytest.fixture(scope="session")
-def double_cone() -> Stone:
+def double_cone() -> Shape:
     return trimesh_stones.double_cone()
 
 
 @pytest.fixture(scope="session")
-def ring() -> Stone:
+def ring() -> Shape:
     return trimesh_stones.ring()
 
 
 @pytest.fixture(scope="session")
-def ball() -> Stone:
+def ball() -> Shape:
     return trimesh_stones.ball()

@@ -8,7 +8,7 @@ import struct
 
 import numpy as np
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.motion import Motion, gaps
@@ -23,7 +23,7 @@ TABLE_DOWN: Quaternion = (0.0, 1.0, 0.0, 0.0)
 
 
 def rigid(
-    stone: Stone,
+    stone: Shape,
     position: Triple = (0.0, 4.0, 0.0),
     orientation: Quaternion = UPRIGHT,
     surfaces: tuple[Surface, ...] = (FLOOR,),
@@ -34,7 +34,7 @@ def rigid(
     return Simulation(SimulationSettings.model_validate(bare | settings), stone, position, orientation, surfaces)
 
 
-def classic(stone: Stone, position: Triple = (0.0, 4.0, 0.0), **settings: object) -> Simulation:
+def classic(stone: Shape, position: Triple = (0.0, 4.0, 0.0), **settings: object) -> Simulation:
     """The report's model at its step, otherwise as the scene's default."""
     reported = {"model": "classic", "time_step": 1 / 30}
     return Simulation(SimulationSettings.model_validate(reported | settings), stone, position, UPRIGHT)
@@ -91,7 +91,7 @@ def about(axis: Triple, angle: float) -> Quaternion:
 TILTED = about((0.6, 0.0, 0.8), 0.7)
 
 
-def lowest(stone: Stone) -> float:
+def lowest(stone: Shape) -> float:
     """Height at which the unturned stone stands on the floor."""
     return FLOOR.offset - float(stone.vertices[:, 1].min())
 
@@ -102,7 +102,7 @@ def tilted_floor(angle: float) -> Surface:
     return Surface(normal, -math.cos(angle))
 
 
-def random_body(stone: Stone, rng: np.random.Generator) -> tuple[RigidBody, Motion]:
+def random_body(stone: Shape, rng: np.random.Generator) -> tuple[RigidBody, Motion]:
     """The stone with a vertex, edge or facet on the floor, in random motion."""
     body = RigidBody.of(SimulationSettings.model_validate({"model": "rigid", "mass": 1}), stone)
     kind = rng.integers(3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.active_set import refine
 from culet.simulation.body import RigidBody
@@ -36,7 +36,7 @@ def test_a_singular_matrix_is_told() -> None:
 @pytest.mark.parametrize("changes", [{}, {"mass": 1e-9}])
 @pytest.mark.parametrize(("friction", "slips"), [(1e3, False), (0.1, True)])
 def test_refining_solves_four_corners_that_stick_or_slip(
-    box: Stone, changes: dict[str, float], friction: float, slips: bool
+    box: Shape, changes: dict[str, float], friction: float, slips: bool
 ) -> None:
     """The default mass is a whole number; two corners would be enough, so that the impulses are not unique."""
     settings = SimulationSettings.model_validate(changes)

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
 from culet.simulation.surfaces import FLOOR, WALLS
@@ -32,11 +32,11 @@ def adjusted(moving: Simulation, **changes: object) -> Simulation:
     return moving
 
 
-def falling(box: Stone) -> Simulation:
+def falling(box: Shape) -> Simulation:
     return rigid(box, (0.0, 1.0, 0.0), TILTED, spin=(1, 2, 3), velocity=(1, 0, 0))
 
 
-def asleep(box: Stone) -> Simulation:
+def asleep(box: Shape) -> Simulation:
     moving = rigid(box, (0.0, lowest(box), 0.0))
     moving.step()
     assert moving.state.asleep
@@ -44,7 +44,7 @@ def asleep(box: Stone) -> Simulation:
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_a_change_keeps_pose_and_velocities_and_alters_what_follows(box: Stone, name: str) -> None:
+def test_a_change_keeps_pose_and_velocities_and_alters_what_follows(box: Shape, name: str) -> None:
     whole, other = falling(box), falling(box)
     advance(whole, 0.3)
     advance(other, 0.3)
@@ -62,7 +62,7 @@ def test_a_change_keeps_pose_and_velocities_and_alters_what_follows(box: Stone, 
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_the_same_changes_at_the_same_steps_give_the_same_bits(box: Stone, name: str) -> None:
+def test_the_same_changes_at_the_same_steps_give_the_same_bits(box: Shape, name: str) -> None:
     def path() -> list[RigidState]:
         moving = falling(box)
         return advance(moving, 0.5) + advance(adjusted(moving, **CHANGES[name]), 1)
@@ -70,7 +70,7 @@ def test_the_same_changes_at_the_same_steps_give_the_same_bits(box: Stone, name:
     assert path() == path()
 
 
-def test_a_change_back_before_the_next_step_changes_nothing(box: Stone) -> None:
+def test_a_change_back_before_the_next_step_changes_nothing(box: Shape) -> None:
     moving, whole = falling(box), falling(box)
     for one in (moving, whole):
         advance(one, 0.5)
@@ -78,7 +78,7 @@ def test_a_change_back_before_the_next_step_changes_nothing(box: Stone) -> None:
     assert advance(moving, 1) == advance(whole, 1)
 
 
-def test_velocity_and_spin_are_of_the_start(box: Stone) -> None:
+def test_velocity_and_spin_are_of_the_start(box: Shape) -> None:
     moving = falling(box)
     adjusted(moving, velocity=(0, 0, 2), spin=(4, 0, 0))
     assert moving.body.velocity(moving.state) == (0, 0, 2), "no step was taken: it starts so"
@@ -91,7 +91,7 @@ def test_velocity_and_spin_are_of_the_start(box: Stone) -> None:
 
 
 @pytest.mark.parametrize("change", [{"gravity": 30}, {"friction": 0}, {"restitution": 1}, {"mass": 1e3}])
-def test_a_stone_on_its_facet_sleeps_on(box: Stone, change: dict[str, Any]) -> None:
+def test_a_stone_on_its_facet_sleeps_on(box: Shape, change: dict[str, Any]) -> None:
     moving = asleep(box)
     before = moving.state
     adjusted(moving, **change)
@@ -100,11 +100,11 @@ def test_a_stone_on_its_facet_sleeps_on(box: Stone, change: dict[str, Any]) -> N
     assert moving.settled
 
 
-def test_a_stone_that_may_not_sleep_any_more_wakes(box: Stone) -> None:
+def test_a_stone_that_may_not_sleep_any_more_wakes(box: Shape) -> None:
     assert not adjusted(asleep(box), sleeping=False).state.asleep
 
 
-def test_a_stone_that_the_classic_model_balanced_falls_over(box: Stone) -> None:
+def test_a_stone_that_the_classic_model_balanced_falls_over(box: Shape) -> None:
     moving = rigid(box, (0.0, 0.0, 0.0), TILTED, model="classic", time_step=1 / 60)
     while not moving.state.asleep:
         moving.step()
@@ -116,7 +116,7 @@ def test_a_stone_that_the_classic_model_balanced_falls_over(box: Stone) -> None:
     assert -1e-5 < nearest(moving) < 1e-5
 
 
-def test_the_hull_is_computed_once_for_a_stone(box: Stone) -> None:
+def test_the_hull_is_computed_once_for_a_stone(box: Shape) -> None:
     moving = falling(box)
     hull = moving.body.hull
     moving.surround((FLOOR, *WALLS))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from culet.errors import InputError
-from culet.geometry.stone import MassProperties, Stone
+from culet.geometry.shape import MassProperties, Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import normalised
@@ -20,11 +20,11 @@ SCENE_DEFAULT = SimulationSettings.model_validate({})
 TILTED = normalised((0.9, 0.1, -0.3, 0.2))
 
 
-def with_inertia(stone: Stone, tensor: NDArray[np.float64]) -> Stone:
+def with_inertia(stone: Shape, tensor: NDArray[np.float64]) -> Shape:
     return replace(stone, mass=MassProperties(stone.mass.volume, tensor))
 
 
-def test_angular_velocity_is_the_inverse_tensor_times_angular_momentum(box: Stone) -> None:
+def test_angular_velocity_is_the_inverse_tensor_times_angular_momentum(box: Shape) -> None:
     body = RigidBody.of(SimulationSettings.model_validate({"mass": 5}), box)
     momentum = body.angular_momentum(TILTED, (1.0, -2.0, 0.5))
     to_world = Rotation.from_quat(TILTED, scalar_first=True).as_matrix()
@@ -34,7 +34,7 @@ def test_angular_velocity_is_the_inverse_tensor_times_angular_momentum(box: Ston
     assert body.angular_velocity(state) == pytest.approx((1.0, -2.0, 0.5), abs=4e-15)  # measured 7e-16
 
 
-def test_energy_is_half_m_v2_plus_half_omega_i_omega_plus_m_g_height(box: Stone) -> None:
+def test_energy_is_half_m_v2_plus_half_omega_i_omega_plus_m_g_height(box: Shape) -> None:
     body = RigidBody.of(SimulationSettings.model_validate({"mass": 5}), box)
     spin = body.angular_momentum((1.0, 0.0, 0.0, 0.0), (2.0, 0.0, 0.0))
     state = RigidState(0, 0.0, (0.0, 3.0, 0.0), (1.0, 0.0, 0.0, 0.0), (10.0, 0.0, 5.0), spin)
@@ -45,7 +45,7 @@ def test_energy_is_half_m_v2_plus_half_omega_i_omega_plus_m_g_height(box: Stone)
     )
 
 
-def test_a_needle_a_thousand_times_as_long_as_thick_keeps_its_digits(box: Stone) -> None:
+def test_a_needle_a_thousand_times_as_long_as_thick_keeps_its_digits(box: Shape) -> None:
     turn = Rotation.from_rotvec([0.3, -0.7, 0.4]).as_matrix()
     tensor = turn @ np.diag([0.3, 0.3, 1e-6]) @ turn.T
     body = RigidBody.of(SimulationSettings.model_validate({"mass": 1}), with_inertia(box, tensor))
@@ -65,6 +65,6 @@ def test_a_needle_a_thousand_times_as_long_as_thick_keeps_its_digits(box: Stone)
         (np.ones(3), "3 by 3"),
     ],
 )
-def test_a_tensor_that_no_body_has_is_refused(box: Stone, tensor: NDArray[np.float64], reason: str) -> None:
+def test_a_tensor_that_no_body_has_is_refused(box: Shape, tensor: NDArray[np.float64], reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         RigidBody.of(SCENE_DEFAULT, with_inertia(box, tensor))

@@ -7,7 +7,7 @@ import math
 import pytest
 import trimesh
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.simulation.flight import SAGITTA
 from culet.simulation.state import Triple
 from shared.trimesh_stones import by_trimesh
@@ -29,7 +29,7 @@ CONTACT_STEP = 0.02 / math.sqrt(G)
 """s, as the scene's default."""
 
 
-def test_free_fall_is_on_the_parabola_at_any_step(box: Stone) -> None:
+def test_free_fall_is_on_the_parabola_at_any_step(box: Shape) -> None:
     for step in (1e-3, 1 / 60, 0.25):
         moving = rigid(box, (1.0, 50.0, 0.0), time_step=step, velocity=(2, 3, -1))
         for state in advance(moving, 2):
@@ -39,7 +39,7 @@ def test_free_fall_is_on_the_parabola_at_any_step(box: Stone) -> None:
 
 
 @pytest.mark.parametrize("e", [0.5, 0.8, 1.0])
-def test_each_apex_is_restitution_squared_times_the_one_before(box: Stone, e: float) -> None:
+def test_each_apex_is_restitution_squared_times_the_one_before(box: Shape, e: float) -> None:
     """A box that lands flat does not turn: height_n = e^2n height."""
     height = 2.0
     moving = rigid(box, (0.0, lowest(box) + height, 0.0), restitution=e, time_step=1 / 1000)
@@ -51,7 +51,7 @@ def test_each_apex_is_restitution_squared_times_the_one_before(box: Stone, e: fl
     assert max(tops) <= height
 
 
-def test_how_high_a_stone_bounces_does_not_depend_on_the_time_step(brilliant: Stone) -> None:
+def test_how_high_a_stone_bounces_does_not_depend_on_the_time_step(brilliant: Shape) -> None:
     """Touches are found within a step: after the first impact of a tilted, spinning stone its energy is the same."""
     energies = []
     for step in (1 / 1000, 1 / 120, 1 / 30, 0.1):
@@ -63,7 +63,7 @@ def test_how_high_a_stone_bounces_does_not_depend_on_the_time_step(brilliant: St
     assert energies == pytest.approx([energies[0]] * 4, rel=2e-7)  # measured 5e-8
 
 
-def test_a_hundred_elastic_bounces_keep_their_height(box: Stone) -> None:
+def test_a_hundred_elastic_bounces_keep_their_height(box: Shape) -> None:
     moving = rigid(box, (0.0, lowest(box) + 0.5, 0.0), restitution=1, time_step=1 / 30)
     start = moving.energy()
     while moving.state.impacts < 100:
@@ -71,7 +71,7 @@ def test_a_hundred_elastic_bounces_keep_their_height(box: Stone) -> None:
     assert moving.energy() == pytest.approx(start, rel=1e-9)  # measured 1.7e-11
 
 
-def test_bouncing_ends_when_the_geometric_series_says(box: Stone) -> None:
+def test_bouncing_ends_when_the_geometric_series_says(box: Shape) -> None:
     """sqrt(2 h / g) (1 + e) / (1 - e); bounces below the bounce speed of 0.02 sqrt(g R) are left out of it."""
     e, height = 0.6, 1.0
     moving = rigid(box, (0.0, lowest(box) + height, 0.0), restitution=e, time_step=1 / 1000)
@@ -83,7 +83,7 @@ def test_bouncing_ends_when_the_geometric_series_says(box: Stone) -> None:
 
 
 @pytest.mark.parametrize("heading", [0, 30, 75, 160, 290])
-def test_a_slide_ends_after_v2_over_2_mu_g_in_every_direction(box: Stone, heading: int) -> None:
+def test_a_slide_ends_after_v2_over_2_mu_g_in_every_direction(box: Shape, heading: int) -> None:
     speed, mu = 2.0, 0.4
     angle = math.radians(heading)
     moving = rigid(
@@ -100,7 +100,7 @@ def test_a_slide_ends_after_v2_over_2_mu_g_in_every_direction(box: Stone, headin
 
 
 @pytest.mark.parametrize("contact_step", [0.04, 0.02, 0.01, 0.005])
-def test_the_error_of_a_slide_is_of_second_order_in_the_contact_step(box: Stone, contact_step: float) -> None:
+def test_the_error_of_a_slide_is_of_second_order_in_the_contact_step(box: Shape, contact_step: float) -> None:
     """Exact up to the step h in which it ends: v h / 2 there is not v^2 / (2 mu g), but mu g h^2 / 8 more at most."""
     mu = 0.4
     moving = rigid(
@@ -115,7 +115,7 @@ def test_the_error_of_a_slide_is_of_second_order_in_the_contact_step(box: Stone,
 @pytest.mark.parametrize(("friction", "slides"), [(0.38, True), (0.42, False)])
 @pytest.mark.parametrize("restitution", [0.0, 1.0])
 def test_a_block_on_an_incline_sticks_just_if_friction_exceeds_the_slope(
-    box: Stone, friction: float, slides: bool, restitution: float
+    box: Shape, friction: float, slides: bool, restitution: float
 ) -> None:
     """tan 21.8 degrees = 0.4. Even with e = 1, a block that sticks must not begin to hop (Guendelman et al. 2003)."""
     slope = math.atan(0.4)
@@ -136,7 +136,7 @@ def test_a_block_on_an_incline_sticks_just_if_friction_exceeds_the_slope(
     assert moving.state.impacts == 0
 
 
-def test_a_block_on_an_incline_tips_over_when_its_centre_passes_its_edge(box: Stone) -> None:
+def test_a_block_on_an_incline_tips_over_when_its_centre_passes_its_edge(box: Shape) -> None:
     """Half width 3/7 and half height 6/7: tips where tan(slope) > 1/2, if friction holds it."""
     for slope_tangent, tips in ((0.48, False), (0.52, True)):
         slope = math.atan(slope_tangent)
@@ -153,7 +153,7 @@ def test_a_block_on_an_incline_tips_over_when_its_centre_passes_its_edge(box: St
         assert tips or turned < 1e-6
 
 
-def test_a_spin_on_the_table_is_stopped_by_friction_in_time(brilliant: Stone) -> None:
+def test_a_spin_on_the_table_is_stopped_by_friction_in_time(brilliant: Shape) -> None:
     """n equal vertices at radius r: omega' = -mu m g r / I_y."""
     mu, spin = 0.2, 6.0
     radius = max(
@@ -167,7 +167,7 @@ def test_a_spin_on_the_table_is_stopped_by_friction_in_time(brilliant: Stone) ->
     assert math.hypot(moving.state.position[0], moving.state.position[2]) < 1e-9
 
 
-def test_a_sliding_ball_rolls_at_five_sevenths_of_its_speed(ball: Stone) -> None:
+def test_a_sliding_ball_rolls_at_five_sevenths_of_its_speed(ball: Shape) -> None:
     """And gets there after 2 v / (7 mu g). The ball's facets are 3 degrees wide: it rolls as far as they let it."""
     speed, mu = 1.0, 0.3
     moving = rigid(ball, (0.0, lowest(ball), 0.0), friction=mu, velocity=(speed, 0, 0), restitution=0)
@@ -177,7 +177,7 @@ def test_a_sliding_ball_rolls_at_five_sevenths_of_its_speed(ball: Stone) -> None
     assert -spin_of(moving)[2] == pytest.approx(vx, rel=2e-3)  # measured 6e-4
 
 
-def test_a_slender_block_rocks_with_housners_period(box: Stone) -> None:
+def test_a_slender_block_rocks_with_housners_period(box: Shape) -> None:
     """A quarter of the period until the block, let go at the angle theta, hits: acosh(1 / (1 - theta / alpha)) / p.
 
     Housner 1963, with p^2 = m g r / I about the pivot (3 g / 4 r for a flat block) and alpha small.
@@ -201,7 +201,7 @@ def test_a_slender_block_rocks_with_housners_period(box: Stone) -> None:
     assert moving.state.time == pytest.approx(expected, rel=2e-3)  # measured 1.2e-3, in steps of 1/2000 s
 
 
-def test_a_push_from_the_side_needs_more_than_the_topple_threshold(box: Stone) -> None:
+def test_a_push_from_the_side_needs_more_than_the_topple_threshold(box: Shape) -> None:
     """About an edge at distance s from the foot of the centre at height h: dU = m g (sqrt(h^2 + s^2) - h)."""
     half_width, half_height = 3 / 7, 6 / 7
     upright = about((0.0, 0.0, 1.0), math.pi / 2)
@@ -220,7 +220,7 @@ def test_a_push_from_the_side_needs_more_than_the_topple_threshold(box: Stone) -
         assert flat is topples
 
 
-def test_energy_never_rises_from_start_to_rest(brilliant: Stone) -> None:
+def test_energy_never_rises_from_start_to_rest(brilliant: Shape) -> None:
     moving = rigid(brilliant, (0.0, 2.0, 0.0), spin=(0.5, 3, 0), rolling_resistance=0.01)
     last = moving.energy()
     while not moving.state.asleep:
@@ -230,14 +230,14 @@ def test_energy_never_rises_from_start_to_rest(brilliant: Stone) -> None:
         assert nearest(moving) > -1e-5
 
 
-def test_a_vertex_dips_no_deeper_than_the_sagitta(brilliant: Stone) -> None:
+def test_a_vertex_dips_no_deeper_than_the_sagitta(brilliant: Shape) -> None:
     moving = rigid(brilliant, (0.0, 1.0, 0.0), spin=(40, 30, 60), velocity=(0, -20, 0), restitution=0.9)
     for _ in range(240):
         moving.step()
         assert nearest(moving) > -SAGITTA
 
 
-def test_rolling_resistance_slows_a_rolling_ball(ball: Stone) -> None:
+def test_rolling_resistance_slows_a_rolling_ball(ball: Shape) -> None:
     """A moment c m g against the turning: the ball loses c g / (1 + 2/5) R/s every second.
 
     Less a seventh: so much of the time, this polyhedron hops from one facet to the next.

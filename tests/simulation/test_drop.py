@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from culet.engine.session.session import Session
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.simulation.drop import DROP_HEIGHT, dropped
 
 
-def test_a_stone_that_starts_at_rest_falls_when_it_is_let_fall(brilliant: Stone) -> None:
+def test_a_stone_that_starts_at_rest_falls_when_it_is_let_fall(brilliant: Shape) -> None:
     session = Session("0" * 32, Scene(), brilliant)
     session.toggle_fall()
     session.advance(0)
@@ -25,7 +25,7 @@ def test_a_stone_that_starts_at_rest_falls_when_it_is_let_fall(brilliant: Stone)
     assert pose["position"] == Scene().stones[0].position
 
 
-def test_a_stone_in_the_air_falls_from_where_it_is(brilliant: Stone) -> None:
+def test_a_stone_in_the_air_falls_from_where_it_is(brilliant: Shape) -> None:
     for height in (0.5, 4.0):
         scene = Scene().moved((0.5, height, 0.25), Scene().stones[0].orientation)
         assert dropped(scene, brilliant) == scene

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from culet.geometry.stone import MassProperties, Stone
+from culet.geometry.shape import MassProperties, Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.free_rotation import INTEGRATORS, MAX_DIVISIONS, rkmk4, turned
@@ -21,7 +21,7 @@ MOMENTS = (1.0, 1.4, 2.1)
 MIXED: Triple = (3.0, 4.0, 3.5)
 
 
-def body_of(stone: Stone, moments: Triple, mass: float = 1) -> RigidBody:
+def body_of(stone: Shape, moments: Triple, mass: float = 1) -> RigidBody:
     shaped = replace(stone, mass=MassProperties(stone.mass.volume, np.diag(moments)))
     return RigidBody.of(SimulationSettings.model_validate({"mass": mass}), shaped)
 
@@ -38,14 +38,14 @@ def after(body: RigidBody, omega: Triple, integrator: str, step: float, steps: i
 
 
 @pytest.mark.parametrize("omega", [MIXED, (6.0, 1.0, 0.5), (0.3, 1.0, 5.0), (-1.0, 2.0, -3.0), (2.0, -1.0, -0.2)])
-def test_tumbling_follows_jacobis_elliptic_functions(box: Stone, omega: Triple) -> None:
+def test_tumbling_follows_jacobis_elliptic_functions(box: Shape, omega: Triple) -> None:
     body = body_of(box, MOMENTS)
     q, momentum = after(body, omega, "rkmk4", 1 / 960, 4 * 960)
     in_body = rotate_back(q, body.angular_velocity_at(q, momentum))
     assert in_body == pytest.approx(FreeTop(MOMENTS, omega).omega(4.0), abs=4e-9)  # measured up to 4e-10
 
 
-def test_a_symmetric_stone_precesses_about_its_angular_momentum(box: Stone) -> None:
+def test_a_symmetric_stone_precesses_about_its_angular_momentum(box: Shape) -> None:
     """The rates are L / I1 in space, and (I1 - I3) w3 / I1 in the stone (Landau and Lifshitz, section 33)."""
     body, omega = body_of(box, (1.0, 1.0, 1.6)), (2.0, 0.0, 3.0)
     q, momentum = after(body, omega, "rkmk4", 1 / 480, 960)
@@ -61,7 +61,7 @@ def test_a_symmetric_stone_precesses_about_its_angular_momentum(box: Stone) -> N
     assert axis == pytest.approx(expected, abs=5e-10)  # measured 5e-11
 
 
-def test_a_spin_about_the_intermediate_axis_turns_over_when_jacobi_says(box: Stone) -> None:
+def test_a_spin_about_the_intermediate_axis_turns_over_when_jacobi_says(box: Shape) -> None:
     body, omega = body_of(box, MOMENTS), (1e-2, 3.0, 0.0)
     top = FreeTop(MOMENTS, omega)
     q, momentum, step = UPRIGHT, body.angular_momentum(UPRIGHT, omega), 1 / 480
@@ -80,7 +80,7 @@ def test_a_spin_about_the_intermediate_axis_turns_over_when_jacobi_says(box: Sto
     ("integrator", "order"),
     [("rkmk4", 4), ("rk4", 4), ("midpoint", 2), ("splitting", 2), ("symmetric_top", 2), ("euler", 1)],
 )
-def test_each_integrator_has_its_order(box: Stone, integrator: str, order: int) -> None:
+def test_each_integrator_has_its_order(box: Shape, integrator: str, order: int) -> None:
     body = body_of(box, MOMENTS)
     exact, _ = after(body, MIXED, "rkmk4", 1 / 7680, 7680)
 
@@ -98,7 +98,7 @@ def test_each_integrator_has_its_order(box: Stone, integrator: str, order: int) 
     [("rkmk4", 1e-8), ("rk4", 1e-8), ("midpoint", 3e-6), ("splitting", 1e-5), ("symmetric_top", 1e-5), ("euler", 0.2)],
 )
 def test_each_integrator_keeps_the_energy_of_ten_seconds_as_well_as_it_can(
-    box: Stone, integrator: str, drift: float
+    box: Shape, integrator: str, drift: float
 ) -> None:
     body = body_of(box, MOMENTS)
     q, momentum = after(body, MIXED, integrator, 1 / 240, 2400)
@@ -107,7 +107,7 @@ def test_each_integrator_keeps_the_energy_of_ten_seconds_as_well_as_it_can(
     assert change < drift
 
 
-def test_a_high_spin_is_divided_into_steps_that_follow_it(box: Stone) -> None:
+def test_a_high_spin_is_divided_into_steps_that_follow_it(box: Shape) -> None:
     body = body_of(box, MOMENTS)
     momentum = body.angular_momentum(UPRIGHT, (30.0, 40.0, 35.0))
     whole = turned(body, UPRIGHT, momentum, 0.05, rkmk4)
@@ -117,7 +117,7 @@ def test_a_high_spin_is_divided_into_steps_that_follow_it(box: Stone) -> None:
     assert abs(sum(a * b for a, b in zip(q, whole, strict=True))) == pytest.approx(1, abs=1e-12)  # measured 6e-15
 
 
-def test_a_spin_beyond_all_division_keeps_its_energy_all_the_same(box: Stone) -> None:
+def test_a_spin_beyond_all_division_keeps_its_energy_all_the_same(box: Shape) -> None:
     body = body_of(box, MOMENTS)
     momentum = body.angular_momentum(UPRIGHT, (3e6, 4e6, 3.5e6))
     assert body.fastest_turn(UPRIGHT, momentum) / 30 > MAX_DIVISIONS
@@ -128,12 +128,12 @@ def test_a_spin_beyond_all_division_keeps_its_energy_all_the_same(box: Stone) ->
     assert q != UPRIGHT
 
 
-def test_a_stone_without_spin_does_not_turn(box: Stone) -> None:
+def test_a_stone_without_spin_does_not_turn(box: Shape) -> None:
     assert turned(body_of(box, MOMENTS), UPRIGHT, (0.0, 0.0, 0.0), 1.0, rkmk4) == UPRIGHT
 
 
 @pytest.mark.parametrize("moments", [(1.0, 1.0, 1.6), (1.0, 1.6, 1.6), (1e-6, 0.3, 0.3), (1.0, 1.0, 1.0)])
-def test_the_symmetric_top_is_exact_in_one_step(box: Stone, moments: Triple) -> None:
+def test_the_symmetric_top_is_exact_in_one_step(box: Shape, moments: Triple) -> None:
     """L, its energy, and the rate L / I at which the axis goes round."""
     body, omega = body_of(box, moments), (0.3, 2.0, 1.0)
     momentum = body.angular_momentum(UPRIGHT, omega)
@@ -146,7 +146,7 @@ def test_the_symmetric_top_is_exact_in_one_step(box: Stone, moments: Triple) -> 
 
 
 @pytest.mark.parametrize("moments", [MOMENTS, (1e-6, 0.3, 0.31), (1.0, 1.0, 1.0), (1.0, 1.0, 1.9)])
-def test_no_rotation_is_faster_than_its_bound(box: Stone, moments: Triple) -> None:
+def test_no_rotation_is_faster_than_its_bound(box: Shape, moments: Triple) -> None:
     body, omega = body_of(box, moments), (0.3, 2.0, 1.0)
     q, momentum = UPRIGHT, body.angular_momentum(UPRIGHT, omega)
     bound = body.fastest_turn(q, momentum)

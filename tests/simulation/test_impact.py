@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact, closing_speed, contacts
@@ -21,7 +21,7 @@ SETTINGS = SimulationSettings.model_validate({"model": "rigid", "mass": 2})
 
 
 def landed(
-    stone: Stone, orientation: Quaternion, velocity: Triple, omega: Triple
+    stone: Shape, orientation: Quaternion, velocity: Triple, omega: Triple
 ) -> tuple[RigidBody, Motion, list[Contact]]:
     """Touching the floor with its lowest vertices, in motion."""
     body = RigidBody.of(SETTINGS, stone)
@@ -39,7 +39,7 @@ def speeds(body: RigidBody, motion: Motion, points: list[Contact]) -> list[float
 
 
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 1.0])
-def test_a_single_vertex_without_friction_gets_the_textbook_impulse(box: Stone, e: float) -> None:
+def test_a_single_vertex_without_friction_gets_the_textbook_impulse(box: Shape, e: float) -> None:
     """J = (1 + e) v_n / K and dE = -(1 - e^2) v_n^2 / (2 K), K = 1/m + (r x n) . I^-1 (r x n)."""
     orientation = about((0.6, 0.0, 0.8), 0.5)
     body, before, points = landed(box, orientation, (0.4, -3.0, 0.2), (1.0, 2.0, -1.5))
@@ -54,7 +54,7 @@ def test_a_single_vertex_without_friction_gets_the_textbook_impulse(box: Stone, 
     assert speeds(body, after, points) == pytest.approx([-e * closing], rel=1e-10, abs=1e-12)  # measured 7e-16
 
 
-def test_a_flat_elastic_landing_keeps_its_energy_and_gains_no_spin(brilliant: Stone) -> None:
+def test_a_flat_elastic_landing_keeps_its_energy_and_gains_no_spin(brilliant: Shape) -> None:
     """Eight vertices of the table at once: one pass of Gauss-Seidel would give three times the energy."""
     body, before, points = landed(brilliant, TABLE_DOWN, (0.0, -3.0, 0.0), (0.0, 0.0, 0.0))
     assert len(points) == 8
@@ -66,13 +66,13 @@ def test_a_flat_elastic_landing_keeps_its_energy_and_gains_no_spin(brilliant: St
 
 
 @pytest.mark.parametrize("e", [0.0, 0.6])
-def test_a_flat_landing_leaves_with_the_restitutions_share(brilliant: Stone, e: float) -> None:
+def test_a_flat_landing_leaves_with_the_restitutions_share(brilliant: Shape, e: float) -> None:
     body, before, points = landed(brilliant, TABLE_DOWN, (0.0, -3.0, 0.0), (0.0, 0.0, 0.0))
     after = impact(before, body, points, e, 0.3)
     assert after.momentum == pytest.approx((0, 6 * e, 0), abs=1e-11)  # measured 4e-13
 
 
-def test_a_slender_block_that_rocks_over_keeps_housners_share_of_its_spin(box: Stone) -> None:
+def test_a_slender_block_that_rocks_over_keeps_housners_share_of_its_spin(box: Shape) -> None:
     """Housner 1963: omega+ / omega- = 1 - 1.5 sin^2(alpha), alpha the half angle of the block at its corner.
 
     The block stands on its small face, turning about one bottom edge until the other hits, without restitution.
@@ -93,13 +93,13 @@ def test_a_slender_block_that_rocks_over_keeps_housners_share_of_its_spin(box: S
     assert spin == pytest.approx((0, 0, -(1 - 1.5 * sine**2)), abs=1e-11)  # measured 5e-13
 
 
-def test_without_friction_tangential_momentum_is_untouched(brilliant: Stone) -> None:
+def test_without_friction_tangential_momentum_is_untouched(brilliant: Shape) -> None:
     body, before, points = landed(brilliant, about((1.0, 0.0, 0.0), 0.7), (2.0, -3.0, -1.0), (1.0, 2.0, 3.0))
     after = impact(before, body, points, 0.5, 0)
     assert (after.momentum[0], after.momentum[2]) == (before.momentum[0], before.momentum[2])
 
 
-def test_a_large_friction_stops_the_slip_of_the_vertex(box: Stone) -> None:
+def test_a_large_friction_stops_the_slip_of_the_vertex(box: Shape) -> None:
     body, before, points = landed(box, about((0.6, 0.0, 0.8), 0.5), (0.4, -3.0, 0.2), (1.0, 2.0, -1.5))
     after = impact(before, body, points, 0, 1e3)
     velocity = (after.momentum[0] / 2, after.momentum[1] / 2, after.momentum[2] / 2)
@@ -108,7 +108,7 @@ def test_a_large_friction_stops_the_slip_of_the_vertex(box: Stone) -> None:
 
 
 @pytest.mark.parametrize("heading", range(0, 360, 30))
-def test_friction_does_not_prefer_a_direction(brilliant: Stone, heading: int) -> None:
+def test_friction_does_not_prefer_a_direction(brilliant: Shape, heading: int) -> None:
     """A stone sliding on its table turns with its course, to rounding: no pyramid, no axes."""
     angle = math.radians(heading)
     x, z = math.cos(angle), -math.sin(angle)
@@ -145,17 +145,17 @@ def check(body: RigidBody, before: Motion, e: float, friction: float) -> None:
 
 
 @pytest.mark.parametrize("count", [1500, pytest.param(100_000, marks=pytest.mark.validation)])
-def test_random_impacts_obey_energy_signorini_and_coulomb(brilliant: Stone, box: Stone, count: int) -> None:
+def test_random_impacts_obey_energy_signorini_and_coulomb(brilliant: Shape, box: Shape, count: int) -> None:
     rng = np.random.default_rng(4)
     for number in range(count):
         body, motion = random_body((brilliant, box)[number % 2], rng)
         check(body, motion, float(rng.choice([0, 0.3, 0.6, 1])), float(rng.choice([0, 0.1, 0.3, 1, 10])))
 
 
-def test_the_order_of_the_vertices_does_not_matter(brilliant: Stone) -> None:
+def test_the_order_of_the_vertices_does_not_matter(brilliant: Shape) -> None:
     rng = np.random.default_rng(8)
     order = rng.permutation(len(brilliant.vertices))
-    shuffled = Stone(**{**vars(brilliant), "vertices": brilliant.vertices[order]})
+    shuffled = Shape(**{**vars(brilliant), "vertices": brilliant.vertices[order]})
     for _ in range(50):
         state = rng.bit_generator.state
         body, motion = random_body(brilliant, rng)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.simulation.inertia import cone_apex_inertia, cone_inertia, inertia_tensor
 
 
@@ -29,25 +29,25 @@ def test_formula_1_of_the_report_is_the_cone_about_its_apex() -> None:
     assert np.diag(cone_apex_inertia()) == pytest.approx([51 / 20, 3 / 10, 51 / 20], rel=1e-15, abs=0)
 
 
-def test_about_the_apex_the_order_of_the_moments_is_a_brilliants_reversed(double_cone: Stone) -> None:
+def test_about_the_apex_the_order_of_the_moments_is_a_brilliants_reversed(double_cone: Shape) -> None:
     across, axis, _ = np.diag(inertia_tensor("polyhedron", double_cone))
     assert axis > 1.3 * across  # measured 1.57
     across, axis, _ = np.diag(inertia_tensor("cone_apex", double_cone))
     assert across > 8 * axis
 
 
-def test_the_polyhedrons_tensor_is_the_boxs_closed_form(box: Stone) -> None:
+def test_the_polyhedrons_tensor_is_the_boxs_closed_form(box: Shape) -> None:
     a, b, c = 6 / 7, 3 / 7, 2 / 7
     closed = np.diag([b * b + c * c, a * a + c * c, a * a + b * b]) / 3
     assert inertia_tensor("polyhedron", box) == pytest.approx(closed, abs=1e-15)
 
 
-def test_the_polyhedrons_tensor_is_trimeshs(double_cone: Stone) -> None:
+def test_the_polyhedrons_tensor_is_trimeshs(double_cone: Shape) -> None:
     mesh = trimesh.Trimesh(double_cone.vertices, double_cone.triangles)
     assert inertia_tensor("polyhedron", double_cone) == pytest.approx(mesh.moment_inertia / mesh.volume, abs=1e-14)
 
 
-def test_the_cones_do_not_look_at_the_stone(box: Stone, ring: Stone) -> None:
+def test_the_cones_do_not_look_at_the_stone(box: Shape, ring: Shape) -> None:
     assert (inertia_tensor("cone", box) == inertia_tensor("cone", ring)).all()
     assert (inertia_tensor("cone", box) == cone_inertia()).all()
     assert (inertia_tensor("cone_apex", box) == cone_apex_inertia()).all()

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from culet.errors import InputError, SceneError, TooLargeError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Scene, preset
 from culet.simulation.paths import MAX_STEPS, Path, record, write
 from culet.simulation.simulation import Simulation
 
 
 @pytest.fixture(scope="module")
-def path(box: Stone) -> Path:
+def path(box: Shape) -> Path:
     return record(preset("classic"), box, 10)
 
 
@@ -33,7 +33,7 @@ def test_ten_seconds_are_the_start_and_three_hundred_steps(path: Path) -> None:
     assert {len(column) for column in path.columns().values()} == {301}
 
 
-def test_a_path_is_the_simulations(path: Path, box: Stone) -> None:
+def test_a_path_is_the_simulations(path: Path, box: Shape) -> None:
     scene = preset("classic")
     moving = Simulation(scene.simulation, box, scene.stones[0].position, scene.stones[0].orientation)
     for index in range(301):
@@ -47,7 +47,7 @@ def test_a_path_is_the_simulations(path: Path, box: Stone) -> None:
         moving.step()
 
 
-def test_a_path_counts_the_steps_that_were_too_full_to_follow(box: Stone) -> None:
+def test_a_path_counts_the_steps_that_were_too_full_to_follow(box: Shape) -> None:
     spin = {"gravity": 1e6, "spin": (6000, 9000, 4000), "time_step": 0.1}
     scene = Scene.read({"simulation": spin, "stones": [{"position": [0, 0, 0]}]})
     coarse = record(scene, box, 0.3).coarse.tolist()
@@ -62,7 +62,7 @@ def test_the_sphere_touches_at_rest_and_not_in_the_air(path: Path) -> None:
     assert (path.penetration == 0).all()
 
 
-def test_the_clearance_is_that_of_the_lowest_turned_vertex(path: Path, box: Stone) -> None:
+def test_the_clearance_is_that_of_the_lowest_turned_vertex(path: Path, box: Shape) -> None:
     upright = 4 + 1 - 3 / 7  # half an edge of 6/7 below the centre
     assert path.clearance[0] == pytest.approx(upright, rel=1e-14, abs=0)  # measured 0
     for index in (50, 300):
@@ -77,13 +77,13 @@ def test_the_sphere_holds_the_resting_stone_off_the_floor(path: Path) -> None:
     assert path.clearance[-1] > 0.01  # measured 0.04 R: no vertex touches, which is the classic model's known flaw
 
 
-def test_a_start_inside_the_floor_is_recorded_as_penetration(box: Stone) -> None:
+def test_a_start_inside_the_floor_is_recorded_as_penetration(box: Shape) -> None:
     inside = record(preset("classic").moved((0, -0.25, 0), (1, 0, 0, 0)), box, 0.1)
     assert inside.penetration[0] == 0.25
     assert inside.penetration[1] == 0
 
 
-def test_the_rigid_model_records_its_own_vertices_at_floor_and_walls(box: Stone) -> None:
+def test_the_rigid_model_records_its_own_vertices_at_floor_and_walls(box: Shape) -> None:
     scene = Scene.read({"walls": {"kind": "matte"}, "simulation": {"spin": [0, 0, 0]}})
     behind = record(scene.moved((0, 2, -7.9), (1, 0, 0, 0)), box, 0.1)
     assert behind.penetration[0] == pytest.approx(2 / 7 - 0.1)  # the wall is at z = -8
@@ -94,14 +94,14 @@ def test_the_rigid_model_records_its_own_vertices_at_floor_and_walls(box: Stone)
     assert resting.clearance[-1] == pytest.approx(0, abs=1e-12)
 
 
-def test_a_time_between_two_steps_ends_at_the_earlier(box: Stone) -> None:
+def test_a_time_between_two_steps_ends_at_the_earlier(box: Shape) -> None:
     scene = Scene.read({"simulation": {"time_step": 0.1}})
     assert record(scene, box, 0.3).step[-1] == 3  # 0.3 / 0.1 = 2.9999999999999996
     assert record(scene, box, 0.39).step[-1] == 3
     assert record(scene, box, 0).step.tolist() == [0]
 
 
-def test_progress_ends_at_one(box: Stone) -> None:
+def test_progress_ends_at_one(box: Shape) -> None:
     parts: list[float] = []
     record(Scene.read({"simulation": {"time_step": 0.001}}), box, 2.5, parts.append)
     assert parts == sorted(parts)
@@ -179,16 +179,16 @@ def test_an_old_file_is_replaced(path: Path, tmp_path: pathlib.Path) -> None:
 
 
 @pytest.mark.parametrize("seconds", [-1.0, math.nan, math.inf])
-def test_a_time_that_is_none_is_refused(box: Stone, seconds: float) -> None:
+def test_a_time_that_is_none_is_refused(box: Shape, seconds: float) -> None:
     with pytest.raises(InputError, match="seconds"):
         record(Scene(), box, seconds)
 
 
-def test_more_steps_than_the_limit_are_refused(box: Stone) -> None:
+def test_more_steps_than_the_limit_are_refused(box: Shape) -> None:
     with pytest.raises(TooLargeError, match=f"at most {MAX_STEPS}"):
         record(Scene(), box, MAX_STEPS)
 
 
-def test_a_scene_without_a_stone_is_refused(box: Stone) -> None:
+def test_a_scene_without_a_stone_is_refused(box: Shape) -> None:
     with pytest.raises(SceneError, match="stone"):
         record(Scene(stones=()), box, 1)

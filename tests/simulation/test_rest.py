@@ -11,14 +11,14 @@ import trimesh
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.simulation.rotation import normalised, rotate_back
 from culet.simulation.simulation import MAX_SPEED, Simulation
 from culet.simulation.surfaces import FLOOR, WALLS
 from simulation.solids import TABLE_DOWN, UPRIGHT, about, advance, lowest, nearest, rigid, spin_of
 
 
-def stable_normals(stone: Stone) -> NDArray[np.float64]:
+def stable_normals(stone: Shape) -> NDArray[np.float64]:
     """(F, 3) outward normals of the facets on which a stone rests by itself: above which its centre of mass is.
 
     `compute_stable_poses` works on triangles and rounds normals to 3 decimals; it is asked for the set only.
@@ -28,7 +28,7 @@ def stable_normals(stone: Stone) -> NDArray[np.float64]:
     return np.asarray(-transforms[:, 2, :3], np.float64)  # the direction that the pose turns down
 
 
-def dropped(stone: Stone, rng: np.random.Generator) -> Simulation:
+def dropped(stone: Shape, rng: np.random.Generator) -> Simulation:
     """From a random height, turned and spun at random, until it sleeps."""
     orientation = normalised(tuple(rng.normal(size=4).tolist()))
     height, spin = float(rng.uniform(0.5, 3)), tuple((4 * rng.normal(size=3)).tolist())
@@ -38,7 +38,7 @@ def dropped(stone: Stone, rng: np.random.Generator) -> Simulation:
     return moving
 
 
-def check_rest(moving: Simulation, stone: Stone, stable: NDArray[np.float64]) -> None:
+def check_rest(moving: Simulation, stone: Shape, stable: NDArray[np.float64]) -> None:
     assert moving.state.asleep
     down = np.array(rotate_back(moving.state.orientation, (0.0, -1.0, 0.0)))
     facets = stone.planes[:, :3]
@@ -52,13 +52,13 @@ def check_rest(moving: Simulation, stone: Stone, stable: NDArray[np.float64]) ->
 @pytest.mark.parametrize(
     "drops", [pytest.param(50, id="50"), pytest.param(500, id="500", marks=pytest.mark.validation)]
 )
-def test_a_dropped_brilliant_sleeps_on_a_stable_facet(brilliant: Stone, drops: int) -> None:
+def test_a_dropped_brilliant_sleeps_on_a_stable_facet(brilliant: Shape, drops: int) -> None:
     stable, rng = stable_normals(brilliant), np.random.default_rng(12)
     for _ in range(drops):
         check_rest(dropped(brilliant, rng), brilliant, stable)
 
 
-def test_other_stones_sleep_on_a_stable_facet_too(box: Stone, double_cone: Stone) -> None:
+def test_other_stones_sleep_on_a_stable_facet_too(box: Shape, double_cone: Shape) -> None:
     rng = np.random.default_rng(5)
     for stone in (box, double_cone):
         stable = stable_normals(stone)
@@ -67,7 +67,7 @@ def test_other_stones_sleep_on_a_stable_facet_too(box: Stone, double_cone: Stone
 
 
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.validation) for seed in range(2, 8))])
-def test_a_stone_at_rest_that_may_not_sleep_does_not_move_for_a_minute(brilliant: Stone, seed: int) -> None:
+def test_a_stone_at_rest_that_may_not_sleep_does_not_move_for_a_minute(brilliant: Shape, seed: int) -> None:
     asleep = dropped(brilliant, np.random.default_rng(seed))
     start = asleep.state
     awake = rigid(brilliant, start.position, start.orientation, sleeping=False, rolling_resistance=0, time_step=1 / 60)
@@ -79,7 +79,7 @@ def test_a_stone_at_rest_that_may_not_sleep_does_not_move_for_a_minute(brilliant
     assert turned < 1e-9
 
 
-def test_a_stone_balanced_on_an_edge_does_not_sleep(box: Stone) -> None:
+def test_a_stone_balanced_on_an_edge_does_not_sleep(box: Shape) -> None:
     """It may stand there, as a pencil may on its tip, but it is not at rest."""
     angle = math.atan2(3, 6)  # half edges 6/7 and 3/7: the diagonal is upright
     moving = rigid(box, (0.0, -1 + 3 / 7 * math.sqrt(5), 0.0), about((0.0, 0.0, 1.0), math.pi / 2 - angle))
@@ -88,7 +88,7 @@ def test_a_stone_balanced_on_an_edge_does_not_sleep(box: Stone) -> None:
     assert not moving.state.asleep
 
 
-def test_asleep_only_time_passes(brilliant: Stone) -> None:
+def test_asleep_only_time_passes(brilliant: Shape) -> None:
     moving = rigid(brilliant, (0.0, -1 + float(brilliant.vertices[:, 1].max()), 0.0), TABLE_DOWN)
     moving.step()
     first = moving.state
@@ -98,7 +98,7 @@ def test_asleep_only_time_passes(brilliant: Stone) -> None:
     assert moving.state.time == pytest.approx(1 + 1 / 120)
 
 
-def test_a_push_wakes_the_stone_and_gives_it_the_impulse(box: Stone) -> None:
+def test_a_push_wakes_the_stone_and_gives_it_the_impulse(box: Shape) -> None:
     moving = rigid(box, (0.0, lowest(box), 0.0))
     resting = advance(moving, 0.1)[-1]
     assert resting.asleep
@@ -114,7 +114,7 @@ def test_a_push_wakes_the_stone_and_gives_it_the_impulse(box: Stone) -> None:
 
 
 @pytest.mark.parametrize("impulse", [(math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, 3 * MAX_SPEED)])
-def test_a_push_that_makes_no_sense_is_refused(box: Stone, impulse: tuple[float, float, float]) -> None:
+def test_a_push_that_makes_no_sense_is_refused(box: Shape, impulse: tuple[float, float, float]) -> None:
     moving = rigid(box, (0.0, lowest(box), 0.0))
     before = moving.state
     with pytest.raises(InputError, match="push"):
@@ -122,7 +122,7 @@ def test_a_push_that_makes_no_sense_is_refused(box: Stone, impulse: tuple[float,
     assert moving.state is before
 
 
-def test_walls_that_appear_wake_the_stone_and_put_it_inside(box: Stone) -> None:
+def test_walls_that_appear_wake_the_stone_and_put_it_inside(box: Shape) -> None:
     moving = rigid(box, (0.0, lowest(box), -12.0))
     advance(moving, 0.1)
     asleep = moving.state
@@ -133,14 +133,14 @@ def test_walls_that_appear_wake_the_stone_and_put_it_inside(box: Stone) -> None:
     assert moving.state.momentum == pytest.approx((0, 0, 0), abs=1e-9)  # moved, not pushed
 
 
-def test_the_same_walls_do_not_wake_it(box: Stone) -> None:
+def test_the_same_walls_do_not_wake_it(box: Shape) -> None:
     moving = rigid(box, (0.0, lowest(box), 0.0))
     advance(moving, 0.1)
     moving.surround((FLOOR,))
     assert moving.settled
 
 
-def test_walls_stop_a_stone_that_is_thrown_at_them(brilliant: Stone) -> None:
+def test_walls_stop_a_stone_that_is_thrown_at_them(brilliant: Shape) -> None:
     moving = rigid(
         brilliant, (0.0, 2.0, 0.0), UPRIGHT, (FLOOR, *WALLS), velocity=(9, 2, -12), spin=(3, 1, 2),
         rolling_resistance=0.01,

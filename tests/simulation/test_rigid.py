@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.simulation.clock import FixedStepClock
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
@@ -23,7 +23,7 @@ from simulation.solids import TABLE_DOWN, TILTED, UPRIGHT, G, about, advance, di
 ROOM = (FLOOR, *WALLS)
 
 
-def test_a_drop_is_the_same_bits_everywhere(exact_box: Stone) -> None:
+def test_a_drop_is_the_same_bits_everywhere(exact_box: Shape) -> None:
     """Flight, impacts, sliding, rolling and sleep. A change of this hash is a change of the model."""
     moving = rigid(exact_box, (0.0, 2.0, 0.0), TILTED, spin=(1, 2, 3), rolling_resistance=0.01, time_step=1 / 60)
     path = advance(moving, 8)
@@ -33,7 +33,7 @@ def test_a_drop_is_the_same_bits_everywhere(exact_box: Stone) -> None:
 
 
 @pytest.mark.parametrize("frames", [[1 / 60], [1 / 7], [0.001, 0.08, 0.033]])
-def test_frames_and_pauses_do_not_change_the_path(box: Stone, frames: list[float]) -> None:
+def test_frames_and_pauses_do_not_change_the_path(box: Shape, frames: list[float]) -> None:
     settings: dict[str, Any] = {"spin": (1, 2, 3), "time_step": 1 / 60}
     path = advance(rigid(box, orientation=TILTED, **settings), 3)
     moving, clock = rigid(box, orientation=TILTED, **settings), FixedStepClock(1 / 60)
@@ -47,7 +47,7 @@ def test_frames_and_pauses_do_not_change_the_path(box: Stone, frames: list[float
 
 
 @pytest.mark.parametrize("at", [1, 110, 140, 200])
-def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Stone, at: int) -> None:
+def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Shape, at: int) -> None:
     whole, other = (rigid(box, orientation=TILTED, spin=(1, 2, 3)) for _ in range(2))
     for _ in range(at):
         whole.step()
@@ -55,7 +55,7 @@ def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Stone, at: int) -
     assert digest(advance(other, 1)) == digest(advance(whole, 1))
 
 
-def scaled_drop(stone: Stone, time: float, mass: float, impacts: int) -> list[tuple[float, ...]]:
+def scaled_drop(stone: Shape, time: float, mass: float, impacts: int) -> list[tuple[float, ...]]:
     """A drop where a second is `time` of ours and the mass `mass` times as large: poses up to so many impacts."""
     moving = rigid(
         stone, (0.0, 2.0, 0.0), TILTED, ROOM, gravity=9.81 * time**2, spin=(1 * time, 2 * time, 3 * time),
@@ -70,13 +70,13 @@ def scaled_drop(stone: Stone, time: float, mass: float, impacts: int) -> list[tu
 
 @pytest.mark.parametrize(("time", "mass"), [(0.25, 1.0), (16.0, 2.0**-20)])
 def test_the_same_drop_in_units_of_powers_of_two_is_the_same_to_the_bit(
-    brilliant: Stone, time: float, mass: float
+    brilliant: Shape, time: float, mass: float
 ) -> None:
     assert scaled_drop(brilliant, time, mass, 1000) == scaled_drop(brilliant, 1, 1, 1000)
 
 
 @pytest.mark.parametrize(("time", "mass"), [(1.7, 1.0), (0.3, 1.0), (1.0, 3e5), (7.0, 1e-7)])
-def test_the_same_drop_in_any_units_agrees_up_to_its_second_impact(brilliant: Stone, time: float, mass: float) -> None:
+def test_the_same_drop_in_any_units_agrees_up_to_its_second_impact(brilliant: Shape, time: float, mass: float) -> None:
     other, ours = scaled_drop(brilliant, time, mass, 1), scaled_drop(brilliant, 1, 1, 1)
     length = min(len(other), len(ours)) - 1
     assert length > 40
@@ -94,16 +94,16 @@ def test_the_same_drop_of_a_stone_in_another_unit_of_length_agrees(unit: float) 
 
 
 @pytest.mark.parametrize("unit", [2.0**-10, 2.0**7])
-def test_the_same_mesh_in_a_unit_of_a_power_of_two_falls_to_the_bit(brilliant: Stone, unit: float) -> None:
-    def read(unit: float) -> Stone:
+def test_the_same_mesh_in_a_unit_of_a_power_of_two_falls_to_the_bit(brilliant: Shape, unit: float) -> None:
+    def read(unit: float) -> Shape:
         lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (unit * brilliant.vertices).tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (brilliant.triangles + 1).tolist()]
-        return stone_from_mesh("\n".join(lines).encode(), "obj")
+        return shape_from_mesh("\n".join(lines).encode(), "obj")
 
     assert scaled_drop(read(unit), 1, 1, 1000) == scaled_drop(read(1), 1, 1, 1000)
 
 
-def test_a_stone_that_is_not_convex_touches_with_its_hull(ring: Stone) -> None:
+def test_a_stone_that_is_not_convex_touches_with_its_hull(ring: Shape) -> None:
     moving = rigid(ring, orientation=TILTED, spin=(1, 2, 3), rolling_resistance=0.02)
     while not moving.state.asleep and moving.state.time < 60:
         moving.step()
@@ -147,7 +147,7 @@ DENSE: dict[str, tuple[float, dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("name", DENSE)
-def test_steps_with_too_many_events_to_follow_take_their_time_all_the_same(brilliant: Stone, name: str) -> None:
+def test_steps_with_too_many_events_to_follow_take_their_time_all_the_same(brilliant: Shape, name: str) -> None:
     """Without friction nothing pushes sideways: the stone is at v t, whatever happens below it."""
     tolerance, settings = DENSE[name]
     moving = rigid(brilliant, (0.0, 0.0, 0.0), TILTED, friction=0, velocity=(3, 0, -1), **settings)
@@ -162,7 +162,7 @@ def test_steps_with_too_many_events_to_follow_take_their_time_all_the_same(brill
     assert moving.state.coarse > 0
 
 
-def test_without_gravity_a_stone_that_touches_stays(brilliant: Stone) -> None:
+def test_without_gravity_a_stone_that_touches_stays(brilliant: Shape) -> None:
     moving = rigid(brilliant, (0.0, 0.0, 0.0), TILTED, gravity=0)
     moving = rigid(brilliant, (0.0, -nearest(moving), 0.0), TILTED, gravity=0)
     start = moving.state
@@ -170,13 +170,13 @@ def test_without_gravity_a_stone_that_touches_stays(brilliant: Stone) -> None:
     assert (path[-1].position, path[-1].orientation) == (start.position, start.orientation)
 
 
-def test_an_ordinary_drop_is_never_coarse(brilliant: Stone) -> None:
+def test_an_ordinary_drop_is_never_coarse(brilliant: Shape) -> None:
     moving = rigid(brilliant, orientation=TILTED, spin=(1, 2, 3), rolling_resistance=0.01, time_step=1 / 60)
     assert advance(moving, 8)[-1].coarse == 0
 
 
 @pytest.mark.parametrize("depth", [0.1, 1.0, 50.0])
-def test_a_start_below_the_floor_comes_up_without_speed(brilliant: Stone, depth: float) -> None:
+def test_a_start_below_the_floor_comes_up_without_speed(brilliant: Shape, depth: float) -> None:
     moving = rigid(brilliant, (0.0, -1 - depth, 0.0), TILTED)
     moving.step()
     assert nearest(moving) > -1e-9
@@ -188,7 +188,7 @@ def test_a_start_below_the_floor_comes_up_without_speed(brilliant: Stone, depth:
 @pytest.mark.parametrize("height", [-3.0, -1.5, -1.2, -0.9, -0.5])
 @pytest.mark.parametrize("orientation", [UPRIGHT, TILTED, TABLE_DOWN])
 def test_a_stone_that_leaves_the_floor_without_turning_flies_straight(
-    brilliant: Stone, orientation: Quaternion, height: float, velocity: Triple
+    brilliant: Shape, orientation: Quaternion, height: float, velocity: Triple
 ) -> None:
     """No time is the first at which it touches: room and speed towards the floor are both 0."""
     x, y, z = velocity
@@ -198,7 +198,7 @@ def test_a_stone_that_leaves_the_floor_without_turning_flies_straight(
     assert moving.state.position == pytest.approx((x * t, height + lift + y * t, z * t), abs=1e-12)  # measured 9e-16
 
 
-def test_a_stone_that_leaves_a_wall_without_turning_falls_on_its_parabola(brilliant: Stone) -> None:
+def test_a_stone_that_leaves_a_wall_without_turning_falls_on_its_parabola(brilliant: Shape) -> None:
     moving = rigid(brilliant, (0.0, 2.0, -8.5), TILTED, ROOM, velocity=(0, 0, 2))
     lift = -nearest(moving)
     assert lift > 0.1
@@ -206,7 +206,7 @@ def test_a_stone_that_leaves_a_wall_without_turning_falls_on_its_parabola(brilli
     assert moving.state.position == pytest.approx((0, 2 - G * t * t / 2, -8.5 + lift + 2 * t), abs=1e-12)
 
 
-def test_a_start_in_a_corner_of_three_planes_comes_out_and_rests(brilliant: Stone) -> None:
+def test_a_start_in_a_corner_of_three_planes_comes_out_and_rests(brilliant: Shape) -> None:
     corner: tuple[Surface, ...] = (FLOOR, Surface((1.0, 0.0, 0.0), -1.0), Surface((0.0, 0.0, 1.0), -1.0))
     moving = rigid(brilliant, (-1.5, -1.5, -1.5), TILTED, corner, rolling_resistance=0.01)
     moving.step()
@@ -235,7 +235,7 @@ def test_painleves_rod_gets_a_bounded_impulse(friction: float, angle: float) -> 
         check_extreme(sliding, 60)
 
 
-def test_the_integrator_can_be_chosen(box: Stone) -> None:
+def test_the_integrator_can_be_chosen(box: Shape) -> None:
     ends = set()
     for integrator in ("rkmk4", "rk4", "midpoint", "splitting", "euler"):
         moving = rigid(box, (0.0, 50.0, 0.0), UPRIGHT, spin=(1, 2, 3), integrator=integrator, time_step=1 / 30)

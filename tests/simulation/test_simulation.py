@@ -11,7 +11,7 @@ from typing import Any, get_args
 import pytest
 
 from culet.errors import InputError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import preset
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.clock import FixedStepClock
@@ -32,7 +32,7 @@ def states(moving: Simulation, count: int) -> list[RigidState]:
     return path
 
 
-def test_three_hundred_steps_are_the_same_bits_everywhere(exact_box: Stone) -> None:
+def test_three_hundred_steps_are_the_same_bits_everywhere(exact_box: Shape) -> None:
     """Only IEEE 754 operations and PCG64's bits take part; a change of this hash is a change of the model."""
     moving = classic(exact_box, seed=1, spin=(0.5, 3, 0))
     path = states(moving, 300)
@@ -40,11 +40,11 @@ def test_three_hundred_steps_are_the_same_bits_everywhere(exact_box: Stone) -> N
     assert digest(path) == "12aaf6c689f40f4e40b21c1a7b9d1ee6a73d16a478fc6c7d82f7e93d712daed7"
 
 
-def test_the_same_seed_gives_the_same_states(box: Stone) -> None:
+def test_the_same_seed_gives_the_same_states(box: Shape) -> None:
     assert states(classic(box, seed=5), 300) == states(classic(box, seed=5), 300)
 
 
-def test_another_seed_gives_another_path_from_the_first_hard_impact_on(box: Stone) -> None:
+def test_another_seed_gives_another_path_from_the_first_hard_impact_on(box: Shape) -> None:
     one, other = states(classic(box, seed=5), 60), states(classic(box, seed=6), 60)
     hard = next(i for i, state in enumerate(one) if state.impacts)
     assert one[:hard] == other[:hard]
@@ -54,7 +54,7 @@ def test_another_seed_gives_another_path_from_the_first_hard_impact_on(box: Ston
 
 
 @pytest.mark.parametrize("frames", [[1 / 60], [1 / 7], [0.001, 0.08, 0.033], [1 / 144, 0.5, 0.0]])
-def test_frames_do_not_change_the_path(box: Stone, frames: list[float]) -> None:
+def test_frames_do_not_change_the_path(box: Shape, frames: list[float]) -> None:
     path = states(classic(box, seed=9), 200)
     moving, clock = classic(box, seed=9), FixedStepClock(1 / 30)
     for elapsed in itertools.cycle(frames):
@@ -67,7 +67,7 @@ def test_frames_do_not_change_the_path(box: Stone, frames: list[float]) -> None:
 
 
 @pytest.mark.parametrize("at", [0, 1, 37, 120, 299])
-def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Stone, at: int) -> None:
+def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Shape, at: int) -> None:
     whole = classic(box, seed=2)
     states(whole, at)
     text = json.dumps(whole.snapshot(), allow_nan=False)
@@ -79,7 +79,7 @@ def test_a_snapshot_goes_on_to_the_same_bits_through_json(box: Stone, at: int) -
     assert other.interpolated(0.3) == whole.interpolated(0.3)
 
 
-def test_a_bad_snapshot_changes_nothing(box: Stone) -> None:
+def test_a_bad_snapshot_changes_nothing(box: Shape) -> None:
     moving = classic(box)
     states(moving, 10)
     before = moving.state, moving.previous
@@ -88,7 +88,7 @@ def test_a_bad_snapshot_changes_nothing(box: Stone) -> None:
     assert (moving.state, moving.previous) == before
 
 
-def test_reset_goes_back_to_the_start_and_the_same_path(box: Stone) -> None:
+def test_reset_goes_back_to_the_start_and_the_same_path(box: Shape) -> None:
     moving = classic(box)
     start = moving.state
     first = states(moving, 100)
@@ -97,7 +97,7 @@ def test_reset_goes_back_to_the_start_and_the_same_path(box: Stone) -> None:
     assert states(moving, 100) == first
 
 
-def test_the_start_has_the_scenes_velocity_and_spin(box: Stone) -> None:
+def test_the_start_has_the_scenes_velocity_and_spin(box: Shape) -> None:
     tilted = (0.5, 0.5, 0.5, 0.5)
     settings = SimulationSettings.model_validate({"velocity": (1, 2, 3), "spin": (0.5, 3, -1), "mass": 4})
     moving = Simulation(settings, box, START, tilted)
@@ -106,7 +106,7 @@ def test_the_start_has_the_scenes_velocity_and_spin(box: Stone) -> None:
     assert moving.state.orientation == tilted
 
 
-def test_the_previous_state_is_the_one_before(box: Stone) -> None:
+def test_the_previous_state_is_the_one_before(box: Shape) -> None:
     moving = classic(box)
     for _ in range(5):
         current = moving.state
@@ -115,7 +115,7 @@ def test_the_previous_state_is_the_one_before(box: Stone) -> None:
         assert moving.state.step == current.step + 1
 
 
-def test_interpolation_meets_both_states_and_halves_the_way(box: Stone) -> None:
+def test_interpolation_meets_both_states_and_halves_the_way(box: Shape) -> None:
     moving = classic(box)
     states(moving, 10)
     before, after = moving.previous, moving.state
@@ -130,7 +130,7 @@ def test_interpolation_meets_both_states_and_halves_the_way(box: Stone) -> None:
     assert chords[0] > 0.01
 
 
-def test_interpolation_meets_the_current_state_to_the_bit(box: Stone) -> None:
+def test_interpolation_meets_the_current_state_to_the_bit(box: Shape) -> None:
     moving = classic(box)
     moving.step()
     near_zero = moving.snapshot()
@@ -141,12 +141,12 @@ def test_interpolation_meets_the_current_state_to_the_bit(box: Stone) -> None:
 
 
 @pytest.mark.parametrize("fraction", [-0.1, 1.1, math.nan])
-def test_a_fraction_outside_the_step_is_refused(box: Stone, fraction: float) -> None:
+def test_a_fraction_outside_the_step_is_refused(box: Shape, fraction: float) -> None:
     with pytest.raises(InputError, match="between 0 and 1"):
         classic(box).interpolated(fraction)
 
 
-def test_a_settled_stone_is_drawn_at_the_same_bits_for_ever(box: Stone) -> None:
+def test_a_settled_stone_is_drawn_at_the_same_bits_for_ever(box: Shape) -> None:
     moving = classic(box)
     while not moving.settled:
         moving.step()
@@ -159,7 +159,7 @@ def test_a_settled_stone_is_drawn_at_the_same_bits_for_ever(box: Stone) -> None:
     assert moving.energy() == 0
 
 
-def test_time_goes_on_while_the_stone_sleeps(box: Stone) -> None:
+def test_time_goes_on_while_the_stone_sleeps(box: Shape) -> None:
     moving = classic(box)
     path = states(moving, 400)
     assert path[-1].asleep
@@ -167,7 +167,7 @@ def test_time_goes_on_while_the_stone_sleeps(box: Stone) -> None:
     assert path[-1].time == pytest.approx(400 / 30, rel=1e-13, abs=0)
 
 
-def test_the_classic_energy_only_falls_while_nothing_kicks(box: Stone) -> None:
+def test_the_classic_energy_only_falls_while_nothing_kicks(box: Shape) -> None:
     moving = classic(box, random_torque=0, spin=(0, 3, 0))
     energies = [moving.energy()]
     for _ in range(300):
@@ -201,7 +201,7 @@ EXTREMES: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("inertia", ["polyhedron", "cone", "cone_apex"])
 @pytest.mark.parametrize("name", EXTREMES)
-def test_extremes_stay_finite_and_above_the_floor(box: Stone, name: str, inertia: str) -> None:
+def test_extremes_stay_finite_and_above_the_floor(box: Shape, name: str, inertia: str) -> None:
     moving = classic(box, inertia=inertia, **EXTREMES[name])
     for state in states(moving, 300):
         assert all(math.isfinite(number) for number in numbers(state))
@@ -210,7 +210,7 @@ def test_extremes_stay_finite_and_above_the_floor(box: Stone, name: str, inertia
         assert abs(sum(c * c for c in state.orientation) - 1) < 1e-14
 
 
-def test_without_gravity_a_stone_at_rest_stays_where_it_is(box: Stone) -> None:
+def test_without_gravity_a_stone_at_rest_stays_where_it_is(box: Shape) -> None:
     moving = classic(box, gravity=0, spin=(0, 0, 0))
     states(moving, 300)
     assert (moving.state.position, moving.state.orientation) == (START, UPRIGHT)
@@ -218,12 +218,12 @@ def test_without_gravity_a_stone_at_rest_stays_where_it_is(box: Stone) -> None:
 
 @pytest.mark.parametrize("time_step", [1 / 30, 0.25])
 @pytest.mark.parametrize("gravity", [9.81, 1e6])
-def test_bouncing_never_gives_more_height_than_it_began_with(box: Stone, gravity: float, time_step: float) -> None:
+def test_bouncing_never_gives_more_height_than_it_began_with(box: Shape, gravity: float, time_step: float) -> None:
     moving = classic(box, gravity=gravity, time_step=time_step, restitution=1, random_torque=0)
     assert max(state.position[1] for state in states(moving, 500)) <= 4
 
 
-def test_an_orientation_of_another_length_is_normalised(box: Stone) -> None:
+def test_an_orientation_of_another_length_is_normalised(box: Shape) -> None:
     moving = Simulation(SimulationSettings.model_validate({}), box, START, (0.0, 3.0, 0.0, -4.0))
     assert moving.state.orientation == (0, 0.6, 0, -0.8)
 
@@ -237,7 +237,7 @@ def test_an_orientation_of_another_length_is_normalised(box: Stone) -> None:
         (START, (0.0, 0.0, 0.0, 0.0)),
     ],
 )
-def test_a_start_that_is_no_pose_is_refused(box: Stone, position: Triple, orientation: Quaternion) -> None:
+def test_a_start_that_is_no_pose_is_refused(box: Shape, position: Triple, orientation: Quaternion) -> None:
     with pytest.raises(InputError):
         Simulation(SimulationSettings.model_validate({}), box, position, orientation)
 
@@ -246,7 +246,7 @@ def test_every_model_that_a_scene_can_name_exists() -> None:
     assert set(get_args(SimulationSettings.model_fields["model"].annotation)) == set(MODELS)
 
 
-def test_the_reports_scene_bounces_and_rests(box: Stone) -> None:
+def test_the_reports_scene_bounces_and_rests(box: Shape) -> None:
     scene = preset("classic")
     placed = scene.stones[0]
     path = states(Simulation(scene.simulation, box, placed.position, placed.orientation), 300)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.features import Features
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene
@@ -69,7 +69,7 @@ def test_only_the_stones_pixels_count() -> None:
 
 
 @pytest.mark.parametrize("name", ["default", "face-up"])
-def test_the_stones_pixels_are_those_that_it_changes(renderer: Renderer, brilliant: Stone, name: str) -> None:
+def test_the_stones_pixels_are_those_that_it_changes(renderer: Renderer, brilliant: Shape, name: str) -> None:
     """A black stone before a white backdrop, by a pinhole and by parallel rays."""
     scene = PRESETS[name].scene
     stone = scene.stones[0].model_copy(update={"absorption": (1e6, 1e6, 1e6)})

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from culet.geometry.stone import MassProperties, Stone
+from culet.geometry.shape import MassProperties, Shape
 from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import rotate, rotate_back
@@ -23,7 +23,7 @@ from simulation.solids import UPRIGHT
 
 
 @pytest.fixture(scope="module")
-def points(brilliant: Stone) -> dict[str, Point]:
+def points(brilliant: Shape) -> dict[str, Point]:
     """All of a quick study but the slow slide, by key."""
     chosen = [(key, run) for key, run in points_of(brilliant, quick=True) if not key.startswith("slide")]
     return {key: run() for key, run in chosen}
@@ -35,7 +35,7 @@ def figure(points: dict[str, Point], beginning: str, name: str) -> float:
     return value
 
 
-def test_the_truth_of_a_free_rotation_is_jacobis(brilliant: Stone) -> None:
+def test_the_truth_of_a_free_rotation_is_jacobis(brilliant: Shape) -> None:
     shaped = replace(brilliant, mass=MassProperties(1.0, np.diag(TOP_MOMENTS)))
     body = RigidBody.of(Settings(mass=1), shaped)
     momentum = body.angular_momentum(UPRIGHT, TOP_SPIN)
@@ -51,7 +51,7 @@ def test_the_angle_between_attitudes_is_that_of_the_turn(angle: float) -> None:
     assert angle_between(UPRIGHT, (-turned[0], 0.0, -turned[2], 0.0)) == pytest.approx(angle, rel=1e-7)
 
 
-def test_lying_flat_the_largest_facet_is_below(brilliant: Stone) -> None:
+def test_lying_flat_the_largest_facet_is_below(brilliant: Shape) -> None:
     heights = [rotate(flat_orientation(brilliant), tuple(vertex))[1] for vertex in brilliant.vertices.tolist()]
     assert sum(height < min(heights) + 1e-9 for height in heights) == 8  # the table's corners
 
@@ -103,7 +103,7 @@ def test_a_drop_converges_to_its_finest_steps_and_gains_no_energy(points: dict[s
     assert {point.figures["energy_error"] for point in drops} == {0}
 
 
-def test_points_that_are_in_the_journal_are_not_measured_again(brilliant: Stone, tmp_path: Path) -> None:
+def test_points_that_are_in_the_journal_are_not_measured_again(brilliant: Shape, tmp_path: Path) -> None:
     told: list[int] = []
     keys = [key for key, _ in points_of(brilliant, quick=True)]
     known = Point(key="", group="g", label="", knobs={}, figures={})

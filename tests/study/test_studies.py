@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from culet.errors import InputError
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.rendering.device import Device
 from culet.rendering.panoramas import Panorama, light_box
 from culet.scene import Scene
@@ -53,7 +53,7 @@ def study(
     out: Path, cache: Path, progress: Told, scene: Scene | None = None, panorama: Panorama | None = None
 ) -> Report:
     subject = scene or Scene()
-    studied = Studied(subject, stone_of(subject.stones[0], {}), panorama)
+    studied = Studied(subject, shape_of(subject.stones[0], {}), panorama)
     return study_rendering(studied, out, progress, effort=TINY, quick=True, cache=cache, groups=GROUPS)
 
 
@@ -143,7 +143,7 @@ def test_the_folder_of_another_sky_is_refused(finished: Report, folder: Path) ->
 
 def test_a_sky_from_a_file_is_what_is_rendered(device: Device) -> None:
     scene = legacy({"environment": {"kind": "image", "image": "file"}, "floor": {"kind": "none"}})
-    stone = stone_of(scene.stones[0], {})
+    stone = shape_of(scene.stones[0], {})
     grey, white = (np.full((4, 8, 3), level, np.float32) for level in (0.5, 1.0))
     means = []
     for panorama in (grey, white):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 from scipy.stats import t as student
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from validation.mitsuba_reference import Array, Reference
@@ -37,7 +37,7 @@ class Seen:
 
 
 def seen(
-    renderer: Renderer, scene: Scene, stone: Stone | None, panorama: Array, size: tuple[int, int], samples: int
+    renderer: Renderer, scene: Scene, stone: Shape | None, panorama: Array, size: tuple[int, int], samples: int
 ) -> Seen:
     """The scene under a grey panorama (h, 2h), each sample read by itself."""
     sky = np.repeat(panorama[..., None], 3, axis=-1).astype(np.float32)

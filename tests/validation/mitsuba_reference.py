@@ -15,7 +15,7 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Scene
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ def twice_as_high(panorama: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def reference(
     scene: Scene,
-    stone: Stone | None,
+    stone: Shape | None,
     eta: float,
     panorama: NDArray[np.float32],
     size: tuple[int, int],
@@ -92,7 +92,7 @@ def reference(
     return Reference(mean, spread / (samples - 1), samples)
 
 
-def _mesh(stone: Stone, eta: float) -> Any:  # noqa: ANN401 - Mitsuba is not typed
+def _mesh(stone: Shape, eta: float) -> Any:  # noqa: ANN401 - Mitsuba is not typed
     """Flat triangles of glass."""
     properties = mitsuba.Properties()
     properties["glass"] = mitsuba.load_dict({"type": "dielectric", "int_ior": eta, "ext_ior": 1.0})

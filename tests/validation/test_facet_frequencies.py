@@ -12,8 +12,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.scene.model import StoneSettings
 from culet.simulation.rotation import normalised, rotate, rotate_back
 from culet.simulation.state import Quaternion, Triple
@@ -38,13 +38,13 @@ def drops(count: int) -> list[Drop]:
     return found
 
 
-def facet(stone: Stone, down: Triple) -> str:
+def facet(stone: Shape, down: Triple) -> str:
     """What the stone lies on, by the height of the facet's normal over the girdle."""
     height = float(stone.planes[np.argmax(stone.planes[:, :3] @ down), 1])
     return "table" if height > 0.99 else "crown" if height > 0.05 else "girdle" if height > -0.05 else "pavilion"
 
 
-def rest_here(stone: Stone, drop: Drop) -> str:
+def rest_here(stone: Shape, drop: Drop) -> str:
     height, orientation, spin = drop
     moving = rigid(
         stone, (0.0, height, 0.0), orientation, spin=rotate(orientation, spin), restitution=0, friction=FRICTION,
@@ -55,7 +55,7 @@ def rest_here(stone: Stone, drop: Drop) -> str:
     return facet(stone, rotate_back(moving.state.orientation, (0.0, -1.0, 0.0)))
 
 
-def rests_in_mujoco(stone: Stone, tried: list[Drop]) -> list[str]:
+def rests_in_mujoco(stone: Shape, tried: list[Drop]) -> list[str]:
     mujoco = pytest.importorskip("mujoco", reason=MISSING)
     vertices = " ".join(f"{c:.17g}" for c in stone.vertices.ravel())
     moments = " ".join(f"{2 * moment:.17g}" for moment in np.diag(stone.mass.inertia))
@@ -81,7 +81,7 @@ def rests_in_mujoco(stone: Stone, tried: list[Drop]) -> list[str]:
 
 
 def test_the_facets_are_those_of_mujoco_as_often() -> None:
-    stone, tried = stone_of(StoneSettings(), {}), drops(DROPS)
+    stone, tried = shape_of(StoneSettings(), {}), drops(DROPS)
     theirs, ours = Counter(rests_in_mujoco(stone, tried)), Counter(rest_here(stone, drop) for drop in tried)
     print(f"here {dict(ours)}, MuJoCo {dict(theirs)}")
     assert set(ours) <= {"table", "pavilion"}

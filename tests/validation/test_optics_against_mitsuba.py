@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
@@ -29,7 +29,7 @@ SAMPLES = 512
 OUR_SAMPLES = 64
 """Each of culet's follows all parts of the light: they are noisy at edges only."""
 INDICES = 1.6, 2.42, 2.0
-STONES: dict[str, Callable[[], Stone]] = {"brilliant": brilliant, "step cut": step_cut, "ring": ring}
+STONES: dict[str, Callable[[], Shape]] = {"brilliant": brilliant, "step cut": step_cut, "ring": ring}
 VIEWS: dict[str, dict[str, Any]] = {
     "from above": {"position": [0, 2.2, 2.0], "target": [0, -0.1, 0], "fov_degrees": 40},
     "down": {"position": [0.3, 2.8, 0.2], "target": [0, 0, 0], "up": [0, 0, -1], "fov_degrees": 40},
@@ -94,7 +94,7 @@ def test_polarised_light_whose_plane_of_incidence_turns(renderer: Renderer, numb
 
 
 def compare_polarised(
-    renderer: Renderer, stone: Stone, number: int, size: tuple[int, int], samples: int
+    renderer: Renderer, stone: Shape, number: int, size: tuple[int, int], samples: int
 ) -> tuple[Verdict, Verdict]:
     """Judges the polarised mode, and returns the verdicts on it and on the averaged one."""
     view = list(VIEWS.values())[number]

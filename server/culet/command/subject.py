@@ -15,7 +15,7 @@ from culet.command.terminal import libraries_silenced
 from culet.errors import InputError, MeshError, SceneError
 
 if TYPE_CHECKING:
-    from culet.geometry.stone import Stone
+    from culet.geometry.shape import Shape
     from culet.rendering.panoramas import Panorama
     from culet.scene import Scene
 
@@ -24,7 +24,7 @@ class Subject(NamedTuple):
     """What a command is about."""
 
     scene: Scene
-    stone: Stone | None
+    stone: Shape | None
     """None if the scene has none."""
     panorama: Panorama | None
     """The sky from a file; None if the scene's own counts."""
@@ -32,7 +32,7 @@ class Subject(NamedTuple):
 
 def read_subject(file: Path | None, preset: str | None, mesh: Path | None, sky: Path | None = None) -> Subject:
     """From what the user named; InputError says which of it cannot be used, and why. Findings go to stderr."""
-    from culet.geometry.load import stone_of
+    from culet.geometry.load import shape_of
     from culet.scene import Scene
     from culet.scene import preset as preset_scene
 
@@ -47,19 +47,19 @@ def read_subject(file: Path | None, preset: str | None, mesh: Path | None, sky: 
         scene = scene.model_copy(update={"stones": (stone,)})
     scene, panorama = _with_sky(scene, sky)
     with _naming(file):
-        return Subject(scene, stone_of(scene.stones[0], meshes) if scene.stones else None, panorama)
+        return Subject(scene, shape_of(scene.stones[0], meshes) if scene.stones else None, panorama)
 
 
-def _mesh(file: Path) -> Stone:
+def _mesh(file: Path) -> Shape:
     """The stone in a mesh file; what was found in it, or repaired, goes to stderr."""
-    from culet.geometry.mesh import stone_from_mesh
+    from culet.geometry.mesh import shape_from_mesh
 
     try:
         data = file.read_bytes()
     except OSError as error:
         raise MeshError(f"{file}: cannot be read: {error.strerror}") from error
     with _naming(file):
-        stone = stone_from_mesh(data, file.suffix.lower().lstrip("."), name=file.stem)
+        stone = shape_from_mesh(data, file.suffix.lower().lstrip("."), name=file.stem)
     _report(file, stone.findings)
     return stone
 

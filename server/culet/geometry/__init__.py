@@ -1,1 +1,1 @@
-"""Cuts and meshes, made into stones."""
+"""Cuts and meshes, made into shapes."""

@@ -1,4 +1,4 @@
-"""The last step of every way to a stone: centre it, scale it to circumradius 1, integrate its mass."""
+"""The last step of every way to a shape: centre it, scale it to circumradius 1, integrate its mass."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from culet.errors import MeshError
 from culet.geometry.mass import solid_integrals
-from culet.geometry.stone import MassProperties, Stone
+from culet.geometry.shape import MassProperties, Shape
 
 Centre = Literal["mass", "vertex_mean"]
 """What becomes the origin: the centre of mass, or the mean of the vertices as in the report's program."""
@@ -26,8 +26,8 @@ def assemble(
     convex: bool,
     centre: NDArray[np.float64] | None = None,
     findings: Sequence[str] = (),
-) -> Stone:
-    """The stone of a closed, outward wound surface in any position and size.
+) -> Shape:
+    """The shape of a closed, outward wound surface in any position and size.
 
     `centre` is the point that becomes the origin; without it, the centre of mass. MeshError if there is no volume.
     """
@@ -47,6 +47,6 @@ def assemble(
     )
     inertia = integrals.inertia / radius**2
     for array in (*arrays, inertia):
-        array.setflags(write=False)  # stones are shared: a cache gives the same one to every session
+        array.setflags(write=False)  # shapes are shared: a cache gives the same one to every session
     mass = MassProperties(volume=integrals.volume / radius**3, inertia=inertia)
-    return Stone(name, *arrays, convex=convex, mass=mass, findings=tuple(findings))
+    return Shape(name, *arrays, convex=convex, mass=mass, findings=tuple(findings))

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import MeshError
-from culet.geometry.half_spaces import stone_from_half_spaces
-from culet.geometry.stone import Stone
+from culet.geometry.half_spaces import shape_from_half_spaces
+from culet.geometry.shape import Shape
 from culet.scene.model import BrilliantCut
 
 FACETS, VERTICES = 73, 57
@@ -65,15 +65,15 @@ def brilliant_planes(cut: BrilliantCut) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=64)
-def brilliant(cut: BrilliantCut) -> Stone:
-    """The stone of these proportions: 73 facets, 57 vertices. MeshError, naming the proportion, if there is none."""
-    stone = stone_from_half_spaces("brilliant", brilliant_planes(cut))
-    if (len(stone.planes), len(stone.vertices)) != (FACETS, VERTICES):
+def brilliant(cut: BrilliantCut) -> Shape:
+    """The shape of these proportions: 73 facets, 57 vertices. MeshError, naming the proportion, if there is none."""
+    shape = shape_from_half_spaces("brilliant", brilliant_planes(cut))
+    if (len(shape.planes), len(shape.vertices)) != (FACETS, VERTICES):
         raise MeshError(
-            f"brilliant: these proportions leave {len(stone.planes)} of {FACETS} facets and {len(stone.vertices)} of "
+            f"brilliant: these proportions leave {len(shape.planes)} of {FACETS} facets and {len(shape.vertices)} of "
             f"{VERTICES} corners; the others are thinner than rounding. Got {_listing(cut)}"
         )
-    return stone
+    return shape
 
 
 def _require_stars(table: float, star: float) -> None:

@@ -1,4 +1,4 @@
-"""A convex stone from its facets' half-spaces alone."""
+"""A convex shape from its facets' half-spaces alone."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull, QhullError
 from culet.errors import MeshError
 from culet.geometry.assembly import assemble
 from culet.geometry.polygons import fan, loops
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 
 SAME_VERTEX = 1e-9
 """Corners nearer than this, in units of the stone's extent, and joined by an edge are one. Rounding places the corners
@@ -21,10 +21,10 @@ of a needle of 1000:1 to about 1e-13; much larger would swallow real edges of a 
 LARGEST_NUMBER_OF_HALF_SPACES = 100_000
 
 
-def stone_from_half_spaces(name: str, planes: NDArray[np.float64]) -> Stone:
+def shape_from_half_spaces(name: str, planes: NDArray[np.float64]) -> Shape:
     """The intersection of half-spaces n.x <= d, centred at its centre of mass and scaled to circumradius 1.
 
-    `planes` is (F, 4): outward normal n (of any length) and offset d. The stone's facets keep that order; half-spaces
+    `planes` is (F, 4): outward normal n (of any length) and offset d. The shape's facets keep that order; half-spaces
     that bound nothing are left out and counted in the findings. MeshError if the intersection is empty, flat or open.
     """
     given = np.asarray(planes, np.float64)

@@ -1,4 +1,4 @@
-"""The stone of a scene."""
+"""The shapes of a scene's stones."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Mapping
 
 from culet.errors import MeshError, SceneError
 from culet.geometry.brilliant import brilliant
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import BrilliantCut, StoneSettings
 
 
-def stone_of(settings: StoneSettings, meshes: Mapping[str, Stone]) -> Stone:
+def shape_of(settings: StoneSettings, meshes: Mapping[str, Shape]) -> Shape:
     """The mesh that the settings name, or else their cut.
 
     `meshes` holds what was uploaded, by id. SceneError if the id is unknown; MeshError, its field within the scene, if
-    the cut's proportions make no stone.
+    the cut's proportions make no shape.
     """
     if settings.mesh is not None:
         try:

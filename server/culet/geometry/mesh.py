@@ -1,8 +1,8 @@
-"""A mesh file, made into a stone or refused.
+"""A mesh file, made into a shape or refused.
 
 Files are untidy, and a picture of the wrong stone looks like a picture of the right one. So each step either proves
 what the renderer relies on (one closed body, wound outward, not crossing itself, convex or not), repairs it and says so
-in the stone's findings, or refuses with the defect's name.
+in the shape's findings, or refuses with the defect's name.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from culet.geometry.facets import FLATNESS, facets_of, planes_of
 from culet.geometry.flat_regions import retriangulated
 from culet.geometry.formats import Soup, read_triangles
 from culet.geometry.mass import surface_area
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.geometry.surface import Bodies, Points, Triangles, weld
 
 MAX_TRIANGLES = 200_000
@@ -34,7 +34,7 @@ FLAT = 1e-5
 precision 1e-7."""
 
 
-def stone_from_mesh(
+def shape_from_mesh(
     data: bytes,
     file_type: str,
     *,
@@ -42,8 +42,8 @@ def stone_from_mesh(
     max_bytes: int = MAX_BYTES,
     centre: Centre = "mass",
     name: str = "mesh",
-) -> Stone:
-    """The stone in a mesh file: of several closed bodies the largest, scaled to circumradius 1.
+) -> Shape:
+    """The shape in a mesh file: of several closed bodies the largest, scaled to circumradius 1.
 
     `file_type` is obj, off, stl, ply or glb. `centre` chooses the origin: the centre of mass, or the mean of the body's
     distinct vertices as in the report's program. Whether the stone is convex is decided and said in the findings, as is
@@ -143,7 +143,7 @@ def _cut_out(points: Points, bodies: Bodies, taken: int, findings: list[str]) ->
     return body
 
 
-def _finished(name: str, body: _Body, source: int, centre: Centre, findings: list[str]) -> Stone:
+def _finished(name: str, body: _Body, source: int, centre: Centre, findings: list[str]) -> Shape:
     origin = body.vertices.mean(axis=0) if centre == "vertex_mean" else None
     form = convex_form(body.vertices, body.triangles, body.volume)
     if isinstance(form, Polyhedron):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 
 
 def fan(polygons: Sequence[Sequence[int]]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -39,15 +39,15 @@ def loops(edges: NDArray[np.int64]) -> list[list[int]] | None:
     return found
 
 
-def edges_of_facets(stone: Stone) -> NDArray[np.int32]:
+def edges_of_facets(shape: Shape) -> NDArray[np.int32]:
     """(E, 4) v0, v1, facet a, facet b: every edge between two facets, once.
 
     The edge runs from v0 to v1 counter-clockwise about facet a, seen from outside, and from v1 to v0 about facet b.
     """
-    a = stone.triangles.astype(np.int64)
+    a = shape.triangles.astype(np.int64)
     directed = np.concatenate([a[:, [0, 1]], a[:, [1, 2]], a[:, [2, 0]]])
-    facet = np.tile(stone.facet_of_triangle, 3)
-    count = len(stone.vertices)
+    facet = np.tile(shape.facet_of_triangle, 3)
+    count = len(shape.vertices)
     key = directed[:, 0] * count + directed[:, 1]
     order = np.argsort(key)
     reverse = directed[:, 1] * count + directed[:, 0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import astuple, dataclass, fields, replace
 from enum import IntEnum
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
 from culet.rendering.mirrors import makes_finite_group
@@ -80,23 +80,23 @@ class Features:
         return replace(self, **{name: RUNTIME})
 
 
-def geometry_of(stone: Stone | None) -> Geometry:
+def geometry_of(shape: Shape | None) -> Geometry:
     """How a stone is traced."""
-    if stone is None:
+    if shape is None:
         return Geometry.EMPTY
-    return Geometry.HULL if stone.convex and len(stone.planes) <= MOST_HALF_SPACES else Geometry.MESH
+    return Geometry.HULL if shape.convex and len(shape.planes) <= MOST_HALF_SPACES else Geometry.MESH
 
 
-def features_of(scene: Scene, stone: Stone | None) -> Features:
+def features_of(scene: Scene, shape: Shape | None) -> Features:
     """The program that holds what this scene needs, and nothing else."""
     kinds: tuple[Floor, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds
     optics = scene.optics
     lit = floor.kind in ("matte", "mirror") or walls.kind != "none"
-    settings = scene.stones[0] if stone is not None else None
+    settings = scene.stones[0] if shape is not None else None
     indices = channel_indices(settings.material) if settings else (1.0, 1.0, 1.0)
     return Features(
-        geometry=geometry_of(stone),
+        geometry=geometry_of(shape),
         floor=SURFACE[floor.kind],
         walls=SURFACE[walls.kind],
         lights=RUNTIME if scene.lights and lit else 0,
@@ -106,12 +106,12 @@ def features_of(scene: Scene, stone: Stone | None) -> Features:
         backdrop=int(scene.backdrop.kind != "none"),
         glare=int(optics.glare),
         dispersion=int(len(set(indices)) > 1),
-        absorption=RUNTIME if stone is not None and is_coloured(scene) else 0,
+        absorption=RUNTIME if shape is not None and is_coloured(scene) else 0,
         fresnel=FRESNEL[optics.fresnel],
         end=END[optics.end],
         spectral=int(is_spectral(scene)),
         polarised=int(optics.polarised and optics.estimator == "chain"),
-        few_mirrors=int(stone is not None and makes_finite_group(stone)),
-        camera_inside=int(stone is not None and camera_is_inside(scene, stone)),
+        few_mirrors=int(shape is not None and makes_finite_group(shape)),
+        camera_inside=int(shape is not None and camera_is_inside(scene, shape)),
         estimator=ESTIMATOR[optics.estimator],
     )

@@ -9,7 +9,7 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.geometry.polygons import edges_of_facets
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.chains import chain_table, is_spectral
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features, Geometry
@@ -28,7 +28,7 @@ class Inputs:
         self,
         device: Device,
         scene: Scene,
-        stone: Stone | None,
+        shape: Shape | None,
         width: int,
         height: int,
         panorama: Panorama | None,
@@ -37,20 +37,20 @@ class Inputs:
     ) -> None:
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
-        self._changes = stone is not None and (is_spectral(scene) or scene.optics.end == "roulette")
+        self._changes = shape is not None and (is_spectral(scene) or scene.optics.end == "roulette")
         self._sample = -1
         shadow_start, shadows, facets = np.zeros(1, np.int32), np.zeros((1, 4)), np.zeros((1, 4))
-        self._struct = parameters(scene, stone, width, height, real)
+        self._struct = parameters(scene, shape, width, height, real)
         mesh: list[Any] = [None, None, None]
-        if stone is not None and features.geometry == Geometry.HULL:
-            facets = world_planes(scene, stone)
+        if shape is not None and features.geometry == Geometry.HULL:
+            facets = world_planes(scene, shape)
             if features.lights != 0:
-                shadow_start, shadows = _shadow_volumes(scene, stone, facets)
+                shadow_start, shadows = _shadow_volumes(scene, shape, facets)
                 self._struct["shadow_start"][: len(shadow_start)] = shadow_start
-        elif stone is not None:
-            tree = tree_of(stone)
+        elif shape is not None:
+            tree = tree_of(shape)
             mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
-        self._has_stone = stone is not None
+        self._has_stone = shape is not None
         self._panorama = None
         if isinstance(scene.environment, ImageEnvironment):
             if panorama is None:
@@ -81,11 +81,11 @@ class Inputs:
 
 
 def _shadow_volumes(
-    scene: Scene, stone: Stone, facets: NDArray[np.float64]
+    scene: Scene, shape: Shape, facets: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """Where each light's planes begin, and all of them."""
     centre, rotation = placement(scene)
-    surfaces, vertices, edges = shown_surfaces(scene, centre), stone.vertices @ rotation.T, edges_of_facets(stone)
+    surfaces, vertices, edges = shown_surfaces(scene, centre), shape.vertices @ rotation.T, edges_of_facets(shape)
     volumes = [
         shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights
     ]

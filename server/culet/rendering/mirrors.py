@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 
 MOST_MIRRORS = 32
 """Of a group that counts as finite: 15 are in an icosahedron's, m + 1 in that of a prism over a polygon of m sides."""
@@ -20,18 +20,18 @@ SAME = 1e-9
 """Cosines this near to 1 are of one direction."""
 
 
-_ANSWERS: WeakKeyDictionary[Stone, bool] = WeakKeyDictionary()
+_ANSWERS: WeakKeyDictionary[Shape, bool] = WeakKeyDictionary()
 
 
-def makes_finite_group(stone: Stone) -> bool:
+def makes_finite_group(shape: Shape) -> bool:
     """Whether the facets as mirrors, and their images in each other, are at most MOST_MIRRORS; found out once."""
-    if stone not in _ANSWERS:
-        _ANSWERS[stone] = _are_few(stone)
-    return _ANSWERS[stone]
+    if shape not in _ANSWERS:
+        _ANSWERS[shape] = _are_few(shape)
+    return _ANSWERS[shape]
 
 
-def _are_few(stone: Stone) -> bool:
-    mirrors, waiting = np.empty((0, 3)), stone.planes[:, :3]
+def _are_few(shape: Shape) -> bool:
+    mirrors, waiting = np.empty((0, 3)), shape.planes[:, :3]
     while len(waiting):
         for normal in waiting:
             if (np.abs(mirrors @ normal) < 1 - SAME).all():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.chains import absorption
 from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
@@ -85,7 +85,7 @@ def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.floa
     return room_surfaces(centre)[[scene.floor.kind != "none", *[scene.walls.kind != "none"] * 3]]
 
 
-def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real: Real) -> NDArray[np.void]:
+def parameters(scene: Scene, shape: Shape | None, width: int, height: int, real: Real) -> NDArray[np.void]:
     """One struct; every position is relative to the stone's centre, subtracted in double precision.
 
     What depends on other buffers (shadows, chains, panorama) is left zero.
@@ -99,7 +99,7 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
     p["cutoff"] = scene.optics.cutoff
     p["centre"] = centre
     p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
-    set_studio(p, scene, stone, width, height)
+    set_studio(p, scene, shape, width, height)
     p["surface"] = room_surfaces(centre)
     for number, light in enumerate(scene.lights):
         p["light"][number] = np.array(light.position) - centre
@@ -113,17 +113,17 @@ def parameters(scene: Scene, stone: Stone | None, width: int, height: int, real:
     p["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
     p["end_kind"] = END[scene.optics.end]
     p["glare"] = scene.optics.glare
-    if stone is not None:
+    if shape is not None:
         p["absorption"] = absorption(scene)
-        p["facets"] = len(stone.planes)
-        p["camera_inside"] = camera_is_inside(scene, stone)
-        p["convex"] = stone.convex
-        p["pierces"] = _pierces(scene, stone)
+        p["facets"] = len(shape.planes)
+        p["camera_inside"] = camera_is_inside(scene, shape)
+        p["convex"] = shape.convex
+        p["pierces"] = _pierces(scene, shape)
     return p
 
 
-def _pierces(scene: Scene, stone: Stone) -> bool:
+def _pierces(scene: Scene, shape: Shape) -> bool:
     """Whether the stone reaches through the floor or a wall that is there."""
     centre, rotation = placement(scene)
     surfaces = shown_surfaces(scene, centre)
-    return bool((stone.vertices @ rotation.T @ surfaces[:, :3].T < surfaces[:, 3]).any())
+    return bool((shape.vertices @ rotation.T @ surfaces[:, :3].T < surfaces[:, 3]).any())

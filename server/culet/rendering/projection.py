@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -32,13 +32,13 @@ def placement(scene: Scene) -> tuple[Array, Array]:
     return np.array(scene.stones[0].position), rotation_matrix(scene.stones[0].orientation)
 
 
-def world_planes(scene: Scene, stone: Stone) -> Array:
+def world_planes(scene: Scene, shape: Shape) -> Array:
     """(F, 4) facets in the world's axes, relative to the stone's centre."""
     _, rotation = placement(scene)
-    return np.column_stack([stone.planes[:, :3] @ rotation.T, stone.planes[:, 3]])
+    return np.column_stack([shape.planes[:, :3] @ rotation.T, shape.planes[:, 3]])
 
 
-def camera_is_inside(scene: Scene, stone: Stone) -> bool:
+def camera_is_inside(scene: Scene, shape: Shape) -> bool:
     """Whether the eye is within the stone's surface; on it counts as outside. Parallel rays begin outside."""
     if scene.camera.kind == "orthographic":
         return False
@@ -46,15 +46,15 @@ def camera_is_inside(scene: Scene, stone: Stone) -> bool:
     eye = (np.array(scene.camera.position) - centre) @ rotation
     if eye @ eye >= 1:
         return False
-    if stone.convex:
-        return bool((stone.planes[:, :3] @ eye < stone.planes[:, 3]).all())
-    return abs(_winding_number(stone, eye)) > 0.5
+    if shape.convex:
+        return bool((shape.planes[:, :3] @ eye < shape.planes[:, 3]).all())
+    return abs(_winding_number(shape, eye)) > 0.5
 
 
-def _winding_number(stone: Stone, point: Array) -> float:
+def _winding_number(shape: Shape, point: Array) -> float:
     """How often the surface encloses a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom &
     Strackee, IEEE Trans. Biomed. Eng. 30, 125 (1983), eq. 8)."""
-    a, b, c = (stone.vertices[stone.triangles[:, k]] - point for k in range(3))
+    a, b, c = (shape.vertices[shape.triangles[:, k]] - point for k in range(3))
     la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
     triple = np.einsum("ij,ij->i", a, np.cross(b, c))
     dots = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb

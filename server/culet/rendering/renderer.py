@@ -11,7 +11,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
@@ -76,7 +76,7 @@ class Renderer:
     def picture(
         self,
         scene: Scene,
-        stone: Stone | None,
+        shape: Shape | None,
         width: int,
         height: int,
         *,
@@ -85,7 +85,7 @@ class Renderer:
     ) -> Picture:
         """An empty picture of the scene, to be refined. The panorama belongs to a scene
         whose sky is an uploaded image; `features` asks for another program than the scene needs."""
-        return Picture(self, scene, stone, width, height, panorama, features)
+        return Picture(self, scene, shape, width, height, panorama, features)
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more."""
@@ -114,19 +114,19 @@ class Renderer:
         """What is known of that program's steps, with stones of about so many triangles."""
         return self._paces.setdefault((kernel, triangles.bit_length()), Pace())
 
-    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+    def is_ready(self, scene: Scene, shape: Shape | None) -> bool:
         """Whether a picture can be begun without waiting for a compiler, or for a mesh's tree."""
-        stone = stone if scene.stones else None
-        features = features_of(scene, stone)
-        tree_is_there = stone is None or features.geometry != Geometry.MESH or has_tree(stone)
+        shape = shape if scene.stones else None
+        features = features_of(scene, shape)
+        tree_is_there = shape is None or features.geometry != Geometry.MESH or has_tree(shape)
         return tree_is_there and self.programs.is_ready(features.general, self.variant)
 
-    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, shape: Shape | None) -> None:
         """Have what `is_ready` asks for made, while pictures are refined in another thread."""
-        stone = stone if scene.stones else None
-        features = features_of(scene, stone)
-        if stone is not None and features.geometry == Geometry.MESH:
-            tree_of(stone)
+        shape = shape if scene.stones else None
+        features = features_of(scene, shape)
+        if shape is not None and features.geometry == Geometry.MESH:
+            tree_of(shape)
         self.programs.prepare(features.general, self.variant)
 
     def describe(self) -> dict[str, str | int]:
@@ -160,7 +160,7 @@ class Picture:
         self,
         renderer: Renderer,
         scene: Scene,
-        stone: Stone | None,
+        shape: Shape | None,
         width: int,
         height: int,
         panorama: Panorama | None,
@@ -171,22 +171,22 @@ class Picture:
         """Spent by the last refinement."""
         self._renderer = renderer
         real = renderer.variant.real
-        stone = stone if scene.stones else None
-        needed = features_of(scene, stone)
+        shape = shape if scene.stones else None
+        needed = features_of(scene, shape)
         features = features or needed
         if features.estimator != needed.estimator:
             raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._kernel = get(features, renderer.variant)
         self._panorama = panorama
-        self._inputs = Inputs(renderer.device, scene, stone, width, height, panorama, features, real)
+        self._inputs = Inputs(renderer.device, scene, shape, width, height, panorama, features, real)
         self._tiles = math.ceil(width / TILE), math.ceil(height / TILE)
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
         self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
-        self._pace = renderer.pace_of(self._kernel, 0 if stone is None else len(stone.triangles))
+        self._pace = renderer.pace_of(self._kernel, 0 if shape is None else len(shape.triangles))
 
     @property
     def samples(self) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.projection import placement
 from culet.scene.lamps import BoxLamp
 from culet.scene.model import Scene
@@ -22,7 +22,7 @@ from culet.scene.studio import (
 Array = NDArray[np.float64]
 
 
-def set_studio(p: NDArray[np.void], scene: Scene, stone: Stone | None, width: int, height: int) -> None:
+def set_studio(p: NDArray[np.void], scene: Scene, shape: Shape | None, width: int, height: int) -> None:
     """Fill in what the scene has of it."""
     lamps, boxes = round_lamps_of(scene.environment), boxes_of(scene.environment)
     for number, lamp in enumerate(lamps):
@@ -39,7 +39,7 @@ def set_studio(p: NDArray[np.void], scene: Scene, stone: Stone | None, width: in
         p["head_radiance"] = scene.head.radiance
     _set_backdrop(p, scene.backdrop, width, height)
     if isinstance(scene.floor, StudioFloor):
-        _set_floor(p, scene.floor, scene, stone)
+        _set_floor(p, scene.floor, scene, shape)
 
 
 def disc_edge(half_angle_degrees: float, softness: float) -> tuple[float, float]:
@@ -96,19 +96,19 @@ def _set_backdrop(p: NDArray[np.void], backdrop: Backdrop, width: int, height: i
     p["has_backdrop"] = backdrop.kind != "none"
 
 
-def _set_floor(p: NDArray[np.void], floor: StudioFloor, scene: Scene, stone: Stone | None) -> None:
+def _set_floor(p: NDArray[np.void], floor: StudioFloor, scene: Scene, shape: Shape | None) -> None:
     p["floor_colour"] = floor.colour
     p["floor_reflectance"], p["floor_fade"] = floor.reflectance, floor.fade
     p["floor_roughness"] = floor.roughness
-    if stone is not None and placement(scene)[0][1] > FLOOR_Y:
-        p["contact"] = contact_form(scene, stone)
+    if shape is not None and placement(scene)[0][1] > FLOOR_Y:
+        p["contact"] = contact_form(scene, shape)
         p["contact_shadow"] = floor.shadow
 
 
-def contact_form(scene: Scene, stone: Stone) -> Array:
+def contact_form(scene: Scene, shape: Shape) -> Array:
     """(3, 3) det S S^-1 in the world's axes: x' S^-1 x = 1 is the ellipsoid of even density that has the stone's second
     moments, which are S / 5."""
-    inertia = stone.mass.inertia
+    inertia = shape.mass.inertia
     spread = 5 * (np.trace(inertia) / 2 * np.eye(3) - inertia)
     rotation = placement(scene)[1]
     adjugate = np.linalg.det(spread) * np.linalg.inv(spread)

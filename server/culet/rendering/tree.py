@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 
 WIDTH = 16
 """Children of a node, and triangles of a leaf: TREE_WIDTH of mesh.cl."""
@@ -60,28 +60,28 @@ class _Branch:
         return float(x * y + y * z + z * x)
 
 
-_TREES: WeakKeyDictionary[Stone, Tree] = WeakKeyDictionary()
-"""Kept as long as their stones: a tree is as large as its mesh."""
+_TREES: WeakKeyDictionary[Shape, Tree] = WeakKeyDictionary()
+"""Kept as long as their shapes: a tree is as large as its mesh."""
 
 
-def has_tree(stone: Stone) -> bool:
+def has_tree(shape: Shape) -> bool:
     """Whether `tree_of` has it already."""
-    return stone in _TREES
+    return shape in _TREES
 
 
-def tree_of(stone: Stone) -> Tree:
-    """The tree of a stone; made once, since stones are immutable."""
-    tree = _TREES.get(stone)
+def tree_of(shape: Shape) -> Tree:
+    """The tree of a shape; made once, since shapes are immutable."""
+    tree = _TREES.get(shape)
     if tree is None:
-        tree = _TREES[stone] = _planted(stone)
+        tree = _TREES[shape] = _planted(shape)
     return tree
 
 
-def _planted(stone: Stone) -> Tree:
-    corners = stone.vertices[stone.triangles]
+def _planted(shape: Shape) -> Tree:
+    corners = shape.vertices[shape.triangles]
     lower, upper = corners.min(axis=1), corners.max(axis=1)
     for by_median in (False, True):
-        tree, depth = _collapse(_grow(lower, upper, by_median=by_median), stone, corners)
+        tree, depth = _collapse(_grow(lower, upper, by_median=by_median), shape, corners)
         if (WIDTH - 1) * depth + 1 <= STACK:
             return tree
     raise AssertionError("splits at the median halve a node, so 2^32 triangles need no more than STACK")
@@ -145,7 +145,7 @@ def _areas(lower: Array, upper: Array) -> Array:
     return areas
 
 
-def _collapse(root: _Branch, stone: Stone, corners: Array) -> tuple[Tree, int]:
+def _collapse(root: _Branch, shape: Shape, corners: Array) -> tuple[Tree, int]:
     """The wide tree, and its depth in nodes."""
     boxes, links, leaves, depth = [], [], [np.empty(0, np.int64)], 0
     turned = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -172,7 +172,7 @@ def _collapse(root: _Branch, stone: Stone, corners: Array) -> tuple[Tree, int]:
             links.append(link)
         level = below
     rows = np.zeros((len(leaves), 12, WIDTH))
-    normals = stone.planes[stone.facet_of_triangle, :3]
+    normals = shape.planes[shape.facet_of_triangle, :3]
     for number, triangles in enumerate(leaves):
         a, b, c = corners[triangles].transpose(1, 0, 2)
         rows[number, :, : len(triangles)] = np.hstack([a, b, c, normals[triangles]]).T

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.floor import sphere_gap
 from culet.simulation.hull import Hull, hull_of
@@ -28,7 +28,7 @@ Rows = tuple[Triple, Triple, Triple]
 class RigidBody:
     """What a motion model needs to know of the stone besides its state."""
 
-    stone: Stone
+    shape: Shape
     mass: float
     inertia: Rows
     """About the centre of mass in the stone's axes, mass R^2."""
@@ -38,17 +38,17 @@ class RigidBody:
     """What stops it."""
 
     @classmethod
-    def of(cls, settings: SimulationSettings, stone: Stone, surfaces: tuple[Surface, ...] = (FLOOR,)) -> Self:
+    def of(cls, settings: SimulationSettings, shape: Shape, surfaces: tuple[Surface, ...] = (FLOOR,)) -> Self:
         """The body of that stone between these surfaces; InputError if its inertia tensor is none."""
-        per_mass = _rows(inertia_tensor(settings.inertia, stone))
+        per_mass = _rows(inertia_tensor(settings.inertia, shape))
         inverse = _inverse(per_mass)
         mass = settings.mass
-        return cls(stone, mass, _scaled(per_mass, mass), _scaled(inverse, 1 / mass), surfaces)
+        return cls(shape, mass, _scaled(per_mass, mass), _scaled(inverse, 1 / mass), surfaces)
 
     @cached_property
     def hull(self) -> Hull:
         """The vertices that can touch a plane."""
-        return hull_of(self.stone)
+        return hull_of(self.shape)
 
     @cached_property
     def principal_axes(self) -> tuple[PrincipalAxis, PrincipalAxis, PrincipalAxis]:

@@ -78,7 +78,7 @@ def touch(state: RigidState, body: RigidBody) -> Touch:
     gap = sphere_gap(state.position)
     # the world's y of a vertex v is (R v).y = v.(R^T e_y): one turned axis instead of all vertices turned
     up = rotate_back(state.orientation, (0.0, 1.0, 0.0))
-    lowest = state.position[1] + float((body.stone.vertices @ np.array(up)).min())
+    lowest = state.position[1] + float((body.shape.vertices @ np.array(up)).min())
     return Touch(int(gap <= 0), max(-gap, 0.0), lowest - FLOOR_Y)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y
 from culet.simulation.rotation import rotate_back
@@ -16,14 +16,14 @@ STANDING = 0.05
 """R above the floor, below which a stone's lowest corner counts as standing on it."""
 
 
-def drop_position(stone: Stone, position: Triple, orientation: Quaternion) -> Triple:
+def drop_position(shape: Shape, position: Triple, orientation: Quaternion) -> Triple:
     """Where to let it fall from: where it is, or, if it stands on the floor, DROP_HEIGHT above that place."""
     x, y, z = position
-    lowest = float((stone.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
+    lowest = float((shape.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
     return position if y + lowest - FLOOR_Y > STANDING else (x, max(y, DROP_HEIGHT), z)
 
 
-def dropped(scene: Scene, stone: Stone) -> Scene:
+def dropped(scene: Scene, shape: Shape) -> Scene:
     """The scene with its stone where it falls from."""
     placed = scene.stones[0]
-    return scene.moved(drop_position(stone, placed.position, placed.orientation), placed.orientation)
+    return scene.moved(drop_position(shape, placed.position, placed.orientation), placed.orientation)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.simulation.state import Triple
 
 
@@ -40,13 +40,13 @@ class Hull:
         return x * direction[0] + y * direction[1] + z * direction[2]
 
 
-_HULLS: WeakKeyDictionary[Stone, Hull] = WeakKeyDictionary()
+_HULLS: WeakKeyDictionary[Shape, Hull] = WeakKeyDictionary()
 """Of 41 000 vertices one takes half a second, and every change of mass, walls or height would need it again."""
 
 
-def hull_of(stone: Stone) -> Hull:
-    """The stone's hull, computed once."""
-    hull = _HULLS.get(stone)
+def hull_of(shape: Shape) -> Hull:
+    """The shape's hull, computed once."""
+    hull = _HULLS.get(shape)
     if hull is None:
-        hull = _HULLS[stone] = Hull.of(stone.vertices)
+        hull = _HULLS[shape] = Hull.of(shape.vertices)
     return hull

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 
 InertiaKind = Literal["polyhedron", "cone", "cone_apex"]
 
@@ -37,10 +37,10 @@ def cone_apex_inertia(radius: float = CONE_RADIUS, height: float = CONE_HEIGHT) 
     return np.diag([across, 3 / 10 * radius**2, across])
 
 
-def inertia_tensor(kind: InertiaKind, stone: Stone) -> NDArray[np.float64]:
+def inertia_tensor(kind: InertiaKind, shape: Shape) -> NDArray[np.float64]:
     """(3, 3) tensor per unit of mass that the scene's `simulation.inertia` names."""
     if kind == "polyhedron":
-        return stone.mass.inertia
+        return shape.mass.inertia
     if kind == "cone":
         return cone_inertia()
     return cone_apex_inertia()

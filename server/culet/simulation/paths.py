@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError, SceneError, TooLargeError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Scene
 from culet.simulation.simulation import Simulation
 from culet.simulation.surfaces import surfaces_of
@@ -77,7 +77,7 @@ class Path:
         return table
 
 
-def record(scene: Scene, stone: Stone, seconds: float, progress: Progress | None = None) -> Path:
+def record(scene: Scene, shape: Shape, seconds: float, progress: Progress | None = None) -> Path:
     """Let the scene's stone move for `seconds`, in whole steps.
 
     SceneError if the scene has no stone, InputError for a time that is none, TooLargeError beyond MAX_STEPS.
@@ -86,7 +86,7 @@ def record(scene: Scene, stone: Stone, seconds: float, progress: Progress | None
         raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
     count = _whole_steps(seconds, scene.simulation.time_step)
     placed = scene.stones[0]
-    simulation = Simulation(scene.simulation, stone, placed.position, placed.orientation, surfaces_of(scene))
+    simulation = Simulation(scene.simulation, shape, placed.position, placed.orientation, surfaces_of(scene))
     path = _empty_path(scene.simulation.model_dump(mode="json"), count + 1)
     for index in range(count + 1):
         if index:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from culet.errors import InputError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.drop import drop_position
@@ -33,7 +33,7 @@ class Simulation:
     def __init__(
         self,
         settings: SimulationSettings,
-        stone: Stone,
+        shape: Shape,
         start_position: Triple,
         start_orientation: Quaternion,
         surfaces: tuple[Surface, ...] = (FLOOR,),
@@ -47,7 +47,7 @@ class Simulation:
         if not any(start_orientation):
             raise InputError("a quaternion of length 0 is no orientation", "start_orientation")
         self.settings = settings
-        self.body = RigidBody.of(settings, stone, surfaces)
+        self.body = RigidBody.of(settings, shape, surfaces)
         orientation = start_orientation
         if abs(sum(c * c for c in orientation) - 1) > 1e-12:  # normalising again would change the last bit
             orientation = normalised(orientation)
@@ -108,7 +108,7 @@ class Simulation:
             return
         old, body = self.body, self.body
         if (settings.mass, settings.inertia) != (self.settings.mass, self.settings.inertia):
-            body = RigidBody.of(settings, old.stone, old.surfaces)
+            body = RigidBody.of(settings, old.shape, old.surfaces)
         unmoved = self.at_start
         self.settings, self.body = settings, body
         self._start = _moving_at(settings, body, self._start)
@@ -144,7 +144,7 @@ class Simulation:
     def drop(self) -> None:
         """Back to the start, step 0; a stone that stands on the floor there is lifted first, so that it falls."""
         start = self._start
-        position = drop_position(self.body.stone, start.position, start.orientation)
+        position = drop_position(self.body.shape, start.position, start.orientation)
         self.state = self.previous = replace(start, position=position)
 
     def interpolated(self, fraction: float) -> tuple[Triple, Quaternion]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.projection import project, world_planes
 from culet.scene.model import Scene
 
@@ -64,7 +64,7 @@ class Appearance:
     """Of the picture that is stone."""
 
 
-def stone_mask(scene: Scene, stone: Stone, width: int, height: int) -> Mask:
+def stone_mask(scene: Scene, stone: Shape, width: int, height: int) -> Mask:
     """(height, width) pixels whose centre's ray meets a convex stone before anything else."""
     rays = project(scene, width, height)
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)

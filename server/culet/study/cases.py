@@ -6,9 +6,9 @@ from functools import cache
 
 import trimesh
 
-from culet.geometry.load import stone_of
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import (
     Camera,
@@ -56,16 +56,16 @@ CASES: dict[str, Scene] = {
 
 
 @cache
-def ring() -> Stone:
+def ring() -> Shape:
     """A ring of 5 000 triangles, which is not convex."""
     torus = trimesh.creation.torus(major_radius=0.66, minor_radius=0.34, major_sections=50, minor_sections=50)
-    return stone_from_mesh(torus.export(file_type="obj").encode(), "obj", name="ring.obj")
+    return shape_from_mesh(torus.export(file_type="obj").encode(), "obj", name="ring.obj")
 
 
-def stone_of_case(scene: Scene) -> Stone:
+def stone_of_case(scene: Scene) -> Shape:
     """The stone of one of these scenes."""
     settings = scene.stones[0]
-    return stone_of(settings, {RING: ring()} if settings.mesh == RING else {})
+    return shape_of(settings, {RING: ring()} if settings.mesh == RING else {})
 
 
 BARE = CHECKER.model_copy(

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.half_spaces import stone_from_half_spaces
-from culet.geometry.load import stone_of
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.half_spaces import shape_from_half_spaces
+from culet.geometry.load import shape_of
+from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.polygons import edges_of_facets
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.chains import GROUPS, chain_table, is_spectral
 from culet.rendering.features import Geometry, features_of
 from culet.rendering.renderer import Renderer
@@ -47,12 +47,12 @@ class Extreme:
     """One case: a stone, a scene without it, and where to look from."""
 
     name: str
-    stone: Callable[[], Stone]
+    stone: Callable[[], Shape]
     settings: Settings = field(default_factory=dict)
     """Of the stone."""
     scene: Settings = field(default_factory=dict)
     """What else is not as usual."""
-    cameras: Callable[[Stone], Iterator[Settings]] | None = None
+    cameras: Callable[[Shape], Iterator[Settings]] | None = None
     """Several small pictures instead of one from the side."""
     brightest: float | None = None
     """Where a pixel may be darker than 1: the most that it may be."""
@@ -85,51 +85,51 @@ class Count:
         return self.not_finite + self.negative + self.specks
 
 
-def brilliant() -> Stone:
+def brilliant() -> Shape:
     """The default cut."""
-    return stone_of(StoneSettings(), {})
+    return shape_of(StoneSettings(), {})
 
 
-def scaled(factor: float) -> Callable[[], Stone]:
+def scaled(factor: float) -> Callable[[], Shape]:
     """The brilliant from a file in other units."""
 
-    def read() -> Stone:
+    def read() -> Shape:
         stone = brilliant()
         lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (factor * stone.vertices).tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (stone.triangles + 1).tolist()]
-        return stone_from_mesh("\n".join(lines).encode(), "obj", name=f"brilliant x {factor:g}")
+        return shape_from_mesh("\n".join(lines).encode(), "obj", name=f"brilliant x {factor:g}")
 
     return read
 
 
-def box(x: float, y: float, z: float) -> Callable[[], Stone]:
+def box(x: float, y: float, z: float) -> Callable[[], Shape]:
     """By its sides."""
     planes = [[*(sign * np.eye(3)[axis]), side] for axis, side in enumerate((x, y, z)) for sign in (1, -1)]
-    return lambda: stone_from_half_spaces("box", np.array(planes))
+    return lambda: shape_from_half_spaces("box", np.array(planes))
 
 
-def tetrahedron() -> Stone:
+def tetrahedron() -> Shape:
     """Four facets: the fewest."""
-    return stone_from_half_spaces(
+    return shape_from_half_spaces(
         "tetrahedron", np.array([(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1), (-1, -1, 1, 1.0)])
     )
 
 
-def ball(facets: int) -> Callable[[], Stone]:
+def ball(facets: int) -> Callable[[], Shape]:
     """Tangent planes of a sphere, scattered evenly at random."""
     normals = np.random.default_rng(1).normal(size=(facets, 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    return lambda: stone_from_half_spaces("ball", np.column_stack([normals, np.ones(facets)]))
+    return lambda: shape_from_half_spaces("ball", np.column_stack([normals, np.ones(facets)]))
 
 
-def at_vertices(stone: Stone) -> Iterator[Settings]:
+def at_vertices(stone: Shape) -> Iterator[Settings]:
     """From outside and from the centre at every vertex; the middle of the picture meets it."""
     for vertex in stone.vertices:
         yield _camera(3 * vertex / np.linalg.norm(vertex) + 0.3, vertex)
         yield _camera(np.zeros(3), vertex)
 
 
-def along_edges(stone: Stone) -> Iterator[Settings]:
+def along_edges(stone: Shape) -> Iterator[Settings]:
     """At the middle of every edge, from outside and from the centre, and along it."""
     for a, b in stone.vertices[edges_of_facets(stone)[:, :2]]:
         middle = (a + b) / 2
@@ -138,7 +138,7 @@ def along_edges(stone: Stone) -> Iterator[Settings]:
         yield _camera(a + 2 * (a - b) / np.linalg.norm(a - b), b)
 
 
-def on_facets(stone: Stone) -> Iterator[Settings]:
+def on_facets(stone: Shape) -> Iterator[Settings]:
     """The eye on each facet's plane, above the stone's centre: looking out, in, and along."""
     for *normal, offset in stone.planes:
         eye, out = offset * np.array(normal), np.array(normal)
@@ -147,7 +147,7 @@ def on_facets(stone: Stone) -> Iterator[Settings]:
             yield _camera(eye, eye + direction, fov_degrees=100)
 
 
-def grazing(stone: Stone) -> Iterator[Settings]:
+def grazing(stone: Shape) -> Iterator[Settings]:
     """At 89.9999 degrees from each facet's normal, on the point abreast of the stone's centre."""
     for *normal, offset in stone.planes:
         out = np.array(normal)
@@ -158,14 +158,14 @@ def grazing(stone: Stone) -> Iterator[Settings]:
         yield _camera(point + 3 * (np.cos(angle) * out + np.sin(angle) * across), point)
 
 
-def inside(_: Stone) -> Iterator[Settings]:
+def inside(_: Shape) -> Iterator[Settings]:
     """Nearly all directions from the centre and from beside it."""
     for eye in ((0, 0, 0), (0.2, 0.05, -0.1)):
         for direction in (*np.eye(3), *-np.eye(3)):
             yield _camera(np.array(eye), np.array(eye) + direction, fov_degrees=110)
 
 
-def far(_: Stone) -> Iterator[Settings]:
+def far(_: Shape) -> Iterator[Settings]:
     """From a million radii: the stone fills a tenth of the narrowest picture."""
     for direction in ((0.3, 0.8, 0.5196), (0, 1, 0), (1, 0, 0)):
         yield _camera(1e6 * np.array(direction), np.zeros(3))

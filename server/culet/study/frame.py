@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 
@@ -13,7 +13,7 @@ class Studied(NamedTuple):
     """What a study is of."""
 
     scene: Scene
-    stone: Stone
+    stone: Shape
     panorama: Panorama | None = None
     """The sky from a file."""
 

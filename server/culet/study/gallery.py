@@ -11,8 +11,8 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
@@ -82,10 +82,10 @@ def size_of(preset: Preset) -> tuple[int, int]:
 
 def picture_of(
     renderer: Renderer, preset: Preset, size: tuple[int, int], samples: int, features: Features | None = None
-) -> tuple[Picture, Stone | None]:
+) -> tuple[Picture, Shape | None]:
     """A preset's finished picture, and its stone; `features` asks for another program than its own."""
     scene = preset.scene
-    stone = stone_of(scene.stones[0], {}) if scene.stones else None
+    stone = shape_of(scene.stones[0], {}) if scene.stones else None
     picture = renderer.picture(scene, stone, *size, features=features)
     picture.refine(samples)
     return picture, stone
@@ -114,7 +114,7 @@ def in_flight(
 ) -> Mapping[str, float]:
     """Means of the measures over POSES of a tossed stone."""
     scene: Scene = preset.scene
-    stone = stone_of(scene.stones[0], {})
+    stone = shape_of(scene.stones[0], {})
     path = record(dropped(scene, stone), stone, max(POSES) + scene.simulation.time_step)
     found: list[dict[str, float]] = []
     for seconds in POSES:

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import NamedTuple
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.features import Geometry, geometry_of
 from culet.scene.model import Optics, Scene
 from culet.study.report import Knob
@@ -64,7 +64,7 @@ class Setting(NamedTuple):
     """Whether the report shows what it looks like."""
 
 
-def base_knobs(scene: Scene, stone: Stone, lanes: int) -> Knobs:
+def base_knobs(scene: Scene, stone: Shape, lanes: int) -> Knobs:
     """The scene's own optics, as the server renders a frame that moves: one sample, single precision."""
     optics = scene.optics
     return Knobs(

@@ -23,8 +23,8 @@ from typing import Any
 import numpy as np
 
 from culet.engine.governing.governor import Setting
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.optics.tone import tone_map
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
@@ -55,7 +55,7 @@ class Measured:
 
 def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> list[Measured]:
     """All settings, by scale, cut-off and bounces."""
-    stone = stone_of(scene.stones[0], {})
+    stone = shape_of(scene.stones[0], {})
     reference = renderer.picture(_with_optics(scene, REFERENCE_CUTOFF, BOUNCES[0]), stone, *size)
     reference.refine(REFERENCE_SAMPLES)
     return _measured(renderer, scene, stone, reference)
@@ -101,7 +101,7 @@ def _front(settings: list[Setting], cost: float) -> list[Setting]:
     return rungs
 
 
-def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture) -> list[Measured]:
+def _measured(renderer: Renderer, scene: Scene, stone: Shape, reference: Picture) -> list[Measured]:
     size = reference.width, reference.height
     settings = list(product(SCALES, CUTOFFS, BOUNCES))
     ratios: list[list[float]] = [[] for _ in settings]
@@ -119,7 +119,7 @@ def _measured(renderer: Renderer, scene: Scene, stone: Stone, reference: Picture
 
 
 def _draw(
-    renderer: Renderer, scene: Scene, stone: Stone, size: tuple[int, int], scale: float, cutoff: float, bounces: int
+    renderer: Renderer, scene: Scene, stone: Shape, size: tuple[int, int], scale: float, cutoff: float, bounces: int
 ) -> tuple[float, tuple[Image, Image]]:
     """Processor's seconds; radiance and shown."""
     width, height = round(size[0] * scale), round(size[1] * scale)

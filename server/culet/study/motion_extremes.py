@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from culet.errors import CuletError
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.scene.legacy import legacy
 from culet.scene.model import Simulation as Settings
 from culet.simulation.motion import Motion, kinetic_energy, pushed_out
@@ -47,7 +47,7 @@ class Extreme:
 
     name: str
     settings: Mapping[str, Any] = field(default_factory=dict)
-    stone: Callable[[], Stone] = brilliant
+    stone: Callable[[], Shape] = brilliant
     position: Triple = (0.0, 1.5, 0.0)
     orientation: Quaternion = TILT
     surfaces: tuple[Surface, ...] = ROOM
@@ -192,12 +192,12 @@ def recorded(extreme: Extreme) -> Record:
 
 def flat_mesh() -> object:
     """Four corners in a plane, but for 1e-9 R."""
-    return stone_from_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e-9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", "obj")
+    return shape_from_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e-9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", "obj")
 
 
 def mesh_of_nan() -> object:
     """A corner that is nowhere."""
-    return stone_from_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 nan\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", "obj")
+    return shape_from_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 nan\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", "obj")
 
 
 def _read(**settings: object) -> Callable[[], object]:

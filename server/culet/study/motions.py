@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as Settings
 from culet.scene.room import FLOOR_Y
 from culet.simulation.rotation import IDENTITY, rotate
@@ -52,7 +52,7 @@ class End(NamedTuple):
     momentum_scale: tuple[float, float]
 
 
-def motions_of(stone: Stone) -> Iterator[tuple[Motion, Callable[[str], End]]]:
+def motions_of(stone: Shape) -> Iterator[tuple[Motion, Callable[[str], End]]]:
     """Each motion, and where it ends by the name of the model."""
     flight = Motion("flight", 2.0, (0.0, 100.0, 0.0), IDENTITY, {"spin": (0.5, 3, 1), "velocity": (1, 2, -0.5)})
     yield flight, lambda _: _flight_end(flight, stone)
@@ -77,7 +77,7 @@ def motions_of(stone: Stone) -> Iterator[tuple[Motion, Callable[[str], End]]]:
     yield drop, lambda _: _drop_end(drop, stone)
 
 
-def flat_orientation(stone: Stone) -> Quaternion:
+def flat_orientation(stone: Shape) -> Quaternion:
     """The stone turned so that the facet with the largest area is its lowest."""
     areas = np.zeros(len(stone.planes))
     corners = stone.vertices[stone.triangles]
@@ -92,7 +92,7 @@ def flat_orientation(stone: Stone) -> Quaternion:
     return w, a, b, c
 
 
-def _heights(stone: Stone, orientation: Quaternion) -> NDArray[np.float64]:
+def _heights(stone: Shape, orientation: Quaternion) -> NDArray[np.float64]:
     return np.array([rotate(orientation, tuple(vertex))[1] for vertex in stone.vertices.tolist()])
 
 
@@ -101,12 +101,12 @@ def settings_of(motion: Motion, knobs: dict[str, Knob]) -> Settings:
     return Settings.model_validate({**motion.fixed, **{k: v for k, v in knobs.items() if v is not None}})
 
 
-def started(motion: Motion, stone: Stone, knobs: dict[str, Knob]) -> Simulation:
+def started(motion: Motion, stone: Shape, knobs: dict[str, Knob]) -> Simulation:
     """The stone at the motion's start."""
     return Simulation(settings_of(motion, knobs), stone, motion.position, motion.orientation)
 
 
-def _flight_end(motion: Motion, stone: Stone) -> End:
+def _flight_end(motion: Motion, stone: Shape) -> End:
     simulation = started(motion, stone, {"model": "rigid"})
     body, state, g = simulation.body, simulation.state, simulation.settings.gravity
     t = motion.seconds
@@ -163,7 +163,7 @@ def _slide_end(motion: Motion) -> End:
     )
 
 
-def _drop_end(motion: Motion, stone: Stone) -> End:
+def _drop_end(motion: Motion, stone: Shape) -> End:
     simulation = started(motion, stone, {"model": "rigid", **REFERENCE_STEP})
     start = simulation.energy()
     while simulation.state.time < motion.seconds - 1e-9:

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from culet.scene.model import GradientEnvironment, Plane, Scene
@@ -138,7 +138,7 @@ def _spread(values: Array) -> Array:
 
 
 def _radiance(renderer: Renderer, scene: Scene, size: tuple[int, int]) -> Array:
-    picture = renderer.picture(scene, stone_of(scene.stones[0], {}), *size)
+    picture = renderer.picture(scene, shape_of(scene.stones[0], {}), *size)
     picture.refine()
     return picture.linear().astype(np.float64)
 

@@ -17,7 +17,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.scene.model import GradientEnvironment, Optics, Plane
 from culet.study.cases import CHECKER
 from culet.study.convergence import resting_error, time_to
@@ -63,7 +63,7 @@ NO_LLVM = (
 
 def race_frame(width: int, height: int) -> Frame:
     """The race's picture."""
-    return Frame(Studied(RACE, stone_of(RACE.stones[0], {})), width, height)
+    return Frame(Studied(RACE, shape_of(RACE.stones[0], {})), width, height)
 
 
 def run_culet(

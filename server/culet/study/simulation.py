@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from culet.geometry.stone import MassProperties, Stone
+from culet.geometry.shape import MassProperties, Shape
 from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.free_rotation import INTEGRATORS
@@ -47,7 +47,7 @@ DEFAULTS = Settings()
 """What a scene has that says nothing of it."""
 
 
-def measure_all(stone: Stone, journal: Journal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
+def measure_all(stone: Shape, journal: Journal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
     """Every point that the journal lacks."""
     for done, (key, run) in enumerate(points_of(stone, quick=quick)):
         progress(key, done)
@@ -55,7 +55,7 @@ def measure_all(stone: Stone, journal: Journal, *, quick: bool, progress: Callab
             journal.add(run())
 
 
-def points_of(stone: Stone, *, quick: bool) -> list[tuple[str, Callable[[], Point]]]:
+def points_of(stone: Shape, *, quick: bool) -> list[tuple[str, Callable[[], Point]]]:
     """Key of each point and how to measure it."""
     repeats = 2 if quick else 5
     return [*_rotations(stone, repeats, quick=quick), *_motions(stone, repeats, quick=quick)]
@@ -74,7 +74,7 @@ def fits_of(points: list[Point]) -> list[Fit]:
     return fits
 
 
-def _rotations(stone: Stone, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
+def _rotations(stone: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
     shaped = replace(stone, mass=MassProperties(stone.mass.volume, np.diag(TOP_MOMENTS)))
     body = RigidBody.of(Settings(mass=1), shaped)
     momentum = body.angular_momentum(IDENTITY, TOP_SPIN)
@@ -105,7 +105,7 @@ def _rotations(stone: Stone, repeats: int, *, quick: bool) -> Iterator[tuple[str
             yield _key("rotation", knobs), run
 
 
-def _motions(stone: Stone, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
+def _motions(stone: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
     for motion, truth_of in motions_of(stone):
         truth: list[End] = []
         for knobs in _variants(motion.name, quick=quick):
@@ -149,7 +149,7 @@ def _variants(name: str, *, quick: bool) -> Iterator[dict[str, Knob]]:
                 yield {"model": model, "time_step": step}
 
 
-def _run(motion: Motion, stone: Stone, knobs: dict[str, Knob], truth: End, repeats: int) -> Point:
+def _run(motion: Motion, stone: Shape, knobs: dict[str, Knob], truth: End, repeats: int) -> Point:
     seconds: list[float] = []
     simulation = started(motion, stone, knobs)
     for _ in range(repeats):

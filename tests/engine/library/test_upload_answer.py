@@ -12,13 +12,13 @@ import pytest
 
 from culet.engine.library.upload_answer import LENGTH, Answer, AnswerError, TooLittleMemoryError, taken
 from culet.errors import InputError, MeshError, TooLargeError
-from culet.geometry.mesh import stone_from_mesh
-from culet.geometry.stone import Stone
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
 from culet.memory_file import memory_file
 from culet.rendering.sky_files.picture import SkyPicture
 from engine.peer import TETRAHEDRON
 
-STONE = stone_from_mesh(TETRAHEDRON, "off", name="t\udcff")
+STONE = shape_from_mesh(TETRAHEDRON, "off", name="t\udcff")
 """Its name has half a character, as a file's may."""
 
 
@@ -32,7 +32,7 @@ def file() -> Iterator[int]:
 def test_a_stone_arrives_as_it_was_told(file: int) -> None:
     Answer(file).tell_mesh(STONE)
     stone = taken(file, "mesh")
-    assert isinstance(stone, Stone)
+    assert isinstance(stone, Shape)
     for name in ("vertices", "triangles", "facet_of_triangle", "planes"):
         assert (getattr(stone, name) == getattr(STONE, name)).all()
         assert getattr(stone, name).dtype == getattr(STONE, name).dtype

@@ -21,9 +21,9 @@ from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.session.session import Session
 from culet.engine.session.viewpoint import orbit
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
-from culet.rendering.panoramas import Panorama
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
+from culet.optics.panoramas import Panorama
 from culet.scene import Scene
 from culet_protocol.messages import Balance
 
@@ -61,7 +61,7 @@ class World:
         self.samples = 0
         """Of the picture that got some last."""
         scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
-        stone = stone_of(scene.stones[0], {}) if with_stone else None
+        stone = shape_of(scene.stones[0], {}) if with_stone else None
         self.session = Session("0" * 32, scene, stone)
         self.events: list[float] = []
         """When the camera turns a little."""
@@ -75,15 +75,15 @@ class World:
             self.session.change(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
 
     def picture(
-        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
     ) -> TimedPicture:
         del stone, panorama
         return TimedPicture(self, scene, (width, height))
 
-    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+    def is_ready(self, scene: Scene, stone: Shape | None) -> bool:
         return True
 
-    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, stone: Shape | None) -> None:
         """There is nothing to be made."""
 
     def describe(self) -> dict[str, str]:
@@ -348,7 +348,7 @@ class Crowd(World):
         self.other = World(other_seconds, with_stone=True)
 
     def picture(
-        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
     ) -> TimedPicture:
         world = self.other if scene.floor.kind == "none" else self
         picture = TimedPicture(world, scene, (width, height))

@@ -8,14 +8,14 @@ from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, UNSE
 from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
-from culet.geometry.mesh import stone_from_mesh
+from culet.geometry.mesh import shape_from_mesh
 from culet.rendering.renderer import Renderer
 from culet.scene import Light, Scene
 from engine.peer import TETRAHEDRON
 
 SCENE = Scene()
 LAMP = Light(position=(1, 2, 3), colour=(1, 1, 1))
-STONE = stone_from_mesh(TETRAHEDRON, "off")
+STONE = shape_from_mesh(TETRAHEDRON, "off")
 RENDERER = Renderer()
 
 

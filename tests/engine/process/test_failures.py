@@ -20,7 +20,7 @@ from culet.engine.process.serve import Engine, encode_still
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.errors import DeviceError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
@@ -41,16 +41,16 @@ class FailingRenderer:
         self.renderer = Renderer()
 
     def picture(
-        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
     ) -> Picture:
         if scene.environment.kind == "half":
             raise DeviceError("the kernel does not build")
         return self.renderer.picture(scene, stone, width, height, panorama=panorama)
 
-    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+    def is_ready(self, scene: Scene, stone: Shape | None) -> bool:
         return self.renderer.is_ready(scene, stone)
 
-    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, stone: Shape | None) -> None:
         self.renderer.make_ready(scene, stone)
 
     def describe(self) -> Mapping[str, Any]:

@@ -11,12 +11,12 @@ from culet.engine.library.assets import Assets
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.scene import Scene, StoneSettings
 from culet_protocol.messages import PatchScene
 from engine.peer import EngineProcess, connected
 
-STONE = stone_of(StoneSettings(), {})
+STONE = shape_of(StoneSettings(), {})
 STEP = Scene().simulation.time_step
 DROP: dict[str, Any] = {"stones": [{"position": [0, 1, 0]}]}
 

@@ -11,12 +11,12 @@ import pytest
 from culet.engine.session.picking import struck_point
 from culet.engine.session.session import Session
 from culet.errors import InputError
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.scene import Camera, Scene
 from culet.scene.legacy import LEGACY_DEFAULT
 
 SCENE = LEGACY_DEFAULT
-STONE = stone_of(SCENE.stones[0], {})
+STONE = shape_of(SCENE.stones[0], {})
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 AHEAD = Camera(position=(0, 0, 5), target=(0, 0, 0), fov_degrees=90)
 """At distance 5 half the picture's height is 5 R."""

@@ -5,14 +5,14 @@ import pytest
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import InputError, NotFoundError
-from culet.geometry.load import stone_of
+from culet.geometry.load import shape_of
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.simulation.clock import MOST_WORK, WORK_SHARE
 
 NAME = "0123456789abcdef" * 2
 SCENE = LEGACY_DEFAULT
-STONE = stone_of(SCENE.stones[0], {})
+STONE = shape_of(SCENE.stones[0], {})
 
 
 def fallen(seconds: float, *, frames: int = 7) -> Session:

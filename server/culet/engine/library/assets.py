@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from culet.geometry.load import stone_of
-from culet.geometry.stone import Stone
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama, panorama_of
 from culet.rendering.sky_files.picture import SkyPicture
 from culet.scene import Environment, StoneSettings
@@ -17,12 +17,12 @@ from culet.scene.model import ImageEnvironment
 class Assets:
     """By the ids of the uploads."""
 
-    meshes: Mapping[str, Stone]
+    meshes: Mapping[str, Shape]
     skies: Mapping[str, SkyPicture]
 
-    def stone(self, settings: StoneSettings) -> Stone:
+    def stone(self, settings: StoneSettings) -> Shape:
         """The stone's shape, which may take a while to make; SceneError for an unknown id, MeshError for no shape."""
-        return stone_of(settings, self.meshes)
+        return shape_of(settings, self.meshes)
 
     def panorama(self, environment: Environment) -> Panorama | None:
         """The picture of a sky that is one; SceneError for an unknown id."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from culet.errors import CuletError, InputError, MeshError, SceneError, TooLargeError
-from culet.geometry.stone import MassProperties, Stone
+from culet.geometry.shape import MassProperties, Shape
 from culet.rendering.panoramas import check_panorama
 from culet.rendering.sky_files.picture import SkyPicture
 
@@ -120,20 +120,20 @@ class Answer:
             raise ValueError("expected pixels that lie in the answer")
         self._finish(SkyHeader(pixels=self._sky, findings=_utf_8(picture.findings)))
 
-    def tell_mesh(self, stone: Stone) -> None:
+    def tell_mesh(self, shape: Shape) -> None:
         """The stone that was read."""
         parts = {
             name: self._place(array)
             for name, array in (
-                ("vertices", stone.vertices), ("triangles", stone.triangles),
-                ("facet_of_triangle", stone.facet_of_triangle), ("planes", stone.planes),
-                ("inertia", stone.mass.inertia),
+                ("vertices", shape.vertices), ("triangles", shape.triangles),
+                ("facet_of_triangle", shape.facet_of_triangle), ("planes", shape.planes),
+                ("inertia", shape.mass.inertia),
             )
         }  # fmt: skip
         self._finish(
             MeshHeader(
-                name=_utf_8([stone.name])[0], convex=bool(stone.convex), volume=float(stone.mass.volume),
-                findings=_utf_8(stone.findings), **parts,
+                name=_utf_8([shape.name])[0], convex=bool(shape.convex), volume=float(shape.mass.volume),
+                findings=_utf_8(shape.findings), **parts,
             )
         )  # fmt: skip
 
@@ -165,7 +165,7 @@ class Answer:
             view = view[written:]
 
 
-def taken(descriptor: int, kind: str) -> Stone | SkyPicture:
+def taken(descriptor: int, kind: str) -> Shape | SkyPicture:
     """What a process that has ended answered, checked; InputError if that is a refusal,
     TooLittleMemoryError, AnswerError if it is no answer. The arrays go on lying in the file's memory."""
     _seal(descriptor)
@@ -179,7 +179,7 @@ def taken(descriptor: int, kind: str) -> Stone | SkyPicture:
         raise AnswerError(f"expected a {kind}, got a {header.kind}")
     if isinstance(header, SkyHeader):
         return _sky(header, descriptor, size)
-    return _stone(header, descriptor, size)
+    return _shape(header, descriptor, size)
 
 
 def _seal(descriptor: int) -> None:
@@ -211,7 +211,7 @@ def _sky(header: SkyHeader, descriptor: int, size: int) -> SkyPicture:
     return SkyPicture(pixels, header.findings)
 
 
-def _stone(header: MeshHeader, descriptor: int, size: int) -> Stone:
+def _shape(header: MeshHeader, descriptor: int, size: int) -> Shape:
     def part(name: str, dtype: str, shape: tuple[int, ...]) -> NDArray[np.generic]:
         array = _array(getattr(header, name), dtype, shape, descriptor, size)
         if not np.isfinite(array).all():
@@ -226,7 +226,7 @@ def _stone(header: MeshHeader, descriptor: int, size: int) -> Stone:
     _check_range("triangles", triangles, len(vertices))
     _check_range("facet_of_triangle", facets, len(planes))
     mass = MassProperties(header.volume, inertia)
-    return Stone(header.name, vertices, triangles, facets, planes, header.convex, mass, header.findings)
+    return Shape(header.name, vertices, triangles, facets, planes, header.convex, mass, header.findings)
 
 
 def _check_range(name: str, numbers: NDArray[np.int32], count: int) -> None:

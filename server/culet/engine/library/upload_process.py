@@ -15,7 +15,7 @@ from culet.engine.library.upload_answer import AnswerError, TooLittleMemoryError
 from culet.engine.library.upload_reader import NAME, Order
 from culet.engine.process.limits import Limits
 from culet.errors import InputError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.memory_file import memory_file
 from culet.rendering.sky_files.picture import SkyPicture
 
@@ -41,7 +41,7 @@ class Room:
 
 async def read_upload(
     kind: str, error: type[InputError], file_type: str, data: bytes, limits: Limits, room: Room
-) -> Stone | SkyPicture:
+) -> Shape | SkyPicture:
     """What the file holds. InputError (of that type, if there is no better one) says what is wrong with it;
     TooLittleMemoryError, that the room was too little, which is not all that a file may take."""
     with _descriptor("answer") as answer, _descriptor("complaint") as complaint:

@@ -16,7 +16,7 @@ from culet.engine.library.upload_process import Room, read_upload
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.sky_files.picture import SkyPicture
 from culet_protocol.engine import Described, DescribedMesh, DescribedSky
 
@@ -201,15 +201,15 @@ def _digest(file_type: str, data: bytes) -> bytes:
     return hashlib.sha256(file_type.encode() + b"\0" + data).digest()
 
 
-def described_mesh(stone: Stone) -> DescribedMesh:
+def described_mesh(shape: Shape) -> DescribedMesh:
     """A mesh in figures, and what was found in it."""
     return DescribedMesh(
-        vertices=len(stone.vertices),
-        triangles=len(stone.triangles),
-        facets=len(stone.planes),
-        convex=bool(stone.convex),
-        volume=float(stone.mass.volume),
-        findings=stone.findings,
+        vertices=len(shape.vertices),
+        triangles=len(shape.triangles),
+        facets=len(shape.planes),
+        convex=bool(shape.convex),
+        volume=float(shape.mass.volume),
+        findings=shape.findings,
     )
 
 
@@ -221,9 +221,9 @@ def described_sky(picture: SkyPicture) -> DescribedSky:
     )
 
 
-def mesh_size(stone: Stone) -> int:
+def mesh_size(shape: Shape) -> int:
     """Bytes of a stone and of what is made of it."""
-    arrays = (stone.vertices, stone.triangles, stone.facet_of_triangle, stone.planes)
+    arrays = (shape.vertices, shape.triangles, shape.facet_of_triangle, shape.planes)
     return STONE_COPIES * sum(array.nbytes for array in arrays)
 
 
@@ -232,5 +232,5 @@ def sky_size(picture: SkyPicture) -> int:
     return int(picture.pixels.nbytes)
 
 
-MESH = Kind("mesh", "meshes", Stone, MeshError, described_mesh, mesh_size)
+MESH = Kind("mesh", "meshes", Shape, MeshError, described_mesh, mesh_size)
 SKY = Kind("sky", "skies", SkyPicture, InputError, described_sky, sky_size)

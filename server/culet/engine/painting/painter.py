@@ -27,7 +27,7 @@ from culet.engine.painting.shares import Account, Shares, share
 from culet.engine.painting.still import Still, StillQueue
 from culet.engine.session.session import Shown
 from culet.errors import CuletError, DeviceError, TooLargeError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Scene
 
 log = logging.getLogger(__name__)
@@ -153,7 +153,7 @@ class Painter:
             self._send_again(repeat, repeat.message)
         return chosen is not None or repeat is not None
 
-    async def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+    async def make_ready(self, scene: Scene, stone: Shape | None) -> None:
         """Have what a picture of the scene needs compiled, while others are drawn."""
         await in_daemon_thread(lambda: self._renderer.make_ready(scene, stone))
 

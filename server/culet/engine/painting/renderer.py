@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 
@@ -61,7 +61,7 @@ class Renderer(Protocol):
     """A device that draws scenes."""
 
     def picture(
-        self, scene: Scene, stone: Stone | None, width: int, height: int, *, panorama: Panorama | None = None
+        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
     ) -> Picture:
         """An empty picture of the scene, its stone where the scene has it; `panorama` is that of its sky."""
 
@@ -74,10 +74,10 @@ class Renderer(Protocol):
     def release(self) -> None:
         """Give back the memory of pictures that are gone."""
 
-    def is_ready(self, scene: Scene, stone: Stone | None) -> bool:
+    def is_ready(self, scene: Scene, stone: Shape | None) -> bool:
         """Whether a picture can be begun at once."""
 
-    def make_ready(self, scene: Scene, stone: Stone | None) -> None:
+    def make_ready(self, scene: Scene, stone: Shape | None) -> None:
         """Make it so: have programs compiled and trees made, which may take seconds. Called from any thread."""
 
     def describe(self) -> Mapping[str, Any]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account, Shares
 from culet.errors import BusyError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.scene import Scene
 from culet_protocol.engine import Format
@@ -33,7 +33,7 @@ class Still:
     """A picture that somebody waits for."""
 
     scene: Scene
-    stone: Stone | None
+    stone: Shape | None
     width: int
     height: int
     samples: int

@@ -21,7 +21,7 @@ from culet.engine.session import events
 from culet.engine.session.session import Session, Sky
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import BusyError, InputError, NotFoundError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.rendering.sky_files.picture import SkyPicture
 from culet.scene import Environment, Scene
@@ -351,7 +351,7 @@ class Requests:
 
     async def _subject(
         self, request: protocol.Render
-    ) -> tuple[Scene, Stone | None, Panorama | None, tuple[int, int], int | None]:
+    ) -> tuple[Scene, Shape | None, Panorama | None, tuple[int, int], int | None]:
         if request.session is None:
             scene = Scene.read(request.scene)
             stone, sky = await asyncio.to_thread(self._made, scene, scene.environment)
@@ -370,7 +370,7 @@ class Requests:
         self._touched[session] = time.monotonic()
         return live
 
-    def _made(self, scene: Scene, environment: Environment | None) -> tuple[Stone | None, Sky]:
+    def _made(self, scene: Scene, environment: Environment | None) -> tuple[Shape | None, Sky]:
         sky = events.own_sky(environment or scene.environment, self._assets)
         return events.stone_for(scene, None, self._assets), sky
 

@@ -11,7 +11,7 @@ from culet.engine.session import viewpoint
 from culet.engine.session.merge_patch import merge_patch
 from culet.engine.session.session import Past, Session, Sky
 from culet.errors import InputError, NotFoundError, SceneError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment
@@ -52,7 +52,7 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
             assert_never(event)
 
 
-def stone_for(scene: Scene, session: Session | None, assets: Assets) -> Stone | None:
+def stone_for(scene: Scene, session: Session | None, assets: Assets) -> Shape | None:
     """The shape of a scene's stone: the session's, if that is the same shape."""
     if not scene.stones:
         return None
@@ -68,7 +68,7 @@ def sky_for(scene: Scene, session: Session | None, assets: Assets) -> Sky:
     return own_sky(scene.environment, assets)
 
 
-def past_subject(past: Past, session: Session, assets: Assets) -> tuple[Stone | None, Panorama | None]:
+def past_subject(past: Past, session: Session, assets: Assets) -> tuple[Shape | None, Panorama | None]:
     """The stone and the picture of the sky that a session showed at a step; NotFoundError if they are not kept any
     more. May make the stone, which takes a while."""
     try:

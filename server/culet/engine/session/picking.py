@@ -7,14 +7,14 @@ import math
 import numpy as np
 
 from culet.engine.session.viewpoint import axes, half_height
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.scene import Camera, Vector
 from culet.simulation.rotation import rotate_back
 from culet.simulation.state import Quaternion, Triple
 
 
 def struck_point(
-    camera: Camera, stone: Stone, position: Vector, orientation: Quaternion, x: float, y: float
+    camera: Camera, shape: Shape, position: Vector, orientation: Quaternion, x: float, y: float
 ) -> Triple | None:
     """Where the line of sight through a point of the picture enters the stone, in the world; None if it passes by.
 
@@ -29,7 +29,7 @@ def struck_point(
     else:
         sight = forward + half * (x * right + y * up)
         sight /= np.linalg.norm(sight)
-    if not stone.convex:
+    if not shape.convex:
         along = float(eye @ sight)
         inside = along * along - float(eye @ eye) + 1
         if inside < 0:
@@ -37,7 +37,7 @@ def struck_point(
         distance = -along - math.sqrt(inside)
     else:
         start, way = (np.array(rotate_back(orientation, (v[0], v[1], v[2]))) for v in (eye.tolist(), sight.tolist()))
-        normals, offsets = stone.planes[:, :3], stone.planes[:, 3]
+        normals, offsets = shape.planes[:, :3], shape.planes[:, 3]
         towards, room = normals @ way, offsets - normals @ start
         if (room[towards == 0] < 0).any():
             return None

@@ -17,7 +17,7 @@ from culet.engine.session.picking import struck_point
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError, NotFoundError
-from culet.geometry.stone import Stone
+from culet.geometry.shape import Shape
 from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Scene
 from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
@@ -41,7 +41,7 @@ class Shown:
     step: int
     scene: Scene
     """With the live camera and the stone's pose."""
-    stone: Stone | None
+    stone: Shape | None
     panorama: Panorama | None = field(compare=False)
     """The one that the scene's environment names."""
     simulation_time: float
@@ -65,7 +65,7 @@ class Session:
         self,
         name: str,
         scene: Scene,
-        stone: Stone | None,
+        stone: Shape | None,
         *,
         sky: Sky | None = None,
         history: int = 600,
@@ -102,7 +102,7 @@ class Session:
         cls,
         name: str,
         scene: Scene,
-        stone: Stone | None,
+        stone: Shape | None,
         snapshot: Snapshot,
         *,
         sky: Sky | None = None,
@@ -131,7 +131,7 @@ class Session:
         return self._authored.camera
 
     @property
-    def stone(self) -> Stone | None:
+    def stone(self) -> Shape | None:
         """The shape of the scene's stone."""
         return self._stone
 
@@ -172,7 +172,7 @@ class Session:
         self.change(scene, home=home, sky=sky)
 
     def replace_stone(
-        self, scene: Scene, stone: Stone | None, *, home: Camera | None = None, sky: Sky | None = None
+        self, scene: Scene, stone: Shape | None, *, home: Camera | None = None, sky: Sky | None = None
     ) -> None:
         """As `change`, with another stone, or none: at rest where the scene has it."""
         self._place(scene, stone)
@@ -339,7 +339,7 @@ class Session:
             time = before + (after - before) * fraction
         return Shown(step, scene, self._stone, self.sky.panorama, time, self.moving)
 
-    def _place(self, scene: Scene, stone: Stone | None) -> None:
+    def _place(self, scene: Scene, stone: Shape | None) -> None:
         simulation: Simulation | None = None
         if stone is not None and scene.stones:
             start = scene.stones[0]

@@ -1,4 +1,4 @@
-"""A stone: facets as half-spaces, surface as triangles, and what the simulation needs to know of its mass."""
+"""The shape of a stone: facets as half-spaces, surface as triangles, and its mass as the simulation needs it."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ class MassProperties:
     volume: float
     """R^3."""
     inertia: NDArray[np.float64]
-    """(3, 3) tensor per unit of mass, R^2, in the stone's own axes."""
+    """(3, 3) tensor per unit of mass, R^2, in the shape's own axes."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stone:
+class Shape:
     """A closed polyhedron, its centre at the origin and its farthest vertex at distance 1; y is up (table upward)."""
 
     name: str
@@ -30,7 +30,7 @@ class Stone:
     facet_of_triangle: NDArray[np.int32]
     """(T,) index of the facet that the triangle belongs to; coplanar neighbours share one."""
     planes: NDArray[np.float64]
-    """(F, 4) outward unit normal n and offset d of each facet: the inside is n.x <= d. If `convex`, the stone is their
+    """(F, 4) outward unit normal n and offset d of each facet: the inside is n.x <= d. If `convex`, the shape is their
     intersection."""
     convex: bool
     mass: MassProperties
