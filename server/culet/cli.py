@@ -14,11 +14,11 @@ from culet.command.help import ListedHelp
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import check_place, opened
 from culet.command.settings import options_of
-from culet.command.subject import read_subject
+from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.endpoints import check_trusted
 from culet.engine.process.limits import Limits
-from culet.errors import InputError, SceneError
+from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
 from culet.logs import configure
 from culet.settings import Settings
@@ -82,10 +82,11 @@ def render(
 
     with errors_in_one_line():
         check_place(out, "out", ENCODERS)
-        settings, stone, panorama = read_subject(scene, preset, mesh, sky)
-        picture = Renderer().picture(settings, stone, width, height, panorama=panorama)
+        stage = read_stage(scene, preset, mesh, sky)
+        picture = Renderer().picture(stage, width, height)
+        wanted = samples or stage.scene.sampling.samples_per_pixel
         with progress_bar(f"rendering {out.name}") as advance:
-            for part in picture.refine_in_pieces(samples or settings.sampling.samples_per_pixel, PROGRESS_SECONDS):
+            for part in picture.refine_in_pieces(wanted, PROGRESS_SECONDS):
                 advance(part)
         try:
             write(picture, out)
@@ -128,11 +129,9 @@ def simulate(
         check_place(out, "out", ENDINGS)
         if plot is not None:
             check_place(plot, "plot", ["png"])
-        settings, stone, _ = read_subject(scene, preset, mesh)
-        if stone is None:
-            raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
+        stage = read_stage(scene, preset, mesh)
         with progress_bar("simulating") as advance:
-            path = record_path(dropped(settings, stone), stone, seconds, advance)
+            path = record_path(dropped(stage), seconds, advance)
         write(path, out)
         if plot is not None:
             from culet.simulation.plot import plot as draw

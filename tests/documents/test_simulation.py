@@ -8,6 +8,7 @@ from pathlib import Path
 from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.simulation.paths import record
+from shared.stages import staged
 
 PAGE = (Path(__file__).parents[2] / "docs/simulation.md").read_text(encoding="utf-8")
 
@@ -16,4 +17,4 @@ def test_the_table_of_columns_names_the_columns_of_a_path_and_no_others(brillian
     section = PAGE.split("\n## The path\n")[1].split("\n## ")[0]
     cells = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
     written = [name for cell in cells for name in re.findall(r"`(\w+)`", cell)]
-    assert written == list(record(Scene(), brilliant, 0).columns())
+    assert written == list(record(staged(Scene(), brilliant), 0).columns())

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from culet.gateway.upload_folder import UploadFolder
-from culet.rendering.panoramas import STUDIO
+from culet.optics.panoramas import STUDIO
 from gateway.running import PATIENCE, TETRAHEDRON, Endpoints, Gateway, gateway_before, png
 
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
+from culet.stage import Stage
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
 
 VIEW: dict[str, Any] = {
@@ -28,7 +28,7 @@ def scene(**optics: object) -> Scene:
 def means_by_sample(renderer: Renderer, samples: int, **optics: object) -> Array:
     """(samples,) the whole picture's mean radiance in each sample."""
     shown = scene(**optics)
-    picture = renderer.picture(shown, shape_of(shown.stones[0], {}), 48, 28)
+    picture = renderer.picture(Stage.of(shown), 48, 28)
     sums = [0.0]
     for number in range(samples):
         picture.refine()

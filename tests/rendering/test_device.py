@@ -16,6 +16,7 @@ from culet.errors import InputError
 from culet.rendering.device import remedy
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from shared.stages import staged
 
 CACHES = [
     ({"XDG_CACHE_HOME": "/proc/none"}, "/proc/none/pocl/kcache"),
@@ -101,6 +102,6 @@ def test_a_panorama_that_no_file_may_have_is_refused_as_from_a_file(renderer: Re
     pixels[1, 2, 0] = value
     scene = Scene.read({"environment": {"kind": "image", "image": "mine"}})
     with pytest.raises(InputError, match="panorama: expected radiance that is finite and not below 0"):
-        renderer.picture(scene, None, 8, 8, panorama=pixels)
+        renderer.picture(staged(scene, panorama=pixels), 8, 8)
     with pytest.raises(InputError, match=r"panorama: expected an array of \(height, width, 3\), got \(4, 8\)"):
-        renderer.picture(scene, None, 8, 8, panorama=pixels[..., 0])
+        renderer.picture(staged(scene, panorama=pixels[..., 0]), 8, 8)

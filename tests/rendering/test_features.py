@@ -11,13 +11,13 @@ import pyopencl as cl
 import pytest
 
 from conftest import RendererOf
-from culet.geometry.load import shape_of
 from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import PRESETS
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from pictures import compared
 from rendering.views import BARE, radiance, take
+from shared.stages import staged
 
 LANES = 4
 """Narrow packets compile faster, and the claims are about the source."""
@@ -138,17 +138,18 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
 
 def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> None:
     """Lights, boxes and absorption that a scene has stay arguments: RUNTIME. All else is fixed."""
-    stone = shape_of(LEGACY_DEFAULT.stones[0], {})
     left = {
         name: {
-            field.name for field in fields(Features) if getattr(features_of(preset.scene, stone), field.name) == RUNTIME
+            field.name
+            for field in fields(Features)
+            if getattr(features_of(staged(preset.scene)), field.name) == RUNTIME
         }
         for name, preset in PRESETS.items()
     }
     assert left["default"] == {"boxes"}
     assert left["mirror"] == {"lights"}
     assert left["tinted-blue"] == {"lights", "absorption"}
-    assert features_of(legacy(OWN["bare"]), stone) == Features(
+    assert features_of(staged(legacy(OWN["bare"]))) == Features(
         Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], boxes=0, head=0, backdrop=0, glare=1,
         dispersion=0, absorption=0, fresnel=0, end=0, camera_inside=0,
     )  # fmt: skip

@@ -12,6 +12,7 @@ from culet.rendering.mirrors import makes_finite_group
 from culet.scene.legacy import LEGACY_DEFAULT
 from geometry.shapes import obj
 from geometry.shapes import prism as extruded
+from shared.stages import staged
 from shared.stones import ball, brilliant, prism, ring, skew_block, slab, step_cut
 
 L_SHAPE = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]) - 0.8
@@ -29,10 +30,10 @@ ENDLESS = [brilliant(), step_cut(), skew_block(), ring(), ball(5000)()]
 @pytest.mark.parametrize("stone", FINITE.values(), ids=FINITE.keys())
 def test_of_boxes_and_prisms_the_mirrors_are_few(stone: Shape) -> None:
     assert makes_finite_group(stone)
-    assert features_of(LEGACY_DEFAULT, stone).few_mirrors == 1
+    assert features_of(staged(LEGACY_DEFAULT, stone)).few_mirrors == 1
 
 
 @pytest.mark.parametrize("stone", ENDLESS, ids=lambda stone: stone.name)
 def test_other_stones_have_no_end_of_mirrors(stone: Shape) -> None:
     assert not makes_finite_group(stone)
-    assert features_of(LEGACY_DEFAULT, stone).few_mirrors == 0
+    assert features_of(staged(LEGACY_DEFAULT, stone)).few_mirrors == 0

@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.rendering.panoramas import Panorama, directions
+from culet.optics.panoramas import Panorama, directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
+from culet.stage import Stage
 from pictures import compared
 from rendering.views import BARE, Array, pixel_directions, radiance
+from shared.stages import staged
 
 LOOKS: dict[str, dict[str, Any]] = {
     "zenith": {"target": [0, 1, 0], "up": [0, 0, 1]},
@@ -29,7 +31,7 @@ def sky_scene(look: dict[str, Any], fov: float, **environment: object) -> Scene:
 
 
 def looked_up(renderer: Renderer, scene: Scene, panorama: Panorama) -> Array:
-    picture = renderer.picture(scene, None, 64, 64, panorama=panorama)
+    picture = renderer.picture(staged(scene, panorama=panorama), 64, 64)
     picture.refine()
     return radiance(picture)
 
@@ -54,7 +56,7 @@ def test_a_smooth_sky_is_looked_up_to_the_square_of_its_pixels(
 def test_a_panorama_of_the_gradient_is_the_gradient(renderer: Renderer, look: dict[str, Any]) -> None:
     panorama = np.repeat((1 + directions(512)[..., 1:2]) / 2, 3, axis=-1).astype(np.float32)
     seen = looked_up(renderer, sky_scene(look, 120, kind="image"), panorama)
-    picture = renderer.picture(sky_scene(look, 120, kind="gradient"), None, 64, 64)
+    picture = renderer.picture(Stage.of(sky_scene(look, 120, kind="gradient")), 64, 64)
     picture.refine()
     with compared(seen, radiance(picture)):
         assert seen == pytest.approx(radiance(picture), abs=4e-6)

@@ -12,8 +12,10 @@ from culet.geometry.load import shape_of
 from culet.rendering.pace import Pace
 from culet.rendering.renderer import Renderer, jitter
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
+from culet.stage import Stage
 from pictures import compared
 from rendering.views import radiance, take
+from shared.stages import staged
 
 SCENE = LEGACY_DEFAULT
 
@@ -58,7 +60,7 @@ def test_pieces_make_the_same_picture_to_the_last_bit(
     scene = legacy(KINDS[kind])
     size = (20, 18) if steps == 1 else (70, 50)  # six tiles, some of them not full
     whole = take(renderer, scene, size=size, samples=2)
-    pieced = renderer.picture(scene, shape_of(scene.stones[0], {}) if scene.stones else None, *size)
+    pieced = renderer.picture(Stage.of(scene), *size)
     monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: steps)
     progress = list(pieced.refine_in_pieces(2, 1.0))
     assert pieced.linear().tobytes() == whole.linear().tobytes()
@@ -77,7 +79,7 @@ def test_a_launch_of_a_very_dear_scene_ends_when_its_steps_are_made(renderer: Re
             "walls": {"kind": "mirror"}, "floor": {"kind": "mirror"}, "stones": [{"material": {"ior": [10, 10, 10]}}],
         }
     )  # fmt: skip
-    picture = renderer.picture(scene, shape_of(scene.stones[0], {}), 1, 1)
+    picture = renderer.picture(Stage.of(scene), 1, 1)
     before, launches = 0.0, []
     pieces = picture.refine_in_pieces(1, 1e-9)
     for _ in zip(pieces, range(200), strict=False):
@@ -90,7 +92,7 @@ def test_a_launch_of_a_very_dear_scene_ends_when_its_steps_are_made(renderer: Re
 
 def test_refining_in_steps_is_refining_at_once(exact: Renderer) -> None:
     stone = shape_of(SCENE.stones[0], {})
-    picture = exact.picture(SCENE, stone, 48, 27)
+    picture = exact.picture(staged(SCENE, stone), 48, 27)
     means = []
     for _ in range(4):
         picture.refine()

@@ -14,6 +14,7 @@ from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from optics.closed_forms import deviation, fresnel, minimum_deviation
 from rendering.views import BARE, UPRIGHT, Array, radiance, take
+from shared.stages import staged
 from shared.stones import prism
 
 APEX = math.radians(40)
@@ -96,7 +97,7 @@ def test_violet_bends_most(exact: Renderer) -> None:
     for name, lit in panoramas.items():
         panorama = sky.copy()
         panorama[lit & (abs(elevation - edge) < 0.3)] = 1  # narrow, so that the reflection sees none of it
-        picture = exact.picture(scene, stone, 2, 2, panorama=panorama)
+        picture = exact.picture(staged(scene, stone, panorama), 2, 2)
         picture.refine()
         colour[name] = radiance(picture).mean(axis=(0, 1))
     assert colour["more"][2] > 3 * colour["more"][0]

@@ -15,8 +15,8 @@ import trimesh
 from conftest import RendererOf
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
+from culet.optics.panoramas import directions
 from culet.rendering.features import ESTIMATOR, Features, features_of, geometry_of
-from culet.rendering.panoramas import directions
 from culet.rendering.projection import rotation_matrix
 from culet.rendering.renderer import Renderer
 from culet.rendering.studio import contact_form
@@ -25,6 +25,7 @@ from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from optics.closed_forms import fresnel
 from rendering.room_reference import passes_through, sky, world_half_spaces
 from rendering.views import BARE, UPRIGHT, Array, pixel_directions, radiance, take
+from shared.stages import staged
 from shared.stones import slab
 
 SIZE = 96, 54
@@ -69,7 +70,7 @@ def floor_points(scene: Scene) -> tuple[Array, Array]:
 def test_a_scene_that_asks_for_none_of_it_has_a_program_without_it(name: str, brilliant: Shape) -> None:
     scene = LEGACY_DEFAULT if name == "legacy" else PRESETS[name].scene
     asks = scene.head is not None or scene.backdrop.kind != "none" or not scene.optics.glare
-    features = features_of(scene, brilliant)
+    features = features_of(staged(scene, brilliant))
     found = {feature: getattr(features, feature) for feature in OFF}
     lamps = getattr(scene.environment, "lamps", ())
     assert (found == OFF) is not (asks or any(lamp.shape == "box" for lamp in lamps))
@@ -214,7 +215,7 @@ def test_a_studio_as_a_panorama_shows_the_same_stone(renderer: Renderer, brillia
     painted += (3 * s**2 - 2 * s**3)[..., None] * (0.02 - painted)
     painted[d[..., 1] < 0] = (0.3, 0.2, 0.1)
     image = scene_of(**common, environment={"kind": "image"})
-    picture = renderer.picture(image, brilliant, *SIZE, panorama=painted.astype(np.float32))
+    picture = renderer.picture(staged(image, brilliant, painted.astype(np.float32)), *SIZE)
     picture.refine()
     seen, expected = shown(renderer, studio, brilliant), radiance(picture)
     planes = world_half_spaces(studio, brilliant)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
+from shared.stages import staged
 
 Array = NDArray[np.float64]
 
@@ -32,9 +32,7 @@ def take(
     features: Features | None = None,
 ) -> Picture:
     """A finished picture; the stone is the scene's own cut unless another is given."""
-    if stone is None and scene.stones:
-        stone = shape_of(scene.stones[0], {})
-    picture = renderer.picture(scene, stone, *size, features=features)
+    picture = renderer.picture(staged(scene, stone), *size, features=features)
     picture.refine(samples)
     return picture
 

@@ -227,7 +227,7 @@ def test_a_formula_without_an_index_is_refused_when_its_index_is_needed() -> Non
 
 def test_moving_the_stone_moves_nothing_else() -> None:
     scene = Scene.read(FULL)
-    moved = scene.moved((1, 2, 3), (0, 1, 0, 0))
+    moved = scene.moved(((1, 2, 3), (0, 1, 0, 0)))
     assert [*moved.stones[0].position, *moved.stones[0].orientation] == [1, 2, 3, 0, 1, 0, 0]
-    assert moved.moved(scene.stones[0].position, scene.stones[0].orientation) == scene
-    assert Scene(stones=()).moved((1, 2, 3), (1, 0, 0, 0)) == Scene(stones=())
+    assert moved.moved((scene.stones[0].position, scene.stones[0].orientation)) == scene
+    assert Scene(stones=()).moved() == Scene(stones=())

@@ -6,10 +6,11 @@ from culet.engine.session.session import Session
 from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.simulation.drop import DROP_HEIGHT, dropped
+from shared.stages import staged
 
 
 def test_a_stone_that_starts_at_rest_falls_when_it_is_let_fall(brilliant: Shape) -> None:
-    session = Session("0" * 32, Scene(), brilliant)
+    session = Session("0" * 32, staged(Scene(), brilliant))
     session.toggle_fall()
     session.advance(0)
     session.advance(0.2)
@@ -27,6 +28,6 @@ def test_a_stone_that_starts_at_rest_falls_when_it_is_let_fall(brilliant: Shape)
 
 def test_a_stone_in_the_air_falls_from_where_it_is(brilliant: Shape) -> None:
     for height in (0.5, 4.0):
-        scene = Scene().moved((0.5, height, 0.25), Scene().stones[0].orientation)
-        assert dropped(scene, brilliant) == scene
-    assert dropped(Scene(), brilliant).stones[0].position == (0, DROP_HEIGHT, 0)
+        scene = Scene().moved(((0.5, height, 0.25), Scene().stones[0].orientation))
+        assert dropped(staged(scene, brilliant)).scene == scene
+    assert dropped(staged(Scene(), brilliant)).scene.stones[0].position == (0, DROP_HEIGHT, 0)

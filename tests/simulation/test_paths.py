@@ -16,11 +16,12 @@ from culet.geometry.shape import Shape
 from culet.scene import Scene, preset
 from culet.simulation.paths import MAX_STEPS, Path, record, write
 from culet.simulation.simulation import Simulation
+from shared.stages import staged
 
 
 @pytest.fixture(scope="module")
 def path(box: Shape) -> Path:
-    return record(preset("classic"), box, 10)
+    return record(staged(preset("classic"), box), 10)
 
 
 def names(folder: pathlib.Path) -> list[str]:
@@ -50,7 +51,7 @@ def test_a_path_is_the_simulations(path: Path, box: Shape) -> None:
 def test_a_path_counts_the_steps_that_were_too_full_to_follow(box: Shape) -> None:
     spin = {"gravity": 1e6, "spin": (6000, 9000, 4000), "time_step": 0.1}
     scene = Scene.read({"simulation": spin, "stones": [{"position": [0, 0, 0]}]})
-    coarse = record(scene, box, 0.3).coarse.tolist()
+    coarse = record(staged(scene, box), 0.3).coarse.tolist()
     assert coarse == sorted(coarse)
     assert (coarse[0], coarse[1]) == (0, 1)
 
@@ -78,17 +79,17 @@ def test_the_sphere_holds_the_resting_stone_off_the_floor(path: Path) -> None:
 
 
 def test_a_start_inside_the_floor_is_recorded_as_penetration(box: Shape) -> None:
-    inside = record(preset("classic").moved((0, -0.25, 0), (1, 0, 0, 0)), box, 0.1)
+    inside = record(staged(preset("classic").moved(((0, -0.25, 0), (1, 0, 0, 0))), box), 0.1)
     assert inside.penetration[0] == 0.25
     assert inside.penetration[1] == 0
 
 
 def test_the_rigid_model_records_its_own_vertices_at_floor_and_walls(box: Shape) -> None:
     scene = Scene.read({"walls": {"kind": "matte"}, "simulation": {"spin": [0, 0, 0]}})
-    behind = record(scene.moved((0, 2, -7.9), (1, 0, 0, 0)), box, 0.1)
+    behind = record(staged(scene.moved(((0, 2, -7.9), (1, 0, 0, 0))), box), 0.1)
     assert behind.penetration[0] == pytest.approx(2 / 7 - 0.1)  # the wall is at z = -8
     assert behind.penetration[1:].max() < 1e-9
-    resting = record(scene.moved((0, -4 / 7, 0), (1, 0, 0, 0)), box, 0.1)
+    resting = record(staged(scene.moved(((0, -4 / 7, 0), (1, 0, 0, 0))), box), 0.1)
     assert resting.asleep[-1]
     assert resting.contacts[-1] == 4
     assert resting.clearance[-1] == pytest.approx(0, abs=1e-12)
@@ -96,14 +97,14 @@ def test_the_rigid_model_records_its_own_vertices_at_floor_and_walls(box: Shape)
 
 def test_a_time_between_two_steps_ends_at_the_earlier(box: Shape) -> None:
     scene = Scene.read({"simulation": {"time_step": 0.1}})
-    assert record(scene, box, 0.3).step[-1] == 3  # 0.3 / 0.1 = 2.9999999999999996
-    assert record(scene, box, 0.39).step[-1] == 3
-    assert record(scene, box, 0).step.tolist() == [0]
+    assert record(staged(scene, box), 0.3).step[-1] == 3  # 0.3 / 0.1 = 2.9999999999999996
+    assert record(staged(scene, box), 0.39).step[-1] == 3
+    assert record(staged(scene, box), 0).step.tolist() == [0]
 
 
 def test_progress_ends_at_one(box: Shape) -> None:
     parts: list[float] = []
-    record(Scene.read({"simulation": {"time_step": 0.001}}), box, 2.5, parts.append)
+    record(staged(Scene.read({"simulation": {"time_step": 0.001}}), box), 2.5, parts.append)
     assert parts == sorted(parts)
     assert len(parts) == 4
     assert parts[-1] == 1
@@ -181,14 +182,14 @@ def test_an_old_file_is_replaced(path: Path, tmp_path: pathlib.Path) -> None:
 @pytest.mark.parametrize("seconds", [-1.0, math.nan, math.inf])
 def test_a_time_that_is_none_is_refused(box: Shape, seconds: float) -> None:
     with pytest.raises(InputError, match="seconds"):
-        record(Scene(), box, seconds)
+        record(staged(Scene(), box), seconds)
 
 
 def test_more_steps_than_the_limit_are_refused(box: Shape) -> None:
     with pytest.raises(TooLargeError, match=f"at most {MAX_STEPS}"):
-        record(Scene(), box, MAX_STEPS)
+        record(staged(Scene(), box), MAX_STEPS)
 
 
 def test_a_scene_without_a_stone_is_refused(box: Shape) -> None:
     with pytest.raises(SceneError, match="stone"):
-        record(Scene(stones=()), box, 1)
+        record(staged(Scene(stones=()), box), 1)

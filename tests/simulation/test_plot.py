@@ -13,10 +13,11 @@ from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.simulation.paths import record
 from culet.simulation.plot import BOTTOM, CURVE, INK, PANEL, WIDTH, plot
+from shared.stages import staged
 
 
 def test_the_curves_of_a_drop_fill_three_panels_and_end_in_sleep(box: Shape, tmp_path: pathlib.Path) -> None:
-    path = record(Scene().moved((0, 2, 0), (1, 0, 0, 0)), box, 4)
+    path = record(staged(Scene().moved(((0, 2, 0), (1, 0, 0, 0))), box), 4)
     assert path.asleep[-1]
     plot(path, tmp_path / "drop.png")
     picture = np.asarray(Image.open(tmp_path / "drop.png"))
@@ -32,11 +33,11 @@ def test_the_curves_of_a_drop_fill_three_panels_and_end_in_sleep(box: Shape, tmp
 
 
 def test_a_path_of_one_state_and_no_motion_is_drawn_too(box: Shape, tmp_path: pathlib.Path) -> None:
-    plot(record(Scene(), box, 0), tmp_path / "still.png")
+    plot(record(staged(Scene(), box), 0), tmp_path / "still.png")
     assert (tmp_path / "still.png").stat().st_size > 0
 
 
 @pytest.mark.parametrize("name", ["drop.pdf", "drop", "missing/drop.png"])
 def test_a_place_that_it_cannot_be_written_to_is_refused(box: Shape, tmp_path: pathlib.Path, name: str) -> None:
     with pytest.raises(InputError, match="plot"):
-        plot(record(Scene(), box, 0), tmp_path / name)
+        plot(record(staged(Scene(), box), 0), tmp_path / name)

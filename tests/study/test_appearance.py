@@ -10,8 +10,10 @@ from culet.geometry.shape import Shape
 from culet.rendering.features import Features
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene
+from culet.stage import Stage
 from culet.study.appearance import appearance, colour_parts, lab, stone_mask
 from culet.study.gallery import WANTED, in_flight, shown
+from shared.stages import staged
 
 WIDE, SQUARE, SAMPLES = (320, 180), (180, 180), 8
 """A sixteenth of the full size's pixels: measures are as there, but for fire, which small pictures isolate."""
@@ -82,9 +84,9 @@ def test_the_stones_pixels_are_those_that_it_changes(renderer: Renderer, brillia
             "backdrop": {"kind": "plain", "colour": [1, 1, 1]},
         }
     )
-    drawn = renderer.picture(plain, brilliant, *WIDE, features=Features())
+    drawn = renderer.picture(staged(plain, brilliant), *WIDE, features=Features())
     drawn.refine()
-    assert ((drawn.linear()[..., 0] < 0.5) == stone_mask(plain, brilliant, *WIDE)).mean() > 0.999
+    assert ((drawn.linear()[..., 0] < 0.5) == stone_mask(drawn.stage, *WIDE)).mean() > 0.999
 
 
 @pytest.mark.parametrize("name", WANTED)
@@ -106,7 +108,7 @@ def test_the_default_shows_no_lamp_beside_the_stone_and_its_reflection_whole(ren
     preset = PRESETS["default"]
     stone = shown(renderer, preset, WIDE, 1, Features())
     empty = preset.scene.model_copy(update={"stones": ()})
-    bare = renderer.picture(empty, None, *WIDE)
+    bare = renderer.picture(Stage.of(empty), *WIDE)
     bare.refine()
     assert bare.linear().max() <= 0.181
     background = bare.rgb()

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from culet.geometry.load import shape_of
 from culet.scene import Scene, preset
+from culet.stage import Stage
 from culet.study.knobs import Knobs, base_knobs, settings_of
 
 
 def base_of(scene: Scene) -> Knobs:
-    return base_knobs(scene, shape_of(scene.stones[0], {}), 16)
+    return base_knobs(Stage.of(scene), 16)
 
 
 @pytest.mark.parametrize("name", ["default", "classic"])

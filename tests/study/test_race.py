@@ -85,7 +85,7 @@ def test_a_package_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pyt
 def test_mitsuba_sees_the_same_stone(device: Device) -> None:
     """The race is fair only if both come to the same picture: what they are apart is the noise of 128 samples."""
     frame = race_frame(64, 36)
-    picture = Renderers(device).picture(base_knobs(frame.subject.scene, frame.subject.stone, device.lanes), frame)
+    picture = Renderers(device).picture(base_knobs(frame.stage, device.lanes), frame)
     picture.refine(256)
     runs, words = run_mitsuba(frame, picture.linear().astype(np.float64), 128, 0.01)
     assert words == ""
@@ -119,7 +119,7 @@ def test_a_process_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -
 def test_the_races_reference_shares_no_sample_with_culets(device: Device, tmp_path: Path) -> None:
     """Samples 2 and 3 are what is left of 0 to 3 without 0 and 1."""
     frame = race_frame(16, 9)
-    knobs = reference_knobs(base_knobs(frame.subject.scene, frame.subject.stone, device.lanes), "model", 1)
+    knobs = reference_knobs(base_knobs(frame.stage, device.lanes), "model", 1)
     renderers = Renderers(device)
     whole = make_reference(renderers, frame, knobs, 4, lambda _part: None, steps=True, cache=tmp_path)
     rest = whole.after(2)

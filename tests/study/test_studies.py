@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 from culet.errors import InputError
-from culet.geometry.load import shape_of
+from culet.optics.panoramas import Panorama, light_box
 from culet.rendering.device import Device
-from culet.rendering.panoramas import Panorama, light_box
 from culet.scene import Scene
 from culet.scene.legacy import legacy
 from culet.study import race, studies
-from culet.study.frame import Frame, Studied
+from culet.study.frame import Frame
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
 from culet.study.studies import Effort, study_rendering
+from shared.stages import staged
 
 TINY = Effort(48, 27, 32, 4, 1, 0, 0.0, 0)
 GROUPS = frozenset({"cutoff", "samples", "scale"})
@@ -53,7 +53,7 @@ def study(
     out: Path, cache: Path, progress: Told, scene: Scene | None = None, panorama: Panorama | None = None
 ) -> Report:
     subject = scene or Scene()
-    studied = Studied(subject, shape_of(subject.stones[0], {}), panorama)
+    studied = staged(subject, panorama=panorama)
     return study_rendering(studied, out, progress, effort=TINY, quick=True, cache=cache, groups=GROUPS)
 
 
@@ -143,13 +143,11 @@ def test_the_folder_of_another_sky_is_refused(finished: Report, folder: Path) ->
 
 def test_a_sky_from_a_file_is_what_is_rendered(device: Device) -> None:
     scene = legacy({"environment": {"kind": "image", "image": "file"}, "floor": {"kind": "none"}})
-    stone = shape_of(scene.stones[0], {})
     grey, white = (np.full((4, 8, 3), level, np.float32) for level in (0.5, 1.0))
     means = []
     for panorama in (grey, white):
-        picture = Renderers(device).picture(
-            base_knobs(scene, stone, device.lanes), Frame(Studied(scene, stone, panorama), 32, 18)
-        )
+        stage = staged(scene, panorama=panorama)
+        picture = Renderers(device).picture(base_knobs(stage, device.lanes), Frame(stage, 32, 18))
         picture.refine()
         means.append(picture.linear().mean())
     assert means[1] == pytest.approx(2 * means[0], rel=1e-5)

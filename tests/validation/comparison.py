@@ -12,6 +12,7 @@ from scipy.stats import t as student
 from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
+from shared.stages import staged
 from validation.mitsuba_reference import Array, Reference
 
 SIGNIFICANCE = 0.01
@@ -41,7 +42,7 @@ def seen(
 ) -> Seen:
     """The scene under a grey panorama (h, 2h), each sample read by itself."""
     sky = np.repeat(panorama[..., None], 3, axis=-1).astype(np.float32)
-    picture = renderer.picture(scene, stone, *size, panorama=sky)
+    picture = renderer.picture(staged(scene, stone, sky), *size)
     total = np.zeros((size[1], size[0], 3))
     squares = np.zeros_like(total)
     for number in range(samples):
@@ -51,7 +52,7 @@ def seen(
         total = sum_so_far
     mean = total / samples
     variance = np.maximum(squares / samples - mean**2, 0) / (samples - 1)
-    squared = renderer.picture(scene, stone, *size, panorama=sky**2)
+    squared = renderer.picture(staged(scene, stone, sky**2), *size)
     squared.refine(samples // 4)
     path_variance = np.maximum(squared.linear() - mean**2, 0)
     on_stone = binary_dilation(picture.cut_map() > 0, np.ones((3, 3)))

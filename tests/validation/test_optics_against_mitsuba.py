@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import Shape
-from culet.rendering.panoramas import directions
+from culet.optics.panoramas import directions
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy

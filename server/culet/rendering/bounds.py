@@ -1,13 +1,13 @@
-"""The largest radiance that a scene holds outside the stone: what a unit of dropped weight can be worth at most."""
+"""The largest radiance that a stage holds outside the stones: what a unit of dropped weight can be worth at most."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from culet.rendering.panoramas import Panorama, panorama_of
 from culet.rendering.parameters import sky_colours
-from culet.scene.model import ImageEnvironment, Scene
+from culet.scene.model import ImageEnvironment
 from culet.scene.studio import StudioEnvironment, StudioFloor
+from culet.stage import Stage
 
 MATTE_ALBEDO = 0.9
 """Of the checker's brighter cells, as in room.cl."""
@@ -15,13 +15,12 @@ AMBIENT = 0.2
 """Of the light that falls on a surface, as in room.cl."""
 
 
-def largest_radiance(scene: Scene, panorama: Panorama | None = None) -> float:
+def largest_radiance(stage: Stage) -> float:
     """Of any channel, in any direction, from any place. A mirror shows a fifth of a surface's light and four fifths of
     something else, so it is no brighter than the brightest of both."""
-    environment = scene.environment
-    if isinstance(environment, ImageEnvironment):
-        pixels = panorama_of(environment, {}) if panorama is None else panorama
-        brightest = float(pixels.max()) * environment.scale
+    scene, environment = stage.scene, stage.scene.environment
+    if isinstance(environment, ImageEnvironment) and stage.panorama is not None:
+        brightest = float(stage.panorama.max()) * environment.scale
     else:
         brightest = float(np.max(sky_colours(environment)))
     if isinstance(environment, StudioEnvironment):

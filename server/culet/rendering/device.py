@@ -14,8 +14,8 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.errors import DeviceError
+from culet.optics.panoramas import check_panorama
 from culet.rendering import kernel_cache
-from culet.rendering.panoramas import check_panorama
 
 Real = type[np.float32] | type[np.float64]
 """The precision of a program."""

@@ -10,8 +10,9 @@ from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.projection import camera_is_inside
-from culet.scene.model import Environment, Floor, Plane, Scene
+from culet.scene.model import Environment, Floor, Plane
 from culet.scene.studio import boxes_of
+from culet.stage import Stage
 
 RUNTIME = -1
 """The choice is left to the parameters; the program holds the code of every kind."""
@@ -80,6 +81,11 @@ class Features:
         return replace(self, **{name: RUNTIME})
 
 
+def shape_on(stage: Stage) -> Shape | None:
+    """The shape of the stage's stone, if there is one."""
+    return stage.shapes[0] if stage.shapes else None
+
+
 def geometry_of(shape: Shape | None) -> Geometry:
     """How a stone is traced."""
     if shape is None:
@@ -87,8 +93,9 @@ def geometry_of(shape: Shape | None) -> Geometry:
     return Geometry.HULL if shape.convex and len(shape.planes) <= MOST_HALF_SPACES else Geometry.MESH
 
 
-def features_of(scene: Scene, shape: Shape | None) -> Features:
-    """The program that holds what this scene needs, and nothing else."""
+def features_of(stage: Stage) -> Features:
+    """The program that holds what this stage needs, and nothing else."""
+    scene, shape = stage.scene, shape_on(stage)
     kinds: tuple[Floor, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds
     optics = scene.optics

@@ -12,29 +12,28 @@ from culet.geometry.polygons import edges_of_facets
 from culet.geometry.shape import Shape
 from culet.rendering.chains import chain_table, is_spectral
 from culet.rendering.device import Device, Real
-from culet.rendering.features import Features, Geometry
-from culet.rendering.panoramas import Panorama, panorama_of
+from culet.rendering.features import Features, Geometry, shape_on
 from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
 from culet.rendering.tree import tree_of
 from culet.scene.model import ImageEnvironment, Scene
+from culet.stage import Stage
 
 
 class Inputs:
-    """Buffers of one scene, in the order of the kernels' arguments; of them only struct and chains differ by sample."""
+    """Buffers of one stage, in the order of the kernels' arguments; of them only struct and chains differ by sample."""
 
     def __init__(
         self,
         device: Device,
-        scene: Scene,
-        shape: Shape | None,
+        stage: Stage,
         width: int,
         height: int,
-        panorama: Panorama | None,
         features: Features,
         real: Real,
     ) -> None:
+        scene, shape = stage.scene, shape_on(stage)
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
         self._changes = shape is not None and (is_spectral(scene) or scene.optics.end == "roulette")
@@ -52,9 +51,8 @@ class Inputs:
             mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
         self._has_stone = shape is not None
         self._panorama = None
-        if isinstance(scene.environment, ImageEnvironment):
-            if panorama is None:
-                panorama = panorama_of(scene.environment, {})
+        panorama = stage.panorama
+        if isinstance(scene.environment, ImageEnvironment) and panorama is not None:
             self._struct["panorama_height"], self._struct["panorama_width"] = panorama.shape[:2]
             self._struct["panorama_turn"] = scene.environment.turn_degrees / 360
             self._struct["panorama_scale"] = scene.environment.scale

@@ -11,14 +11,13 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.geometry.shape import Shape
+from culet.optics.panoramas import Panorama
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.pace import Pace
-from culet.rendering.panoramas import Panorama
 from culet.rendering.program import (
     OF_ITEMS,
     TILE,
@@ -32,6 +31,7 @@ from culet.rendering.program import (
 from culet.rendering.sums import Fold, Sums
 from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene
+from culet.stage import Stage
 
 TALLIES = 2
 """Numbers for each tile, as in tile.cl."""
@@ -75,17 +75,14 @@ class Renderer:
 
     def picture(
         self,
-        scene: Scene,
-        shape: Shape | None,
+        stage: Stage,
         width: int,
         height: int,
         *,
-        panorama: Panorama | None = None,
         features: Features | None = None,
     ) -> Picture:
-        """An empty picture of the scene, to be refined. The panorama belongs to a scene
-        whose sky is an uploaded image; `features` asks for another program than the scene needs."""
-        return Picture(self, scene, shape, width, height, panorama, features)
+        """An empty picture of the stage, to be refined. `features` asks for another program than the stage needs."""
+        return Picture(self, stage, width, height, features)
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more."""
@@ -114,19 +111,18 @@ class Renderer:
         """What is known of that program's steps, with stones of about so many triangles."""
         return self._paces.setdefault((kernel, triangles.bit_length()), Pace())
 
-    def is_ready(self, scene: Scene, shape: Shape | None) -> bool:
+    def is_ready(self, stage: Stage) -> bool:
         """Whether a picture can be begun without waiting for a compiler, or for a mesh's tree."""
-        shape = shape if scene.stones else None
-        features = features_of(scene, shape)
-        tree_is_there = shape is None or features.geometry != Geometry.MESH or has_tree(shape)
+        features = features_of(stage)
+        tree_is_there = features.geometry != Geometry.MESH or all(has_tree(shape) for shape in stage.shapes)
         return tree_is_there and self.programs.is_ready(features.general, self.variant)
 
-    def make_ready(self, scene: Scene, shape: Shape | None) -> None:
+    def make_ready(self, stage: Stage) -> None:
         """Have what `is_ready` asks for made, while pictures are refined in another thread."""
-        shape = shape if scene.stones else None
-        features = features_of(scene, shape)
-        if shape is not None and features.geometry == Geometry.MESH:
-            tree_of(shape)
+        features = features_of(stage)
+        if features.geometry == Geometry.MESH:
+            for shape in stage.shapes:
+                tree_of(shape)
         self.programs.prepare(features.general, self.variant)
 
     def describe(self) -> dict[str, str | int]:
@@ -159,34 +155,35 @@ class Picture:
     def __init__(
         self,
         renderer: Renderer,
-        scene: Scene,
-        shape: Shape | None,
+        stage: Stage,
         width: int,
         height: int,
-        panorama: Panorama | None,
         features: Features | None,
     ) -> None:
-        self.scene, self.width, self.height = scene, width, height
+        self.stage, self.width, self.height = stage, width, height
         self.seconds = 0.0
         """Spent by the last refinement."""
         self._renderer = renderer
         real = renderer.variant.real
-        shape = shape if scene.stones else None
-        needed = features_of(scene, shape)
+        needed = features_of(stage)
         features = features or needed
         if features.estimator != needed.estimator:
             raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._kernel = get(features, renderer.variant)
-        self._panorama = panorama
-        self._inputs = Inputs(renderer.device, scene, shape, width, height, panorama, features, real)
+        self._inputs = Inputs(renderer.device, stage, width, height, features, real)
         self._tiles = math.ceil(width / TILE), math.ceil(height / TILE)
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
         self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
-        self._pace = renderer.pace_of(self._kernel, 0 if shape is None else len(shape.triangles))
+        self._pace = renderer.pace_of(self._kernel, sum(len(shape.triangles) for shape in stage.shapes))
+
+    @property
+    def scene(self) -> Scene:
+        """What it shows."""
+        return self.stage.scene
 
     @property
     def samples(self) -> int:
@@ -259,7 +256,7 @@ class Picture:
 
     def truncation_bound(self) -> float:
         """The most that dropped weight can be missing from the picture's mean radiance, averaged over the channels."""
-        return self.cut() * largest_radiance(self.scene, self._panorama)
+        return self.cut() * largest_radiance(self.stage)
 
     def segments(self) -> int:
         """Interior segments of the last sample."""

@@ -25,6 +25,9 @@ from culet.scene.studio import Backdrop, GradientBackdrop, Head, StudioEnvironme
 from culet.scene.wording import at_its_tag, expected, unknown_field
 
 Index = Annotated[float, Field(ge=1, le=10)]
+Pose = tuple[Vector, tuple[float, float, float, float]]
+"""Where a stone's centre of mass is (R), and how the stone is turned: a unit quaternion w, x, y, z from its own axes to
+those of the world."""
 
 
 class BrilliantCut(Model):
@@ -390,12 +393,13 @@ class Scene(Model):
         except ValidationError as error:
             raise scene_error(error) from error
 
-    def moved(self, position: Vector, orientation: tuple[float, float, float, float]) -> Scene:
-        """The same scene with its stone elsewhere."""
-        if not self.stones:
-            return self
-        stone = self.stones[0].model_copy(update={"position": position, "orientation": orientation})
-        return self.model_copy(update={"stones": (stone,)})
+    def moved(self, *poses: Pose) -> Scene:
+        """The same scene with its stones elsewhere: a pose for each of them."""
+        stones = [
+            stone.model_copy(update={"position": position, "orientation": orientation})
+            for stone, (position, orientation) in zip(self.stones, poses, strict=True)
+        ]
+        return self.model_copy(update={"stones": tuple(stones)})
 
 
 _KINDS = {

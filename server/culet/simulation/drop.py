@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y
 from culet.simulation.rotation import rotate_back
 from culet.simulation.state import Quaternion, Triple
+from culet.stage import Stage
 
 DROP_HEIGHT = 1.5
 """y of the centre, R: 2.5 R above the floor, from where a stone takes 0.6 s to fall, in the default picture's sight."""
@@ -23,7 +23,9 @@ def drop_position(shape: Shape, position: Triple, orientation: Quaternion) -> Tr
     return position if y + lowest - FLOOR_Y > STANDING else (x, max(y, DROP_HEIGHT), z)
 
 
-def dropped(scene: Scene, shape: Shape) -> Scene:
-    """The scene with its stone where it falls from."""
-    placed = scene.stones[0]
-    return scene.moved(drop_position(shape, placed.position, placed.orientation), placed.orientation)
+def dropped(stage: Stage) -> Stage:
+    """The stage with its stones where they fall from."""
+    return stage.posed(
+        (drop_position(shape, stone.position, stone.orientation), stone.orientation)
+        for stone, shape in zip(stage.scene.stones, stage.shapes, strict=True)
+    )

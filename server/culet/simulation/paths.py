@@ -16,10 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError, SceneError, TooLargeError
-from culet.geometry.shape import Shape
-from culet.scene.model import Scene
 from culet.simulation.simulation import Simulation
-from culet.simulation.surfaces import surfaces_of
+from culet.stage import Stage
 
 MAX_STEPS = 500_000
 """Over an hour at the default 120 steps a second. Each recorded step takes about 1 kB while it is turned into text."""
@@ -77,16 +75,16 @@ class Path:
         return table
 
 
-def record(scene: Scene, shape: Shape, seconds: float, progress: Progress | None = None) -> Path:
-    """Let the scene's stone move for `seconds`, in whole steps.
+def record(stage: Stage, seconds: float, progress: Progress | None = None) -> Path:
+    """Let the stage's stone move for `seconds`, in whole steps.
 
     SceneError if the scene has no stone, InputError for a time that is none, TooLargeError beyond MAX_STEPS.
     """
+    scene = stage.scene
     if not scene.stones:
         raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
     count = _whole_steps(seconds, scene.simulation.time_step)
-    placed = scene.stones[0]
-    simulation = Simulation(scene.simulation, shape, placed.position, placed.orientation, surfaces_of(scene))
+    simulation = Simulation.of(stage)
     path = _empty_path(scene.simulation.model_dump(mode="json"), count + 1)
     for index in range(count + 1):
         if index:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, Self
 
 from culet.errors import InputError
 from culet.geometry.shape import Shape
@@ -17,7 +17,8 @@ from culet.simulation.motion import Motion, speed
 from culet.simulation.rotation import normalised, slerp
 from culet.simulation.snapshot import read_snapshot, write_snapshot
 from culet.simulation.state import Quaternion, RigidState, Touch, Triple
-from culet.simulation.surfaces import FLOOR, Surface
+from culet.simulation.surfaces import FLOOR, Surface, surfaces_of
+from culet.stage import Stage
 
 REST: Triple = (0.0, 0.0, 0.0)
 MAX_SPEED = 1e4
@@ -53,6 +54,12 @@ class Simulation:
             orientation = normalised(orientation)
         self._start = _moving_at(settings, self.body, RigidState(0, 0.0, start_position, orientation, REST, REST))
         self.state = self.previous = self._start
+
+    @classmethod
+    def of(cls, stage: Stage) -> Self:
+        """At the start of the stage's stone, between the surfaces of the scene."""
+        scene, (stone,), (shape,) = stage.scene, stage.scene.stones, stage.shapes
+        return cls(scene.simulation, shape, stone.position, stone.orientation, surfaces_of(scene))
 
     @property
     def settled(self) -> bool:

@@ -20,7 +20,7 @@ from culet.rendering.features import Features, features_of
 from culet.rendering.program import FLAGS
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
-from culet.study.cases import CASES, FEATURE_CASES, stone_of_case
+from culet.study.cases import CASES, FEATURE_CASES, stage_of
 from culet.study.provenance import commit, processor
 
 EXACT_CUTOFF, EXACT_BOUNCES = 1e-5, 65536
@@ -99,7 +99,7 @@ def first_sample(renderer: Renderer, scene: Scene, width: int, height: int) -> F
 def measure_features(renderer: Renderer, width: int, height: int, repeats: int) -> Iterator[FeatureCost]:
     """Every feature of FEATURE_CASES, one after the other."""
     for name, (off, on) in FEATURE_CASES.items():
-        without = features_of(off, stone_of_case(off))
+        without = features_of(stage_of(off))
         idle = without.without(name)
         pictures = [
             _picture(renderer, off, width, height),
@@ -136,7 +136,7 @@ def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -
 
 
 def _picture(renderer: Renderer, scene: Scene, width: int, height: int, features: Features | None = None) -> Picture:
-    picture = renderer.picture(scene, stone_of_case(scene), width, height, features=features)
+    picture = renderer.picture(stage_of(scene), width, height, features=features)
     picture.refine()  # the first launch pays for pages and caches
     return picture
 

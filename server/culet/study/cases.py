@@ -6,7 +6,6 @@ from functools import cache
 
 import trimesh
 
-from culet.geometry.load import shape_of
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene.legacy import LEGACY_DEFAULT
@@ -19,6 +18,7 @@ from culet.scene.model import (
     Scene,
     StoneSettings,
 )
+from culet.stage import NOTHING, Library, Stage
 
 _STONE = StoneSettings(material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0))
 
@@ -62,10 +62,9 @@ def ring() -> Shape:
     return shape_from_mesh(torus.export(file_type="obj").encode(), "obj", name="ring.obj")
 
 
-def stone_of_case(scene: Scene) -> Shape:
-    """The stone of one of these scenes."""
-    settings = scene.stones[0]
-    return shape_of(settings, {RING: ring()} if settings.mesh == RING else {})
+def stage_of(scene: Scene) -> Stage:
+    """The stage of one of these scenes."""
+    return Stage.of(scene, Library({RING: ring()}) if scene.stones[0].mesh == RING else NOTHING)
 
 
 BARE = CHECKER.model_copy(

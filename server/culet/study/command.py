@@ -13,13 +13,13 @@ import typer
 
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import opened
-from culet.command.subject import Subject, read_subject
+from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, report_console
 from culet.errors import InputError, SceneError
 
 if TYPE_CHECKING:
+    from culet.stage import Stage
     from culet.study.comparison import Difference
-    from culet.study.frame import Studied
     from culet.study.report import Report
     from culet.study.studies import Effort
 
@@ -58,8 +58,8 @@ def rendering(
     with _errors(), _interruptible(out):
         from culet.study.studies import study_rendering
 
-        subject, effort = _with_stone(read_subject(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
-        _tell(study_rendering(subject, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
+        stage, effort = _with_stone(read_stage(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
+        _tell(study_rendering(stage, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
 
 
 @study_app.command()
@@ -75,8 +75,8 @@ def simulation(
     with _errors(), _interruptible(out):
         from culet.study.studies import study_simulation
 
-        subject = _with_stone(read_subject(scene, preset, mesh))
-        _tell(study_simulation(subject, out, _progress, quick=quick, fresh=fresh), out)
+        stage = _with_stone(read_stage(scene, preset, mesh))
+        _tell(study_simulation(stage, out, _progress, quick=quick, fresh=fresh), out)
 
 
 @study_app.command()
@@ -95,9 +95,9 @@ def streaming(
     with _errors(), _interruptible(out):
         from culet.study.studies import study_streaming
 
-        subject, effort = _with_stone(read_subject(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
+        stage, effort = _with_stone(read_stage(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
         size = effort.width, effort.height
-        _tell(study_streaming(subject, out, _progress, size=size, quick=quick, fresh=fresh), out)
+        _tell(study_streaming(stage, out, _progress, size=size, quick=quick, fresh=fresh), out)
 
 
 @study_app.command()
@@ -145,11 +145,11 @@ def governor(
     from culet.study.governor import described, document, measure, rate_of
 
     with errors_in_one_line():
-        subject, size = read_subject(scene, preset, None, None), (width, height)
-        if subject.stone is None:
+        stage, size = read_stage(scene, preset, None, None), (width, height)
+        if not stage.shapes:
             raise SceneError("stones: expected a scene with a stone, got none: nothing can fall", "stones")
         with opened(out) as file:
-            measured = asyncio.run(measure(subject.scene, seconds, size, exactness))
+            measured = asyncio.run(measure(stage.scene, seconds, size, exactness))
             if file is not None:
                 file.truncate(0)
                 file.write(document(measured, size, rate_of(exactness)) + "\n")
@@ -195,12 +195,10 @@ def headline(
             write_into(into, text)
 
 
-def _with_stone(named: Subject) -> Studied:
-    from culet.study.frame import Studied
-
-    if named.stone is None:
+def _with_stone(stage: Stage) -> Stage:
+    if not stage.shapes:
         raise SceneError("stones: a study needs a stone; the scene has none", "stones")
-    return Studied(named.scene, named.stone, named.panorama)
+    return stage
 
 
 def _effort(width: int | None, height: int | None, *, quick: bool) -> Effort:

@@ -24,6 +24,7 @@ from culet.rendering.features import Geometry, features_of
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from culet.scene.model import Scene, StoneSettings
+from culet.stage import Library, Stage
 
 Array = NDArray[np.float64]
 Settings = Mapping[str, Any]
@@ -42,14 +43,18 @@ LOST = 10
 weights of wavelengths or counted for polarisation). A pixel that cuts more has lost a ray between two facets."""
 
 
+MESH = "extreme"
+"""In place of the id of an upload: the shape of a case."""
+
+
 @dataclass(frozen=True)
 class Extreme:
-    """One case: a stone, a scene without it, and where to look from."""
+    """One case: a shape, a scene without it, and where to look from."""
 
     name: str
-    stone: Callable[[], Shape]
+    shape: Callable[[], Shape]
     settings: Settings = field(default_factory=dict)
-    """Of the stone."""
+    """Of the stone of this shape."""
     scene: Settings = field(default_factory=dict)
     """What else is not as usual."""
     cameras: Callable[[Shape], Iterator[Settings]] | None = None
@@ -94,9 +99,9 @@ def scaled(factor: float) -> Callable[[], Shape]:
     """The brilliant from a file in other units."""
 
     def read() -> Shape:
-        stone = brilliant()
-        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (factor * stone.vertices).tolist()]
-        lines += [f"f {a} {b} {c}" for a, b, c in (stone.triangles + 1).tolist()]
+        shape = brilliant()
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (factor * shape.vertices).tolist()]
+        lines += [f"f {a} {b} {c}" for a, b, c in (shape.triangles + 1).tolist()]
         return shape_from_mesh("\n".join(lines).encode(), "obj", name=f"brilliant x {factor:g}")
 
     return read
@@ -122,34 +127,34 @@ def ball(facets: int) -> Callable[[], Shape]:
     return lambda: shape_from_half_spaces("ball", np.column_stack([normals, np.ones(facets)]))
 
 
-def at_vertices(stone: Shape) -> Iterator[Settings]:
+def at_vertices(shape: Shape) -> Iterator[Settings]:
     """From outside and from the centre at every vertex; the middle of the picture meets it."""
-    for vertex in stone.vertices:
+    for vertex in shape.vertices:
         yield _camera(3 * vertex / np.linalg.norm(vertex) + 0.3, vertex)
         yield _camera(np.zeros(3), vertex)
 
 
-def along_edges(stone: Shape) -> Iterator[Settings]:
+def along_edges(shape: Shape) -> Iterator[Settings]:
     """At the middle of every edge, from outside and from the centre, and along it."""
-    for a, b in stone.vertices[edges_of_facets(stone)[:, :2]]:
+    for a, b in shape.vertices[edges_of_facets(shape)[:, :2]]:
         middle = (a + b) / 2
         yield _camera(3 * middle / np.linalg.norm(middle), middle)
         yield _camera(np.zeros(3), middle)
         yield _camera(a + 2 * (a - b) / np.linalg.norm(a - b), b)
 
 
-def on_facets(stone: Shape) -> Iterator[Settings]:
+def on_facets(shape: Shape) -> Iterator[Settings]:
     """The eye on each facet's plane, above the stone's centre: looking out, in, and along."""
-    for *normal, offset in stone.planes:
+    for *normal, offset in shape.planes:
         eye, out = offset * np.array(normal), np.array(normal)
         across = np.cross(out, np.eye(3)[np.abs(out).argmin()])
         for direction in (out, -out, across):
             yield _camera(eye, eye + direction, fov_degrees=100)
 
 
-def grazing(stone: Shape) -> Iterator[Settings]:
+def grazing(shape: Shape) -> Iterator[Settings]:
     """At 89.9999 degrees from each facet's normal, on the point abreast of the stone's centre."""
-    for *normal, offset in stone.planes:
+    for *normal, offset in shape.planes:
         out = np.array(normal)
         across = np.cross(out, np.eye(3)[np.abs(out).argmin()])
         across /= np.linalg.norm(across)
@@ -222,8 +227,9 @@ _FROM_THE_SIDE: Settings = {"position": [0.7, 1.6, 2.4], "target": [0, 0, 0], "f
 
 def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3) -> Count:
     """Render a case in a mode of MODES, and judge every pixel."""
-    stone = extreme.stone()
-    cameras = extreme.cameras(stone) if extreme.cameras else iter([_FROM_THE_SIDE])
+    shape = extreme.shape()
+    library = Library({MESH: shape})
+    cameras = extreme.cameras(shape) if extreme.cameras else iter([_FROM_THE_SIDE])
     size = (5, 5) if extreme.cameras else (96, 54)
     total = Count()
     for camera in cameras:
@@ -234,14 +240,15 @@ def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3)
                 "environment": {"kind": "constant"},
                 **extreme.scene,
                 "camera": camera,
-                "stones": [{"position": [0, 0, 0], "orientation": [1, 0, 0, 0], **extreme.settings}],
+                "stones": [{"mesh": MESH, "position": [0, 0, 0], "orientation": [1, 0, 0, 0], **extreme.settings}],
                 "optics": {"cutoff": cutoff, "max_bounces": 65536, **MODES[mode]},
             }
         )
-        features = features_of(scene, stone)
+        stage = Stage.of(scene, library)
+        features = features_of(stage)
         if mode == "triangles":
             features = replace(features, geometry=Geometry.MESH)
-        picture = renderer.picture(scene, stone, *size, features=features)
+        picture = renderer.picture(stage, *size, features=features)
         picture.refine()
         pixels, cut = picture.linear().astype(np.float64), picture.cut_map().astype(np.float64)
         total = total.plus(_judged(scene, extreme.brightest, pixels, cut))

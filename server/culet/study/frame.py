@@ -1,26 +1,15 @@
-"""What a study is of, and the picture of it."""
+"""The picture that a study is of."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
-from culet.scene import Scene
-
-
-class Studied(NamedTuple):
-    """What a study is of."""
-
-    scene: Scene
-    stone: Shape
-    panorama: Panorama | None = None
-    """The sky from a file."""
+from culet.stage import Stage
 
 
 class Frame(NamedTuple):
-    """A picture of it."""
+    """A picture of what a study is of."""
 
-    subject: Studied
+    stage: Stage
     width: int
     height: int

@@ -11,15 +11,13 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
-from culet.geometry.load import shape_of
-from culet.geometry.shape import Shape
 from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
-from culet.scene.model import Scene
 from culet.scene.presets import PRESETS, Preset
 from culet.scene.thumbnails import SIZE
 from culet.simulation.drop import dropped
 from culet.simulation.paths import record
+from culet.stage import Stage
 from culet.study.appearance import appearance, colour_parts, stone_mask
 
 WIDE, SQUARE = (1280, 720), (720, 720)
@@ -82,13 +80,11 @@ def size_of(preset: Preset) -> tuple[int, int]:
 
 def picture_of(
     renderer: Renderer, preset: Preset, size: tuple[int, int], samples: int, features: Features | None = None
-) -> tuple[Picture, Shape | None]:
-    """A preset's finished picture, and its stone; `features` asks for another program than its own."""
-    scene = preset.scene
-    stone = shape_of(scene.stones[0], {}) if scene.stones else None
-    picture = renderer.picture(scene, stone, *size, features=features)
+) -> Picture:
+    """A preset's finished picture; `features` asks for another program than its own."""
+    picture = renderer.picture(Stage.of(preset.scene), *size, features=features)
     picture.refine(samples)
-    return picture, stone
+    return picture
 
 
 def shown(
@@ -101,10 +97,10 @@ def shown(
     """At full size, unless another is asked for."""
     size = size or size_of(preset)
     samples = samples or (SPECTRAL_SAMPLES if preset.scene.optics.bands > 3 else SAMPLES)
-    picture, stone = picture_of(renderer, preset, size, samples, features)
+    picture = picture_of(renderer, preset, size, samples, features)
     measures: dict[str, float] = {}
-    if stone is not None and stone.convex:
-        mask = stone_mask(preset.scene, stone, *size)
+    if len(picture.stage.shapes) == 1 and picture.stage.shapes[0].convex:
+        mask = stone_mask(picture.stage, *size)
         measures = {**vars(appearance(picture.rgb(), mask)), **vars(colour_parts(picture.linear(), mask))}
     return Shown(preset, picture.rgb(), measures)
 
@@ -113,17 +109,15 @@ def in_flight(
     renderer: Renderer, preset: Preset, size: tuple[int, int] = POSES_SIZE, features: Features | None = None
 ) -> Mapping[str, float]:
     """Means of the measures over POSES of a tossed stone."""
-    scene: Scene = preset.scene
-    stone = shape_of(scene.stones[0], {})
-    path = record(dropped(scene, stone), stone, max(POSES) + scene.simulation.time_step)
+    stage = Stage.of(preset.scene)
+    path = record(dropped(stage), max(POSES) + stage.scene.simulation.time_step)
     found: list[dict[str, float]] = []
     for seconds in POSES:
         step = int(np.argmin(abs(path.time - seconds)))
         (x, y, z), (a, b, c, d) = path.position[step].tolist(), path.orientation[step].tolist()
-        posed = scene.moved((x, y, z), (a, b, c, d))
-        picture = renderer.picture(posed, stone, *size, features=features)
+        picture = renderer.picture(stage.posed([((x, y, z), (a, b, c, d))]), *size, features=features)
         picture.refine(POSES_SAMPLES)
-        found.append(vars(appearance(picture.rgb(), stone_mask(posed, stone, *size))))
+        found.append(vars(appearance(picture.rgb(), stone_mask(picture.stage, *size))))
     return {name: float(np.mean([measures[name] for measures in found])) for name in found[0]}
 
 
@@ -138,7 +132,7 @@ def make_thumbnails(renderer: Renderer, folder: Path) -> Iterator[Path]:
     """Write each preset's small picture as WebP; yields the files."""
     width, height = (THUMBNAIL_SCALE * side for side in SIZE)
     for preset in PRESETS.values():
-        picture, _ = picture_of(renderer, preset, (width, height), THUMBNAIL_SAMPLES)
+        picture = picture_of(renderer, preset, (width, height), THUMBNAIL_SAMPLES)
         data = io.BytesIO()
         small = PIL.Image.fromarray(picture.rgb()).resize(SIZE, PIL.Image.Resampling.LANCZOS)
         small.save(data, "WEBP", quality=THUMBNAIL_QUALITY, method=6)

@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import NamedTuple
 
-from culet.geometry.shape import Shape
-from culet.rendering.features import Geometry, geometry_of
+from culet.rendering.features import Geometry, features_of
 from culet.scene.model import Optics, Scene
+from culet.stage import Stage
 from culet.study.report import Knob
 
 
@@ -64,9 +64,9 @@ class Setting(NamedTuple):
     """Whether the report shows what it looks like."""
 
 
-def base_knobs(scene: Scene, stone: Shape, lanes: int) -> Knobs:
-    """The scene's own optics, as the server renders a frame that moves: one sample, single precision."""
-    optics = scene.optics
+def base_knobs(stage: Stage, lanes: int) -> Knobs:
+    """The stage's own optics, as the server renders a frame that moves: one sample, single precision."""
+    optics = stage.scene.optics
     return Knobs(
         estimator=optics.estimator,
         end=optics.end,
@@ -76,7 +76,7 @@ def base_knobs(scene: Scene, stone: Shape, lanes: int) -> Knobs:
         polarised=optics.polarised,
         fresnel=optics.fresnel,
         lanes=lanes,
-        geometry="half-spaces" if geometry_of(stone) == Geometry.HULL else "triangles",
+        geometry="half-spaces" if features_of(stage).geometry == Geometry.HULL else "triangles",
     )
 
 

@@ -23,12 +23,11 @@ from typing import Any
 import numpy as np
 
 from culet.engine.governing.governor import Setting
-from culet.geometry.load import shape_of
-from culet.geometry.shape import Shape
 from culet.optics.tone import tone_map
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import Scene
+from culet.stage import Stage
 from culet.study.provenance import provenance
 from culet.study.radiance_error import Image, enlarged, radiance_error
 
@@ -55,10 +54,10 @@ class Measured:
 
 def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> list[Measured]:
     """All settings, by scale, cut-off and bounces."""
-    stone = shape_of(scene.stones[0], {})
-    reference = renderer.picture(_with_optics(scene, REFERENCE_CUTOFF, BOUNCES[0]), stone, *size)
+    stage = Stage.of(scene)
+    reference = renderer.picture(_with_optics(stage, REFERENCE_CUTOFF, BOUNCES[0]), *size)
     reference.refine(REFERENCE_SAMPLES)
-    return _measured(renderer, scene, stone, reference)
+    return _measured(renderer, stage, reference)
 
 
 def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
@@ -101,13 +100,13 @@ def _front(settings: list[Setting], cost: float) -> list[Setting]:
     return rungs
 
 
-def _measured(renderer: Renderer, scene: Scene, stone: Shape, reference: Picture) -> list[Measured]:
+def _measured(renderer: Renderer, stage: Stage, reference: Picture) -> list[Measured]:
     size = reference.width, reference.height
     settings = list(product(SCALES, CUTOFFS, BOUNCES))
     ratios: list[list[float]] = [[] for _ in settings]
-    pictures = [_draw(renderer, scene, stone, size, *setting)[1] for setting in settings]  # which pays for the compiler
+    pictures = [_draw(renderer, stage, size, *setting)[1] for setting in settings]  # which pays for the compiler
     for _ in range(TURNS):
-        seconds = [_draw(renderer, scene, stone, size, *setting)[0] for setting in settings]
+        seconds = [_draw(renderer, stage, size, *setting)[0] for setting in settings]
         for taken, of_setting in zip(seconds, ratios, strict=True):
             of_setting.append(taken / seconds[0])
     truth = reference.linear(), tone_map(reference.linear())
@@ -119,12 +118,12 @@ def _measured(renderer: Renderer, scene: Scene, stone: Shape, reference: Picture
 
 
 def _draw(
-    renderer: Renderer, scene: Scene, stone: Shape, size: tuple[int, int], scale: float, cutoff: float, bounces: int
+    renderer: Renderer, stage: Stage, size: tuple[int, int], scale: float, cutoff: float, bounces: int
 ) -> tuple[float, tuple[Image, Image]]:
     """Processor's seconds; radiance and shown."""
     width, height = round(size[0] * scale), round(size[1] * scale)
     start = time.process_time()
-    picture = renderer.picture(_with_optics(scene, cutoff, bounces), stone, width, height)
+    picture = renderer.picture(_with_optics(stage, cutoff, bounces), width, height)
     picture.refine()
     seconds = time.process_time() - start
     linear = picture.linear()
@@ -135,9 +134,9 @@ def _error(image: Image, truth: Image) -> float:
     return radiance_error(enlarged(image, *truth.shape[:2]), truth)["rmse"]
 
 
-def _with_optics(scene: Scene, cutoff: float, bounces: int) -> Scene:
-    optics = scene.optics.model_copy(update={"cutoff": cutoff, "max_bounces": bounces})
-    return scene.model_copy(update={"optics": optics})
+def _with_optics(stage: Stage, cutoff: float, bounces: int) -> Stage:
+    optics = stage.scene.optics.model_copy(update={"cutoff": cutoff, "max_bounces": bounces})
+    return stage.showing(stage.scene.model_copy(update={"optics": optics}))
 
 
 def main() -> None:

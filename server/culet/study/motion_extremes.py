@@ -47,7 +47,7 @@ class Extreme:
 
     name: str
     settings: Mapping[str, Any] = field(default_factory=dict)
-    stone: Callable[[], Shape] = brilliant
+    shape: Callable[[], Shape] = brilliant
     position: Triple = (0.0, 1.5, 0.0)
     orientation: Quaternion = TILT
     surfaces: tuple[Surface, ...] = ROOM
@@ -57,11 +57,11 @@ class Extreme:
 
     def begun(self) -> Simulation:
         """At the start."""
-        stone, (x, y, z) = self.stone(), self.position
+        shape, (x, y, z) = self.shape(), self.position
         if self.on_floor:
-            y = FLOOR.offset - min(rotate(self.orientation, (a, b, c))[1] for a, b, c in stone.vertices.tolist())
+            y = FLOOR.offset - min(rotate(self.orientation, (a, b, c))[1] for a, b, c in shape.vertices.tolist())
         settings = Settings.model_validate(self.settings)
-        return Simulation(settings, stone, (x, y, z), self.orientation, self.surfaces)
+        return Simulation(settings, shape, (x, y, z), self.orientation, self.surfaces)
 
 
 @dataclass(frozen=True)
@@ -109,13 +109,13 @@ EXTREMES = (
     Extreme("spin 1e9 rad/s", {"spin": (1e9, 1e9, -1e9)}),
     Extreme("thrown at a wall, 1e4 R/s", {"velocity": (0, 0, -1e4)}),
     Extreme("thrown, 1e9 R/s", {"velocity": (1e9, -1e9, -1e9)}),
-    Extreme("needle, 1000 : 1", stone=box(1, 1e-3, 1e-3)),
+    Extreme("needle, 1000 : 1", shape=box(1, 1e-3, 1e-3)),
     Extreme("needle, 1000 : 1, restitution 1", {"restitution": 1}, box(1, 1e-3, 1e-3)),
-    Extreme("wafer, 1000 : 1", stone=box(1, 1e-3, 1)),
+    Extreme("wafer, 1000 : 1", shape=box(1, 1e-3, 1)),
     Extreme("wafer, 1000 : 1, restitution 1", {"restitution": 1}, box(1, 1e-3, 1)),
-    Extreme("tetrahedron", stone=tetrahedron),
+    Extreme("tetrahedron", shape=tetrahedron),
     Extreme("tetrahedron, restitution 1", {"restitution": 1}, tetrahedron),
-    Extreme("near-sphere, 2000 vertices", stone=ball(1002)),
+    Extreme("near-sphere, 2000 vertices", shape=ball(1002)),
     Extreme("near-sphere, 2000 vertices, restitution 1", {"restitution": 1}, ball(1002)),
     Extreme("start 1 R below the floor, at rest", {"spin": (0, 0, 0)}, position=(0.0, -2.0, 0.0)),
     Extreme(

@@ -52,12 +52,12 @@ class End(NamedTuple):
     momentum_scale: tuple[float, float]
 
 
-def motions_of(stone: Shape) -> Iterator[tuple[Motion, Callable[[str], End]]]:
+def motions_of(shape: Shape) -> Iterator[tuple[Motion, Callable[[str], End]]]:
     """Each motion, and where it ends by the name of the model."""
     flight = Motion("flight", 2.0, (0.0, 100.0, 0.0), IDENTITY, {"spin": (0.5, 3, 1), "velocity": (1, 2, -0.5)})
-    yield flight, lambda _: _flight_end(flight, stone)
-    lying = flat_orientation(stone)
-    half_height = float(-_heights(stone, lying).min())
+    yield flight, lambda _: _flight_end(flight, shape)
+    lying = flat_orientation(shape)
+    half_height = float(-_heights(shape, lying).min())
     bounce = Motion(
         "bounce",
         23 / 15,
@@ -74,16 +74,16 @@ def motions_of(stone: Shape) -> Iterator[tuple[Motion, Callable[[str], End]]]:
     drop = Motion(
         "drop", 1.0, (0.0, 0.5, 0.0), (0.93670, 0.33047, 0.0, 0.11566), {"spin": (0.5, 3, 0), "random_torque": 0}
     )
-    yield drop, lambda _: _drop_end(drop, stone)
+    yield drop, lambda _: _drop_end(drop, shape)
 
 
-def flat_orientation(stone: Shape) -> Quaternion:
+def flat_orientation(shape: Shape) -> Quaternion:
     """The stone turned so that the facet with the largest area is its lowest."""
-    areas = np.zeros(len(stone.planes))
-    corners = stone.vertices[stone.triangles]
+    areas = np.zeros(len(shape.planes))
+    corners = shape.vertices[shape.triangles]
     doubled = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    np.add.at(areas, stone.facet_of_triangle, doubled)
-    x, y, z = stone.planes[int(areas.argmax()), :3].tolist()
+    np.add.at(areas, shape.facet_of_triangle, doubled)
+    x, y, z = shape.planes[int(areas.argmax()), :3].tolist()
     if y > 1 - 1e-12:
         return (0.0, 1.0, 0.0, 0.0)
     # the half-way quaternion from the normal n to -e_y is (1 - n.y, n x -e_y), normalised
@@ -92,8 +92,8 @@ def flat_orientation(stone: Shape) -> Quaternion:
     return w, a, b, c
 
 
-def _heights(stone: Shape, orientation: Quaternion) -> NDArray[np.float64]:
-    return np.array([rotate(orientation, tuple(vertex))[1] for vertex in stone.vertices.tolist()])
+def _heights(shape: Shape, orientation: Quaternion) -> NDArray[np.float64]:
+    return np.array([rotate(orientation, tuple(vertex))[1] for vertex in shape.vertices.tolist()])
 
 
 def settings_of(motion: Motion, knobs: dict[str, Knob]) -> Settings:
@@ -101,13 +101,13 @@ def settings_of(motion: Motion, knobs: dict[str, Knob]) -> Settings:
     return Settings.model_validate({**motion.fixed, **{k: v for k, v in knobs.items() if v is not None}})
 
 
-def started(motion: Motion, stone: Shape, knobs: dict[str, Knob]) -> Simulation:
+def started(motion: Motion, shape: Shape, knobs: dict[str, Knob]) -> Simulation:
     """The stone at the motion's start."""
-    return Simulation(settings_of(motion, knobs), stone, motion.position, motion.orientation)
+    return Simulation(settings_of(motion, knobs), shape, motion.position, motion.orientation)
 
 
-def _flight_end(motion: Motion, stone: Shape) -> End:
-    simulation = started(motion, stone, {"model": "rigid"})
+def _flight_end(motion: Motion, shape: Shape) -> End:
+    simulation = started(motion, shape, {"model": "rigid"})
     body, state, g = simulation.body, simulation.state, simulation.settings.gravity
     t = motion.seconds
     velocity = np.array(body.velocity(state))
@@ -163,8 +163,8 @@ def _slide_end(motion: Motion) -> End:
     )
 
 
-def _drop_end(motion: Motion, stone: Shape) -> End:
-    simulation = started(motion, stone, {"model": "rigid", **REFERENCE_STEP})
+def _drop_end(motion: Motion, shape: Shape) -> End:
+    simulation = started(motion, shape, {"model": "rigid", **REFERENCE_STEP})
     start = simulation.energy()
     while simulation.state.time < motion.seconds - 1e-9:
         simulation.step()

@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from culet.scene.model import GradientEnvironment, Plane, Scene
 from culet.scene.studio import StudioEnvironment
+from culet.stage import Stage
 
 Array = NDArray[np.float64]
 Settings = Mapping[str, Any]
@@ -138,7 +138,7 @@ def _spread(values: Array) -> Array:
 
 
 def _radiance(renderer: Renderer, scene: Scene, size: tuple[int, int]) -> Array:
-    picture = renderer.picture(scene, shape_of(scene.stones[0], {}), *size)
+    picture = renderer.picture(Stage.of(scene), *size)
     picture.refine()
     return picture.linear().astype(np.float64)
 

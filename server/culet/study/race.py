@@ -17,11 +17,11 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from culet.geometry.load import shape_of
 from culet.scene.model import GradientEnvironment, Optics, Plane
+from culet.stage import Stage
 from culet.study.cases import CHECKER
 from culet.study.convergence import resting_error, time_to
-from culet.study.frame import Frame, Studied
+from culet.study.frame import Frame
 from culet.study.knobs import base_knobs
 from culet.study.mitsuba import LEAST_LLVM, SAMPLERS
 from culet.study.radiance_error import radiance_error
@@ -63,7 +63,7 @@ NO_LLVM = (
 
 def race_frame(width: int, height: int) -> Frame:
     """The race's picture."""
-    return Frame(Studied(RACE, shape_of(RACE.stones[0], {})), width, height)
+    return Frame(Stage.of(RACE), width, height)
 
 
 def run_culet(
@@ -74,8 +74,8 @@ def run_culet(
     Several pictures take turns, and the median of their times counts: the whole run is so short that anything else on
     the machine would be seen in it.
     """
-    scene = frame.subject.scene.model_copy(update={"optics": ENTRANTS[name]})
-    knobs = base_knobs(scene, frame.subject.stone, renderers.device.lanes)
+    scene = frame.stage.scene.model_copy(update={"optics": ENTRANTS[name]})
+    knobs = base_knobs(frame.stage.showing(scene), renderers.device.lanes)
     renderers.picture(knobs, frame).refine(1)  # compiles
     pictures = [renderers.picture(knobs, frame) for _ in range(TURNS)]
     taken = processor = 0.0
@@ -102,11 +102,11 @@ def run_mitsuba(
 
     Returns the points of each sampler that came to its end, and what went wrong with the others.
     """
-    scene, stone, _ = frame.subject
+    scene, (shape,) = frame.stage.scene, frame.stage.shapes
     camera, material = scene.camera, scene.stones[0].material
     with tempfile.TemporaryDirectory() as folder:
         mesh, image = Path(folder) / "stone.ply", Path(folder) / "reference.npy"
-        trimesh.Trimesh(stone.vertices, stone.triangles, process=False).export(mesh)
+        trimesh.Trimesh(shape.vertices, shape.triangles, process=False).export(mesh)
         np.save(image, reference)
         order = {
             "stone": str(mesh), "reference": str(image), "ior": list(getattr(material, "ior")), "spp": spp,  # noqa: B009

@@ -113,14 +113,15 @@ def make_reference(
 
 def _digest(device: Device, frame: Frame, knobs: Knobs, samples: int, *, steps: bool) -> str:
     digest = hashlib.sha256()
-    scene, stone, panorama = frame.subject
-    optics = knobs.applied_to(scene).model_dump_json(exclude={"film", "simulation"})
+    stage = frame.stage
+    optics = knobs.applied_to(stage.scene).model_dump_json(exclude={"film", "simulation"})
     facts = (
         optics, knobs.key, frame.width, frame.height, samples, steps, device.name, device.driver,
         code_digest(REFERENCE_CODE),
     )  # fmt: skip
     digest.update(repr(facts).encode())
-    for array in (stone.vertices, stone.triangles, *(() if panorama is None else (panorama,))):
+    surfaces = [array for shape in stage.shapes for array in (shape.vertices, shape.triangles)]
+    for array in (*surfaces, *(() if stage.panorama is None else (stage.panorama,))):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:32]
 

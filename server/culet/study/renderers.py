@@ -38,13 +38,13 @@ class Renderers:
 
     def picture(self, knobs: Knobs, frame: Frame) -> Picture:
         """An empty picture with these knobs; compiles what it needs."""
-        scene, stone, panorama = frame.subject
+        stage = frame.stage.showing(knobs.applied_to(frame.stage.scene))
         if knobs.geometry == "triangles":
-            stone = replace(stone, convex=False)
+            stage = replace(stage, shapes=tuple(replace(shape, convex=False) for shape in stage.shapes))
         with compiled_with(program.FLAGS if knobs.relaxed_maths else PRECISE_FLAGS):
             renderer = self._renderer(knobs)
             columns, rows = (max(1, round(knobs.scale * length)) for length in (frame.width, frame.height))
-            return renderer.picture(knobs.applied_to(scene), stone, columns, rows, panorama=panorama)
+            return renderer.picture(stage, columns, rows)
 
     def _renderer(self, knobs: Knobs) -> Renderer:
         key = knobs.precision, knobs.lanes, knobs.relaxed_maths

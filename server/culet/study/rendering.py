@@ -104,12 +104,12 @@ def measure(
     }
     for name, reference in (("model", judges.model), ("physics", judges.physics)):
         figures |= {f"{kind}_{name}": value for kind, value in radiance_error(image, reference.image).items()}
-        figures[f"delta_e_{name}"] = colour_difference(image, reference.image, frame.subject.scene.film)
+        figures[f"delta_e_{name}"] = colour_difference(image, reference.image, frame.stage.scene.film)
     same_samples = judges.model.images.get(knobs.samples) if knobs.scale == 1 else None
     paired = radiance_error(image, same_samples) if same_samples is not None else dict.fromkeys(("rmse", "max", "bias"))
     figures |= {f"{kind}_paired": value for kind, value in paired.items()}
     if setting.pictured:
-        write_pictures(pictures, knobs.key, np.nan_to_num(image), judges.model.image, frame.subject.scene.film)
+        write_pictures(pictures, knobs.key, np.nan_to_num(image), judges.model.image, frame.stage.scene.film)
     return Point(
         key=knobs.key,
         group=setting.group,

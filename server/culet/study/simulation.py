@@ -47,18 +47,18 @@ DEFAULTS = Settings()
 """What a scene has that says nothing of it."""
 
 
-def measure_all(stone: Shape, journal: Journal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
+def measure_all(shape: Shape, journal: Journal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
     """Every point that the journal lacks."""
-    for done, (key, run) in enumerate(points_of(stone, quick=quick)):
+    for done, (key, run) in enumerate(points_of(shape, quick=quick)):
         progress(key, done)
         if key not in journal:
             journal.add(run())
 
 
-def points_of(stone: Shape, *, quick: bool) -> list[tuple[str, Callable[[], Point]]]:
+def points_of(shape: Shape, *, quick: bool) -> list[tuple[str, Callable[[], Point]]]:
     """Key of each point and how to measure it."""
     repeats = 2 if quick else 5
-    return [*_rotations(stone, repeats, quick=quick), *_motions(stone, repeats, quick=quick)]
+    return [*_rotations(shape, repeats, quick=quick), *_motions(shape, repeats, quick=quick)]
 
 
 def fits_of(points: list[Point]) -> list[Fit]:
@@ -74,8 +74,8 @@ def fits_of(points: list[Point]) -> list[Fit]:
     return fits
 
 
-def _rotations(stone: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
-    shaped = replace(stone, mass=MassProperties(stone.mass.volume, np.diag(TOP_MOMENTS)))
+def _rotations(shape: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
+    shaped = replace(shape, mass=MassProperties(shape.mass.volume, np.diag(TOP_MOMENTS)))
     body = RigidBody.of(Settings(mass=1), shaped)
     momentum = body.angular_momentum(IDENTITY, TOP_SPIN)
     truth: list[Quaternion] = []
@@ -105,8 +105,8 @@ def _rotations(stone: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str
             yield _key("rotation", knobs), run
 
 
-def _motions(stone: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
-    for motion, truth_of in motions_of(stone):
+def _motions(shape: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, Callable[[], Point]]]:
+    for motion, truth_of in motions_of(shape):
         truth: list[End] = []
         for knobs in _variants(motion.name, quick=quick):
 
@@ -117,10 +117,10 @@ def _motions(stone: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, 
                 knobs: dict[str, Knob] = knobs,
             ) -> Point:
                 if motion.name == "bounce":  # the models land on different bodies: the hull, or its sphere
-                    return _run(motion, stone, knobs, truth_of(str(knobs["model"])), repeats)
+                    return _run(motion, shape, knobs, truth_of(str(knobs["model"])), repeats)
                 if not truth:
                     truth.append(truth_of("rigid"))
-                return _run(motion, stone, knobs, truth[0], repeats)
+                return _run(motion, shape, knobs, truth[0], repeats)
 
             yield _key(motion.name, knobs), run
 
@@ -149,9 +149,9 @@ def _variants(name: str, *, quick: bool) -> Iterator[dict[str, Knob]]:
                 yield {"model": model, "time_step": step}
 
 
-def _run(motion: Motion, stone: Shape, knobs: dict[str, Knob], truth: End, repeats: int) -> Point:
+def _run(motion: Motion, shape: Shape, knobs: dict[str, Knob], truth: End, repeats: int) -> Point:
     seconds: list[float] = []
-    simulation = started(motion, stone, knobs)
+    simulation = started(motion, shape, knobs)
     for _ in range(repeats):
         simulation.reset()
         start = time.process_time()

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from culet.rendering.renderer import Renderer
 from culet.simulation.simulation import Simulation
-from culet.simulation.surfaces import surfaces_of
-from culet.study.frame import Studied
+from culet.stage import Stage
 from culet.study.image_error import mean_ciede2000, structural_similarity
 from culet.study.journal import Journal
 from culet.study.report import Figure, Knob, Point
@@ -84,22 +83,18 @@ def _by_pillow(name: str, knobs: dict[str, Knob], format_: str, **options: objec
     return Codec(name, knobs, encode, decode)
 
 
-def frames(renderer: Renderer, subject: Studied, width: int, height: int) -> dict[str, list[Frame]]:
-    """`moving`: one sample of the falling stone at several times; `still`: the scene as it is at rest."""
-    scene, stone, panorama = subject
-    placed = scene.stones[0]
-    simulation = Simulation(scene.simulation, stone, placed.position, placed.orientation, surfaces_of(scene))
+def frames(renderer: Renderer, stage: Stage, width: int, height: int) -> dict[str, list[Frame]]:
+    """`moving`: one sample of the falling stone at several times; `still`: the stage as it is at rest."""
+    simulation = Simulation.of(stage)
     moving = []
     for number in range(MOVING_FRAMES):
         while simulation.state.time < number * SECONDS_APART - 1e-9:
             simulation.step()
         state = simulation.state
-        picture = renderer.picture(
-            scene.moved(state.position, state.orientation), stone, width, height, panorama=panorama
-        )
+        picture = renderer.picture(stage.posed([(state.position, state.orientation)]), width, height)
         picture.refine()
         moving.append(picture.rgb())
-    picture = renderer.picture(scene, stone, width, height, panorama=panorama)
+    picture = renderer.picture(stage, width, height)
     picture.refine(STILL_SAMPLES)
     return {"moving": moving, "still": [picture.rgb()]}
 

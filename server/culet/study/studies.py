@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
+from culet.stage import Stage
 from culet.study import race, rendering, simulation, streaming
-from culet.study.frame import Frame, Studied
+from culet.study.frame import Frame
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.limits import measure_limits
@@ -63,7 +64,7 @@ FULL = Effort(640, 360, 1024, 192, 25, 1024, 15.0, 16)
 
 
 def study_rendering(
-    subject: Studied,
+    stage: Stage,
     out: Path,
     progress: Progress,
     *,
@@ -79,15 +80,15 @@ def study_rendering(
     """
     device = open_device()
     renderers = Renderers(device)
-    scene, stone, _ = subject
-    frame = Frame(subject, effort.width, effort.height)
-    base = base_knobs(scene, stone, device.lanes)
+    scene = stage.scene
+    frame = Frame(stage, effort.width, effort.height)
+    base = base_knobs(stage, device.lanes)
     settings = [
         setting
         for setting in settings_of(base, quick=quick)
         if groups is None or setting.group == "base" or setting.group in groups
     ]
-    identity = _identity("rendering", subject, quick, code_digest(RENDERING_STUDY), device) | effort._asdict()
+    identity = _identity("rendering", stage, quick, code_digest(RENDERING_STUDY), device) | effort._asdict()
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         references = []
         for kind, samples in (("model", effort.model_samples), ("physics", effort.physics_samples)):
@@ -115,7 +116,8 @@ def study_rendering(
         report = rendering_report(
             scene.model_dump(mode="json"),
             {"width": effort.width, "height": effort.height, "quick": quick, "repeats": effort.repeats},
-            device_facts(device), list(journal.points.values()), base, limits, len(stone.planes), notes,
+            device_facts(device), list(journal.points.values()), base, limits,
+            sum(len(shape.planes) for shape in stage.shapes), notes,
         )  # fmt: skip
     write(report, out)
     return report
@@ -145,7 +147,7 @@ def _run_race(
         return []
     frame = race.race_frame(effort.width, effort.height)
     lanes = renderers.device.lanes
-    base = replace(base_knobs(frame.subject.scene, frame.subject.stone, lanes), cutoff=1e-6)
+    base = replace(base_knobs(frame.stage, lanes), cutoff=1e-6)
     with progress("reference of the race", effort.race_samples) as advance:
         reference = make_reference(
             renderers, frame, reference_knobs(base, "model", lanes // 2 or 1), effort.race_samples,
@@ -172,13 +174,13 @@ def _run_race(
     return notes if find_llvm() else [*notes, race.NO_LLVM]
 
 
-def study_simulation(subject: Studied, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
+def study_simulation(stage: Stage, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
     """Sweep integrators and step sizes on the scene's stone."""
-    scene, stone, _ = subject
-    identity = _identity("simulation", subject, quick, code_digest(SIMULATION_STUDY))
+    scene, (shape,) = stage.scene, stage.shapes
+    identity = _identity("simulation", stage, quick, code_digest(SIMULATION_STUDY))
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
-        with progress("motions", len(simulation.points_of(stone, quick=quick))) as advance:
-            simulation.measure_all(stone, journal, quick=quick, progress=advance)
+        with progress("motions", len(simulation.points_of(shape, quick=quick))) as advance:
+            simulation.measure_all(shape, journal, quick=quick, progress=advance)
         points = list(journal.points.values())
     report = simulation_report(scene.model_dump(mode="json"), {"quick": quick}, points)
     write(report, out)
@@ -186,33 +188,33 @@ def study_simulation(subject: Studied, out: Path, progress: Progress, *, quick: 
 
 
 def study_streaming(
-    subject: Studied, out: Path, progress: Progress, *, size: tuple[int, int], quick: bool, fresh: bool = False
+    stage: Stage, out: Path, progress: Progress, *, size: tuple[int, int], quick: bool, fresh: bool = False
 ) -> Report:
     """Sweep codecs and qualities on the scene's frames, moving and still."""
     device = open_device()
     width, height = size
-    identity = _identity("streaming", subject, quick, code_digest(STREAMING_STUDY), device)
+    identity = _identity("streaming", stage, quick, code_digest(STREAMING_STUDY), device)
     identity |= {"width": width, "height": height}
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("frames", 1):
-            shown = streaming.frames(Renderer(device), subject, width, height)
+            shown = streaming.frames(Renderer(device), stage, width, height)
         with progress("codecs", len(streaming.settings_of(quick=quick))) as advance:
             streaming.measure_all(shown, journal, quick=quick, progress=advance)
         points = list(journal.points.values())
     settings = {"width": width, "height": height, "quick": quick}
-    report = streaming_report(subject.scene.model_dump(mode="json"), dict(settings), device_facts(device), points)
+    report = streaming_report(stage.scene.model_dump(mode="json"), dict(settings), device_facts(device), points)
     write(report, out)
     return report
 
 
-def _identity(study: str, subject: Studied, quick: bool, code: str, device: Device | None = None) -> dict[str, object]:
+def _identity(study: str, stage: Stage, quick: bool, code: str, device: Device | None = None) -> dict[str, object]:
     """What must be the same for points to belong together."""
-    scene, stone, panorama = subject
-    shape = hashlib.sha256(stone.vertices.tobytes() + stone.triangles.tobytes())
-    sky = None if panorama is None else hashlib.sha256(panorama.tobytes()).hexdigest()[:16]
-    text = hashlib.sha256(scene.model_dump_json().encode())
+    surfaces = b"".join(shape.vertices.tobytes() + shape.triangles.tobytes() for shape in stage.shapes)
+    shapes = hashlib.sha256(surfaces).hexdigest()[:16]
+    sky = None if stage.panorama is None else hashlib.sha256(stage.panorama.tobytes()).hexdigest()[:16]
+    text = hashlib.sha256(stage.scene.model_dump_json().encode())
     return {
-        "study": study, "scene": text.hexdigest()[:16], "stone": shape.hexdigest()[:16], "sky": sky,
+        "study": study, "scene": text.hexdigest()[:16], "stone": shapes, "sky": sky,
         "quick": quick, "processor": processor(), "code": code, "packages": peer_versions(),
         **({} if device is None else device_facts(device)),
     }  # fmt: skip

@@ -11,8 +11,8 @@ import pytest
 from culet.engine.governing.governor import ERRORS, read_ladder
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
-from culet.geometry.load import shape_of
 from culet.scene import Scene
+from culet.stage import Stage
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Balance
 from engine.peer import PATIENCE, EngineProcess, Watcher, connected
@@ -100,7 +100,7 @@ async def test_a_balance_out_of_range_is_refused_by_name(engine: EngineProcess, 
 
 def test_another_engine_goes_on_with_the_balance() -> None:
     scene = Scene()
-    session = Session("0" * 32, scene, shape_of(scene.stones[0], {}))
+    session = Session("0" * 32, Stage.of(scene))
     session.balance = Balance(exactness=0.75, pinned=True)
     snapshot = Snapshot.read(json.loads(session.snapshot().model_dump_json()))
-    assert Session.restored("0" * 32, scene, session.stone, snapshot).balance == session.balance
+    assert Session.restored("0" * 32, session.stage, snapshot).balance == session.balance

@@ -15,7 +15,7 @@ from culet.errors import InputError, MeshError, TooLargeError
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.memory_file import memory_file
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.sky_files.picture import SkyPicture
 from engine.peer import TETRAHEDRON
 
 STONE = shape_from_mesh(TETRAHEDRON, "off", name="t\udcff")

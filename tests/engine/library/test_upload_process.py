@@ -17,9 +17,9 @@ from culet.engine.library.upload_answer import TooLittleMemoryError
 from culet.engine.library.upload_process import Room, read_upload
 from culet.engine.process.limits import Limits
 from culet.errors import InputError, MeshError, TooLargeError
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.sky_files.picture import SkyPicture
 from engine.peer import TETRAHEDRON
-from rendering.sky_files.writers import chunk
+from optics.sky_files.writers import chunk
 
 FULL = Room(2**30, full=True)
 

@@ -21,10 +21,9 @@ from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.session.session import Session
 from culet.engine.session.viewpoint import orbit
-from culet.geometry.load import shape_of
-from culet.geometry.shape import Shape
 from culet.optics.panoramas import Panorama
 from culet.scene import Scene
+from culet.stage import Stage
 from culet_protocol.messages import Balance
 
 WANTED = 1280, 800
@@ -61,8 +60,7 @@ class World:
         self.samples = 0
         """Of the picture that got some last."""
         scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
-        stone = shape_of(scene.stones[0], {}) if with_stone else None
-        self.session = Session("0" * 32, scene, stone)
+        self.session = Session("0" * 32, Stage.of(scene))
         self.events: list[float] = []
         """When the camera turns a little."""
 
@@ -72,18 +70,17 @@ class World:
         while self.events and self.events[0] <= self.now:
             self.events.pop(0)
             scene = self.session.scene
-            self.session.change(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
+            self.session.change(
+                self.session.stage.showing(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
+            )
 
-    def picture(
-        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
-    ) -> TimedPicture:
-        del stone, panorama
-        return TimedPicture(self, scene, (width, height))
+    def picture(self, stage: Stage, width: int, height: int) -> TimedPicture:
+        return TimedPicture(self, stage.scene, (width, height))
 
-    def is_ready(self, scene: Scene, stone: Shape | None) -> bool:
+    def is_ready(self, stage: Stage) -> bool:
         return True
 
-    def make_ready(self, scene: Scene, stone: Shape | None) -> None:
+    def make_ready(self, stage: Stage) -> None:
         """There is nothing to be made."""
 
     def describe(self) -> dict[str, str]:
@@ -347,11 +344,9 @@ class Crowd(World):
         super().__init__(full_seconds, with_stone=True)
         self.other = World(other_seconds, with_stone=True)
 
-    def picture(
-        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
-    ) -> TimedPicture:
-        world = self.other if scene.floor.kind == "none" else self
-        picture = TimedPicture(world, scene, (width, height))
+    def picture(self, stage: Stage, width: int, height: int) -> TimedPicture:
+        world = self.other if stage.scene.floor.kind == "none" else self
+        picture = TimedPicture(world, stage.scene, (width, height))
         picture.clock = self
         return picture
 
@@ -361,7 +356,7 @@ async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_i
     rates = []
     for company in (False, True):
         world = Crowd(100 * SLOW, 0.02 / LADDER_SHARE)
-        cheap = Session("1" * 32, Scene.read(WAKEFUL), world.session.stone)
+        cheap = Session("1" * 32, Stage.of(Scene.read(WAKEFUL)))
         world.session.balance = Balance(exactness=1, pinned=True)
         with ThreadPoolExecutor(1) as thread:
             painter = Painter(

@@ -12,19 +12,20 @@ from culet.geometry.mesh import shape_from_mesh
 from culet.rendering.renderer import Renderer
 from culet.scene import Light, Scene
 from engine.peer import TETRAHEDRON
+from shared.stages import staged
 
 SCENE = Scene()
 LAMP = Light(position=(1, 2, 3), colour=(1, 1, 1))
-STONE = shape_from_mesh(TETRAHEDRON, "off")
+STAGE = staged(SCENE, shape_from_mesh(TETRAHEDRON, "off"))
 RENDERER = Renderer()
 
 
 def live(*, watched: bool = True, begun_at: float = 0, rate: float = 10) -> LivePicture:
-    return LivePicture(Session("0" * 32, SCENE, STONE), watched=watched, begun_at=begun_at, rate=rate)
+    return LivePicture(Session("0" * 32, STAGE), watched=watched, begun_at=begun_at, rate=rate)
 
 
 def painted(picture: LivePicture, *, final: bool) -> LivePicture:
-    picture.picture = None if final else RENDERER.picture(SCENE, STONE, 16, 16)
+    picture.picture = None if final else RENDERER.picture(STAGE, 16, 16)
     picture.painted, picture.painted_size = picture.session.shown, picture.size
     picture.state = State.FINAL if final else State.FULL
     picture.message, picture.sent_at = b"frame", 0
@@ -85,7 +86,7 @@ def test_a_reduced_picture_is_drawn_in_full_when_things_have_settled() -> None:
 
 def test_a_change_a_new_size_or_motion_make_it_due_again() -> None:
     changed, resized, falling = (painted(live(), final=True) for _ in range(3))
-    changed.session.change(SCENE.model_copy(update={"lights": (LAMP,)}))
+    changed.session.change(STAGE.showing(SCENE.model_copy(update={"lights": (LAMP,)})))
     resized.size = (32, 32)
     falling.session.set_falling(True)
     for picture in (changed, resized, falling):
@@ -98,7 +99,7 @@ def test_what_could_not_be_rendered_is_tried_again_only_when_it_changed() -> Non
     picture = live()
     picture.refuse(picture.session.shown)
     assert next_of([picture], now=100) is None
-    picture.session.change(SCENE.model_copy(update={"lights": (LAMP,)}))
+    picture.session.change(STAGE.showing(SCENE.model_copy(update={"lights": (LAMP,)})))
     assert next_of([picture], now=100) is picture
 
 
@@ -135,7 +136,7 @@ def test_of_two_frames_the_one_of_who_has_had_less_goes_on() -> None:
 async def test_refinements_and_stills_get_their_smaller_share_beside_a_moving_picture() -> None:
     moving, refining = in_work(live()), painted(live(), final=False)
     stills, shares, now = StillQueue(4, 2**25), Shares(), 100.0
-    still = Still(SCENE, STONE, 16, 16, 1, "tga")
+    still = Still(STAGE, 16, 16, 1, "tga")
     stills.put(still)
     had: dict[int, float] = {}
     for _ in range(7000):

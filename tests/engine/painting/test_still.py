@@ -3,12 +3,13 @@ import pytest
 from culet.engine.painting.still import Still, StillQueue
 from culet.errors import BusyError
 from culet.scene import Scene
+from culet.stage import Stage
 
 LARGEST = 2**20
 
 
 def still(client: str = "", pixels: int = 16) -> Still:
-    return Still(Scene(stones=()), None, pixels, 1, 1, "tga", client=client)
+    return Still(Stage.of(Scene(stones=())), pixels, 1, 1, "tga", client=client)
 
 
 def begun(queue: StillQueue) -> Still | None:

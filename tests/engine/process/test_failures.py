@@ -13,19 +13,17 @@ from typing import Any
 import pytest
 import zmq.asyncio
 
-from culet.engine.library.assets import Assets
 from culet.engine.painting.renderer import Picture
 from culet.engine.process.limits import Limits
 from culet.engine.process.serve import Engine, encode_still
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.errors import DeviceError
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
+from culet.optics.panoramas import Panorama
 from culet.rendering.renderer import Renderer
-from culet.scene import Scene
 from culet.simulation.models import MODELS
 from culet.simulation.state import RigidState
+from culet.stage import Library, Stage
 from culet_protocol.frame import Flags
 from culet_protocol.messages import SessionEvent
 from engine.peer import Peer, Watcher
@@ -40,18 +38,16 @@ class FailingRenderer:
     def __init__(self) -> None:
         self.renderer = Renderer()
 
-    def picture(
-        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
-    ) -> Picture:
-        if scene.environment.kind == "half":
+    def picture(self, stage: Stage, width: int, height: int) -> Picture:
+        if stage.scene.environment.kind == "half":
             raise DeviceError("the kernel does not build")
-        return self.renderer.picture(scene, stone, width, height, panorama=panorama)
+        return self.renderer.picture(stage, width, height)
 
-    def is_ready(self, scene: Scene, stone: Shape | None) -> bool:
-        return self.renderer.is_ready(scene, stone)
+    def is_ready(self, stage: Stage) -> bool:
+        return self.renderer.is_ready(stage)
 
-    def make_ready(self, scene: Scene, stone: Shape | None) -> None:
-        self.renderer.make_ready(scene, stone)
+    def make_ready(self, stage: Stage) -> None:
+        self.renderer.make_ready(stage)
 
     def describe(self) -> Mapping[str, Any]:
         return self.renderer.describe()
@@ -138,9 +134,9 @@ async def test_what_may_take_long_does_not_run_where_all_sessions_are_served(
     threads = []
     apply = events.apply
 
-    def noted(session: Session, event: SessionEvent, assets: Assets) -> None:
+    def noted(session: Session, event: SessionEvent, library: Library) -> None:
         threads.append(threading.current_thread())
-        apply(session, event, assets)
+        apply(session, event, library)
 
     monkeypatch.setattr(events, "apply", noted)
     async with served(tmp_path) as (peer, _):

@@ -13,7 +13,7 @@ import pytest
 
 from culet_protocol.frame import Flags
 from engine.peer import EngineProcess, Peer, connected, running_engine
-from rendering.sky_files.writers import chunk
+from optics.sky_files.writers import chunk
 
 BUDGET = 2**28
 WIDTH = 2880

@@ -5,32 +5,32 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.engine.library.assets import Assets
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import InputError, SceneError
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.sky_files.picture import SkyPicture
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
+from culet.stage import Library, Stage
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent
 
 SKIES = {
     name: SkyPicture(np.full((4, 8, 3), grey, np.float32)) for name, grey in {"sunrise": 0.5, "sunset": 0.25}.items()
 }
-ASSETS = Assets({}, SKIES)
+LIBRARY = Library({}, SKIES)
 
 
 def session(**scene: Any) -> Session:  # noqa: ANN401
     settings = legacy(scene)
-    sky = events.sky_for(settings, None, ASSETS)
-    return Session("0" * 32, settings, events.stone_for(settings, None, ASSETS), sky=sky)
+    stage = Stage.of(settings, LIBRARY)
+    return Session("0" * 32, stage, sky=events.own_sky(stage.sky))
 
 
 def after(subject: Session, *happened: SessionEvent) -> Scene:
     for event in happened:
-        events.apply(subject, event, ASSETS)
+        events.apply(subject, event, LIBRARY)
     return subject.scene
 
 
@@ -118,7 +118,7 @@ def test_the_sky_switches_between_light_and_the_scenes_own(own: dict[str, Any]) 
     before = subject.shown
     assert after(subject, messages.ToggleEnvironment()).environment.kind == "light"
     assert after(subject, messages.ToggleEnvironment()).environment == before.scene.environment
-    assert subject.shown.panorama is before.panorama
+    assert subject.shown.stage.panorama is before.stage.panorama
 
 
 def test_a_scene_that_is_light_itself_switches_to_dark() -> None:
@@ -140,22 +140,22 @@ def test_a_switched_sky_survives_in_another_engine() -> None:
     after(subject, messages.ToggleEnvironment())
     snapshot = Snapshot.read(json.loads(subject.snapshot().model_dump_json()))
     assert snapshot.environment is not None
-    sky = events.own_sky(snapshot.environment, ASSETS)
-    other = Session.restored(subject.name, subject.scene, subject.stone, snapshot, sky=sky)
+    sky = LIBRARY.sky(snapshot.environment)
+    other = Session.restored(subject.name, subject.stage, snapshot, sky=sky)
     assert after(other, messages.ToggleEnvironment()).environment == own
 
 
 def test_a_patched_sky_brings_its_panorama_and_another_edit_keeps_it() -> None:
     subject = session(environment={"kind": "image", "image": "sunrise"})
-    sunrise, sunset = ASSETS.skies["sunrise"].pixels, ASSETS.skies["sunset"].pixels
-    assert subject.shown.panorama is sunrise
+    sunrise, sunset = LIBRARY.skies["sunrise"].pixels, LIBRARY.skies["sunset"].pixels
+    assert subject.shown.stage.panorama is sunrise
     after(subject, messages.PatchScene(patch={"environment": {"image": "sunset"}}))
-    assert subject.shown.panorama is sunset
+    assert subject.shown.stage.panorama is sunset
     after(subject, messages.PatchScene(patch={"environment": {"turn_degrees": 90}}))
     after(subject, messages.ToggleMirror())
-    assert subject.shown.panorama is sunset
+    assert subject.shown.stage.panorama is sunset
     after(subject, messages.SetScene(scene={"environment": {"kind": "image", "image": "sunrise"}}))
-    assert subject.shown.panorama is sunrise
+    assert subject.shown.stage.panorama is sunrise
 
 
 def test_the_stone_falls_pauses_and_goes_back() -> None:

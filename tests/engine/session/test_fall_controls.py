@@ -7,29 +7,27 @@ from typing import Any
 
 import pytest
 
-from culet.engine.library.assets import Assets
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
-from culet.geometry.load import shape_of
-from culet.scene import Scene, StoneSettings
+from culet.scene import Scene
+from culet.stage import NOTHING, Stage
 from culet_protocol.messages import PatchScene
 from engine.peer import EngineProcess, connected
 
-STONE = shape_of(StoneSettings(), {})
 STEP = Scene().simulation.time_step
 DROP: dict[str, Any] = {"stones": [{"position": [0, 1, 0]}]}
 
 
 def falling(scene: dict[str, Any] | None = None) -> Session:
-    session = Session("0" * 32, Scene.read(DROP | (scene or {})), STONE)
+    session = Session("0" * 32, Stage.of(Scene.read(DROP | (scene or {}))))
     session.set_falling(True)
     session.advance(0)
     return session
 
 
 def patch(session: Session, **simulation: object) -> None:
-    events.apply(session, PatchScene(patch={"simulation": simulation}), Assets({}, {}))
+    events.apply(session, PatchScene(patch={"simulation": simulation}), NOTHING)
 
 
 def motion(session: Session) -> Any:  # noqa: ANN401
@@ -129,7 +127,7 @@ def test_a_stone_at_rest_wakes_just_if_the_change_moves_it() -> None:
 @pytest.mark.parametrize("start", [{"simulation": {"spin": [0, 8, 0]}}, {"stones": [{"position": [0, 2, 0]}]}])
 def test_a_stone_that_has_come_to_rest_is_dropped_again_from_another_start(start: dict[str, Any]) -> None:
     session, now = at_rest()
-    events.apply(session, PatchScene(patch=start), Assets({}, {}))
+    events.apply(session, PatchScene(patch=start), NOTHING)
     assert session.moving
     session.advance(now + 1000)
     assert session.shown.simulation_time == 0
@@ -144,7 +142,7 @@ def test_another_engine_goes_on_with_the_settings_of_before() -> None:
     session.advance(0.21)
     patch(session, gravity=3, time_step=1 / 90, model="classic")
     report = json.loads(session.report(edited=True).model_dump_json())
-    other = Session.restored(session.name, Scene.read(report["scene"]), STONE, Snapshot.read(report["snapshot"]))
+    other = Session.restored(session.name, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     assert other.shown.scene == session.shown.scene
     for one in (session, other):
         one.set_falling(True)

@@ -14,6 +14,7 @@ from culet.errors import InputError
 from culet.geometry.load import shape_of
 from culet.scene import Camera, Scene
 from culet.scene.legacy import LEGACY_DEFAULT
+from culet.stage import Stage
 
 SCENE = LEGACY_DEFAULT
 STONE = shape_of(SCENE.stones[0], {})
@@ -50,7 +51,7 @@ def test_a_stone_that_is_not_convex_is_struck_on_its_sphere() -> None:
 
 
 def test_a_push_moves_a_paused_stone_by_that_speed_and_lets_time_go_on() -> None:
-    session = Session("0" * 32, SCENE, STONE)
+    session = Session("0" * 32, Stage.of(SCENE))
     session.push(0, 0, 0.5, 0)  # the camera looks at the stone, and its right is +x
     assert session.moving
     session.advance(100.0)
@@ -63,7 +64,7 @@ def test_a_push_moves_a_paused_stone_by_that_speed_and_lets_time_go_on() -> None
 
 
 def test_a_push_wakes_a_stone_that_rests_without_a_jump_in_time() -> None:
-    session = Session("0" * 32, SCENE, STONE)
+    session = Session("0" * 32, Stage.of(SCENE))
     session.set_falling(True)
     now = 0.0
     while session.moving and now < 60:
@@ -78,7 +79,7 @@ def test_a_push_wakes_a_stone_that_rests_without_a_jump_in_time() -> None:
 
 
 def test_a_push_past_the_stone_changes_nothing() -> None:
-    session = Session("0" * 32, SCENE, STONE)
+    session = Session("0" * 32, Stage.of(SCENE))
     before = session.shown
     session.push(5, 5, 1, 1)
     assert session.shown == before
@@ -87,4 +88,4 @@ def test_a_push_past_the_stone_changes_nothing() -> None:
 
 def test_nothing_can_be_pushed_in_a_scene_without_a_stone() -> None:
     with pytest.raises(InputError, match="nothing can be pushed"):
-        Session("0" * 32, Scene(stones=()), None).push(0, 0, 1, 0)
+        Session("0" * 32, Stage.of(Scene(stones=()))).push(0, 0, 1, 0)

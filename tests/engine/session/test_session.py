@@ -5,18 +5,18 @@ import pytest
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import InputError, NotFoundError
-from culet.geometry.load import shape_of
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.simulation.clock import MOST_WORK, WORK_SHARE
+from culet.stage import Stage
 
 NAME = "0123456789abcdef" * 2
 SCENE = LEGACY_DEFAULT
-STONE = shape_of(SCENE.stones[0], {})
+STAGE = Stage.of(SCENE)
 
 
 def fallen(seconds: float, *, frames: int = 7) -> Session:
-    session = Session(NAME, SCENE, STONE)
+    session = Session(NAME, STAGE)
     session.set_falling(True)
     for frame in range(frames + 1):
         session.advance(100 + seconds * frame / frames)
@@ -24,11 +24,11 @@ def fallen(seconds: float, *, frames: int = 7) -> Session:
 
 
 def test_the_step_grows_by_one_with_every_change_and_only_then() -> None:
-    session = Session(NAME, SCENE, STONE)
+    session = Session(NAME, STAGE)
     first = session.shown
-    session.change(session.scene)
+    session.change(session.stage)
     assert session.shown is first
-    session.change(session.scene.model_copy(update={"lights": ()}))
+    session.change(session.stage.showing(session.scene.model_copy(update={"lights": ()})))
     assert session.shown.step == first.step + 1
     session.advance(5)
     session.advance(6)
@@ -48,7 +48,7 @@ def test_time_is_the_pictures_not_the_last_steps() -> None:
 
 
 def test_a_long_pause_between_frames_is_slow_motion_and_no_leap() -> None:
-    session = Session(NAME, SCENE, STONE)
+    session = Session(NAME, STAGE)
     session.set_falling(True)
     session.advance(0)
     session.advance(1000)
@@ -67,7 +67,7 @@ def test_of_a_stone_that_sleeps_not_even_the_time_shown_goes_on() -> None:
 
 
 def test_what_was_shown_can_be_had_again_until_it_is_forgotten() -> None:
-    session = Session(NAME, SCENE, STONE, history=3)
+    session = Session(NAME, STAGE, history=3)
     session.set_falling(True)
     for frame in range(6):
         session.advance(frame / 60)
@@ -83,9 +83,11 @@ def test_what_was_shown_can_be_had_again_until_it_is_forgotten() -> None:
 
 def test_a_restored_session_shows_the_same_and_moves_on_the_same() -> None:
     session = fallen(0.21)
-    session.change(SCENE.model_copy(update={"camera": SCENE.camera.model_copy(update={"fov_degrees": 20.0})}))
+    session.change(
+        STAGE.showing(SCENE.model_copy(update={"camera": SCENE.camera.model_copy(update={"fov_degrees": 20.0})}))
+    )
     report = json.loads(session.report(edited=True).model_dump_json())
-    restored = Session.restored(NAME, Scene.read(report["scene"]), STONE, Snapshot.read(report["snapshot"]))
+    restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     assert restored.pose() == session.pose()
     assert restored.scene == session.scene
     assert restored.home == SCENE.camera
@@ -100,7 +102,7 @@ def test_a_restored_session_shows_the_same_and_moves_on_the_same() -> None:
 def test_a_restored_session_uses_no_number_again() -> None:
     session = fallen(0.2)
     session.sequence = 50
-    restored = Session.restored(NAME, session.scene, STONE, session.snapshot())
+    restored = Session.restored(NAME, session.stage, session.snapshot())
     assert restored.shown.step > session.shown.step + 240
     assert restored.sequence > session.sequence + 240
 
@@ -113,12 +115,12 @@ def test_a_snapshot_that_is_none_is_refused_by_field() -> None:
 
 def test_a_scene_without_a_stone_is_a_session_too() -> None:
     empty = Scene(stones=())
-    session = Session(NAME, empty, None)
+    session = Session(NAME, Stage.of(empty))
     session.advance(1)
     session.reset_stone()
     assert session.pose() is None
     assert session.shown.scene == empty
-    assert Session.restored(NAME, empty, None, session.snapshot()).shown.scene == empty
+    assert Session.restored(NAME, Stage.of(empty), session.snapshot()).shown.scene == empty
 
 
 class Processor:
@@ -141,7 +143,7 @@ class Processor:
 
 def costly_fall(seconds_a_step: float, frame: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, list[float]]:
     """Frames of 4 s, each begun so long after the last and its steps; the processor time of each."""
-    session = Session(NAME, SCENE, STONE)
+    session = Session(NAME, STAGE)
     processor = Processor(session, seconds_a_step, monkeypatch)
     session.set_falling(True)
     session.advance(0)
@@ -173,7 +175,7 @@ def test_steps_that_a_frame_has_time_for_are_all_taken(monkeypatch: pytest.Monke
 
 def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     session, _ = costly_fall(0.03, 1 / 30, monkeypatch)
-    alone = Session(NAME, SCENE, STONE)
+    alone = Session(NAME, STAGE)
     assert session._simulation is not None
     assert alone._simulation is not None
     for _ in range(session._simulation.state.step):
@@ -184,7 +186,7 @@ def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyP
 def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeypatch: pytest.MonkeyPatch) -> None:
     session = fallen(0.21)
     report = json.loads(session.report(edited=True).model_dump_json())
-    restored = Session.restored(NAME, Scene.read(report["scene"]), STONE, Snapshot.read(report["snapshot"]))
+    restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     for one in (session, restored):
         assert one.falling
 

@@ -20,8 +20,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from culet.errors import CuletError, InputError, MeshError, SceneError, TooLargeError
 from culet.geometry.shape import MassProperties, Shape
-from culet.rendering.panoramas import check_panorama
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.panoramas import check_panorama
+from culet.optics.sky_files.picture import SkyPicture
 
 LENGTH = struct.Struct("<Q")
 MOST_HEADER_BYTES = 2**20

@@ -17,7 +17,7 @@ from culet.engine.process.limits import Limits
 from culet.errors import InputError
 from culet.geometry.shape import Shape
 from culet.memory_file import memory_file
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.sky_files.picture import SkyPicture
 
 PROGRAM = ("-m", NAME)
 """What the process runs; isolated from the user's own packages and from the folder that it is started in."""

@@ -58,7 +58,7 @@ def main(words: list[str]) -> None:
     if order.kind == "mesh":
         from culet.geometry.mesh import shape_from_mesh
     else:
-        from culet.rendering.sky_files.reading import read_sky
+        from culet.optics.sky_files.reading import read_sky
     limit(order)
 
     def allocate(shape: tuple[int, int, int]) -> NDArray[np.float32]:

@@ -17,7 +17,7 @@ from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.shape import Shape
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.sky_files.picture import SkyPicture
 from culet_protocol.engine import Described, DescribedMesh, DescribedSky
 
 WAITING = 8

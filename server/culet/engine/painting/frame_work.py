@@ -12,6 +12,7 @@ from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Shown
+from culet.stage import Stage
 
 
 class Kind(Enum):
@@ -63,6 +64,11 @@ class FrameWork:
     """When all is done."""
     pieces: Iterator[object] = field(init=False)
 
+    @property
+    def stage(self) -> Stage:
+        """As it is drawn: what is shown, by the plan."""
+        return self.shown.stage if self.plan is None else self.shown.stage.showing(self.plan.scene)
+
     def start(self, renderer: Renderer) -> None:
         """To be called once, before any piece."""
         self.pieces = self._made(renderer)
@@ -73,12 +79,11 @@ class FrameWork:
         return self.spent / self.part if self.part > 0 else self.spent
 
     def _made(self, renderer: Renderer) -> Iterator[object]:
-        scene = self.shown.scene if self.plan is None else self.plan.scene
         width, height = self.wanted if self.plan is None else self.plan.size
         if self.picture is None:
-            if not renderer.is_ready(scene, self.shown.stone):
+            if not renderer.is_ready(self.stage):
                 raise Unprepared
-            self.picture = renderer.picture(scene, self.shown.stone, width, height, panorama=self.shown.panorama)
+            self.picture = renderer.picture(self.stage, width, height)
         picture = self.picture
         for part in picture.refine_in_pieces(self.samples, self.piece_seconds):
             self.part = part

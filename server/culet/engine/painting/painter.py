@@ -27,8 +27,7 @@ from culet.engine.painting.shares import Account, Shares, share
 from culet.engine.painting.still import Still, StillQueue
 from culet.engine.session.session import Shown
 from culet.errors import CuletError, DeviceError, TooLargeError
-from culet.geometry.shape import Shape
-from culet.scene import Scene
+from culet.stage import Stage
 
 log = logging.getLogger(__name__)
 
@@ -153,9 +152,9 @@ class Painter:
             self._send_again(repeat, repeat.message)
         return chosen is not None or repeat is not None
 
-    async def make_ready(self, scene: Scene, stone: Shape | None) -> None:
-        """Have what a picture of the scene needs compiled, while others are drawn."""
-        await in_daemon_thread(lambda: self._renderer.make_ready(scene, stone))
+    async def make_ready(self, stage: Stage) -> None:
+        """Have what a picture of the stage needs compiled, while others are drawn."""
+        await in_daemon_thread(lambda: self._renderer.make_ready(stage))
 
     async def _rest(self) -> None:
         try:
@@ -260,7 +259,7 @@ class Painter:
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
         try:
-            await self.make_ready(work.shown.scene if work.plan is None else work.plan.scene, work.shown.stone)
+            await self.make_ready(work.stage)
         except Exception as error:  # as above
             self._refuse(live, work.shown, error)
         finally:
@@ -284,8 +283,8 @@ class Painter:
             if more and still.spent > self._still_seconds:
                 raise TooLargeError(
                     f"expected a picture that takes at most {self._still_seconds:g} s to render, got one of "
-                    f"{still.width} x {still.height} pixels, {still.samples} samples and {still.scene.optics.bands} "
-                    "bands that is not done after them; ask for less of each",
+                    f"{still.width} x {still.height} pixels, {still.samples} samples and "
+                    f"{still.stage.scene.optics.bands} bands that is not done after them; ask for less of each",
                     "samples",
                 )
         except Exception as error:  # the one who asked is told

@@ -11,9 +11,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
+from culet.optics.panoramas import Panorama
 from culet.scene import Scene
+from culet.stage import Stage
 
 PIECE_SECONDS = 0.025
 """That a piece of work is meant to hold the render thread: two of them are 50 ms, after which a viewer sees that frames
@@ -60,10 +60,8 @@ class Picture(Protocol):
 class Renderer(Protocol):
     """A device that draws scenes."""
 
-    def picture(
-        self, scene: Scene, stone: Shape | None, width: int, height: int, *, panorama: Panorama | None = None
-    ) -> Picture:
-        """An empty picture of the scene, its stone where the scene has it; `panorama` is that of its sky."""
+    def picture(self, stage: Stage, width: int, height: int) -> Picture:
+        """An empty picture of the stage."""
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more. From any thread."""
@@ -74,10 +72,10 @@ class Renderer(Protocol):
     def release(self) -> None:
         """Give back the memory of pictures that are gone."""
 
-    def is_ready(self, scene: Scene, stone: Shape | None) -> bool:
+    def is_ready(self, stage: Stage) -> bool:
         """Whether a picture can be begun at once."""
 
-    def make_ready(self, scene: Scene, stone: Shape | None) -> None:
+    def make_ready(self, stage: Stage) -> None:
         """Make it so: have programs compiled and trees made, which may take seconds. Called from any thread."""
 
     def describe(self) -> Mapping[str, Any]:

@@ -10,9 +10,7 @@ from dataclasses import dataclass, field
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account, Shares
 from culet.errors import BusyError
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
-from culet.scene import Scene
+from culet.stage import Stage
 from culet_protocol.engine import Format
 
 SESSION_STILL_SAMPLES = 16
@@ -32,13 +30,11 @@ SMALL_PART = 0.25
 class Still:
     """A picture that somebody waits for."""
 
-    scene: Scene
-    stone: Shape | None
+    stage: Stage
     width: int
     height: int
     samples: int
     format: Format
-    panorama: Panorama | None = None
     client: str = ""
     """On whose behalf."""
     asked_at: float = 0.0
@@ -58,7 +54,7 @@ class Still:
 
     def paint(self, renderer: Renderer) -> Iterator[object]:
         """Render, yielding between pieces of work. Runs in the render thread."""
-        picture = renderer.picture(self.scene, self.stone, self.width, self.height, panorama=self.panorama)
+        picture = renderer.picture(self.stage, self.width, self.height)
         self.picture = picture
         yield from picture.refine_in_pieces(self.samples, PIECE_SECONDS)
         if self.format not in LINEAR_FORMATS:

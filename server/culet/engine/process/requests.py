@@ -10,7 +10,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, assert_never
 
-from culet.engine.library.assets import Assets
 from culet.engine.library.uploads import MESH, SKY, UploadStore
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
@@ -18,14 +17,12 @@ from culet.engine.painting.still import SESSION_STILL_SAMPLES, Still, StillQueue
 from culet.engine.process.limits import Limits, check_still_size, check_still_work, live_size
 from culet.engine.process.memory import Memory
 from culet.engine.session import events
-from culet.engine.session.session import Session, Sky
+from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import BusyError, InputError, NotFoundError
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
-from culet.rendering.sky_files.picture import SkyPicture
+from culet.optics.sky_files.picture import SkyPicture
 from culet.scene import Environment, Scene
-from culet.scene.model import ImageEnvironment
+from culet.stage import Library, Sky, Stage, uploads_of
 from culet_protocol import engine as protocol
 
 STILL_SIZE = (640, 360)
@@ -76,7 +73,7 @@ class Requests:
         self._memory = memory
         self._meshes = UploadStore(MESH, limits, memory, in_use=self._named)
         self._skies = UploadStore(SKY, limits, memory, in_use=self._named, forgotten=forget_sky)
-        self._assets = Assets(self._meshes, self._skies)
+        self._library = Library(self._meshes, self._skies)
         self._history = history_length(limits, memory.budget)
         memory.count("sessions", self._session_bytes)
         memory.count("histories", self._history_bytes)
@@ -205,16 +202,16 @@ class Requests:
         scene = Scene.read(request.scene)
         snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
         self._make_room()
-        own = scene.environment if snapshot is None else snapshot.environment
-        stone, sky = await asyncio.to_thread(self._made, scene, own)
+        own = scene.environment if snapshot is None else snapshot.environment or scene.environment
+        stage, sky = await asyncio.to_thread(self._opened, scene, own)
         if request.session in pictures:  # opened twice at once
             return described(self._live(request.session))
         self._make_room()
         history = self._history
         if snapshot is None:
-            session = Session(request.session, scene, stone, sky=sky, history=history)
+            session = Session(request.session, stage, sky=sky, history=history)
         else:
-            session = Session.restored(request.session, scene, stone, snapshot, sky=sky, history=history)
+            session = Session.restored(request.session, stage, snapshot, sky=sky, history=history)
         if request.client is not None:
             self._clients[request.session] = request.client
         pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
@@ -241,11 +238,11 @@ class Requests:
         """The meshes and skies that sessions show, or would go back to, and that stills wait for."""
         named = set[str]()
         for live in self._painter.pictures.values():
-            named |= names_in(live.session.shown.scene, live.session.sky.environment)
+            named |= uploads_of(live.session.stage.scene, live.session.sky.environment)
             if live.painted is not None:
-                named |= names_in(live.painted.scene)
+                named |= live.painted.stage.uses()
         for still in self._awaited:
-            named |= names_in(still.scene)
+            named |= still.stage.uses()
         return named
 
     def _session_bytes(self) -> int:
@@ -255,13 +252,13 @@ class Requests:
         size = 0
         for live in self._painter.pictures.values():
             size += SESSION_BYTES + len(live.message or b"")
-            painted = live.painted.panorama if live.painted else None
+            painted = live.painted.stage.panorama if live.painted else None
             for panorama in (live.session.sky.panorama, painted):
                 if panorama is not None:
                     panoramas[id(panorama)] = panorama.nbytes
         for still in self._awaited:
-            if still.panorama is not None:
-                panoramas[id(still.panorama)] = still.panorama.nbytes
+            if still.stage.panorama is not None:
+                panoramas[id(still.stage.panorama)] = still.stage.panorama.nbytes
         return size + sum(own for key, own in panoramas.items() if key not in kept)
 
     def _history_bytes(self) -> int:
@@ -280,7 +277,7 @@ class Requests:
     async def _control(self, request: protocol.Control) -> dict[str, Any]:
         live = self._live(request.session)
         session = live.session
-        apply = partial(events.apply, session, request.event, self._assets)
+        apply = partial(events.apply, session, request.event, self._library)
         try:
             async with session.lock:
                 if request.event.type in LONG_EVENTS:
@@ -325,7 +322,8 @@ class Requests:
     async def _render(self, request: protocol.Render) -> Answer:
         if (request.scene is None) == (request.session is None):
             raise InputError("expected either a scene or a session to render, got both or neither", "scene")
-        scene, stone, panorama, default_size, step = await self._subject(request)
+        stage, default_size, step = await self._staged(request)
+        scene = stage.scene
         width = default_size[0] if request.width is None else request.width
         height = default_size[1] if request.height is None else request.height
         check_still_size(width, height, self._limits)
@@ -333,10 +331,8 @@ class Requests:
         if request.session is not None:
             samples = max(samples, SESSION_STILL_SAMPLES)
         check_still_work(width, height, samples, scene.optics.bands, self._limits)
-        still = Still(
-            scene, stone, width, height, samples, request.format, panorama, request.client, time.monotonic()
-        )  # fmt: skip
-        await self._painter.make_ready(scene, stone)
+        still = Still(stage, width, height, samples, request.format, request.client, time.monotonic())
+        await self._painter.make_ready(stage)
         self._make_room_for(still)
         self._stills.put(still)
         self._awaited.add(still)
@@ -349,18 +345,15 @@ class Requests:
             self._painter.wake()
         return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
 
-    async def _subject(
-        self, request: protocol.Render
-    ) -> tuple[Scene, Shape | None, Panorama | None, tuple[int, int], int | None]:
+    async def _staged(self, request: protocol.Render) -> tuple[Stage, tuple[int, int], int | None]:
+        """What is to be rendered, the usual size of its picture, and the session's step that it is of."""
         if request.session is None:
-            scene = Scene.read(request.scene)
-            stone, sky = await asyncio.to_thread(self._made, scene, scene.environment)
-            return scene, stone, sky.panorama, STILL_SIZE, None
+            return await asyncio.to_thread(Stage.of, Scene.read(request.scene), self._library), STILL_SIZE, None
         live = self._live(request.session)
         async with live.session.lock:
             past = live.session.recall(request.step)
-            stone, panorama = await asyncio.to_thread(events.past_subject, past, live.session, self._assets)
-        return past.scene, stone, panorama, live.size, past.step
+            stage = await asyncio.to_thread(events.past_stage, past, live.session, self._library)
+        return stage, live.size, past.step
 
     def _live(self, session: str) -> LivePicture:
         try:
@@ -370,16 +363,9 @@ class Requests:
         self._touched[session] = time.monotonic()
         return live
 
-    def _made(self, scene: Scene, environment: Environment | None) -> tuple[Shape | None, Sky]:
-        sky = events.own_sky(environment or scene.environment, self._assets)
-        return events.stone_for(scene, None, self._assets), sky
-
-
-def names_in(scene: Scene, *environments: Environment) -> set[str]:
-    """What may be ids of uploads in a scene and in further skies."""
-    named = {stone.mesh for stone in scene.stones if stone.mesh is not None}
-    skies = (scene.environment, *environments)
-    return named | {sky.image for sky in skies if isinstance(sky, ImageEnvironment)}
+    def _opened(self, scene: Scene, environment: Environment) -> tuple[Stage, Sky]:
+        """The stage of a new session, and its own sky, which is of another environment if the scene's is the light."""
+        return Stage.of(scene, self._library), events.own_sky(self._library.sky(environment))
 
 
 def history_length(limits: Limits, budget: int) -> int:
@@ -420,5 +406,5 @@ def described(live: LivePicture) -> dict[str, Any]:
         "snapshot": session.snapshot().model_dump(mode="json"),
         "width": live.size[0],
         "height": live.size[1],
-        "findings": list(session.stone.findings) if session.stone else [],
+        "findings": [finding for shape in session.stage.shapes for finding in shape.findings],
     }

@@ -6,26 +6,26 @@ from typing import Any, Literal, assert_never
 
 from pydantic import ValidationError
 
-from culet.engine.library.assets import Assets
 from culet.engine.session import viewpoint
 from culet.engine.session.merge_patch import merge_patch
-from culet.engine.session.session import Past, Session, Sky
+from culet.engine.session.session import Past, Session
 from culet.errors import InputError, NotFoundError, SceneError
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
-from culet.scene import Camera, Environment, Light, Plane, Scene
+from culet.scene import Camera, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment
+from culet.stage import Library, Sky, Stage
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent, Target
 
+LIGHT = Sky(LightEnvironment(kind="light"))
 
-def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
+
+def apply(session: Session, event: SessionEvent, library: Library) -> None:
     """Apply an event; a stone is made (which may take a while) only if its shape changes."""
     match event:
         case messages.Orbit() | messages.Translate() | messages.Dolly():
             _move(session, event)
         case messages.ResetCamera():
-            session.change(session.scene.model_copy(update={"camera": session.home}))
+            session.change(session.stage.showing(session.scene.model_copy(update={"camera": session.home})))
         case messages.LookAtStone():
             _look_at_stone(session)
         case messages.ToggleFall():
@@ -35,66 +35,53 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
         case messages.Push():
             session.push(event.x, event.y, event.right, event.up)
         case messages.ToggleMirror():
-            session.change(_with_mirror_toggled(session.scene))
+            session.change(session.stage.showing(_with_mirror_toggled(session.scene)))
         case messages.ToggleEnvironment():
-            session.change(_with_environment_toggled(session))
+            light = session.scene.environment.kind == "light"
+            session.change(session.stage.under(session.sky if light else LIGHT))
         case messages.ToggleWalls():
-            session.change(_with_walls_toggled(session.scene))
+            session.change(session.stage.showing(_with_walls_toggled(session.scene)))
         case messages.PatchScene():
-            _patch(session, event.patch, assets)
+            _patch(session, event.patch, library)
         case messages.Balance():
             session.balance = event
         case messages.SetScene():
-            scene = Scene.read(event.scene)
-            stone, sky = stone_for(scene, session, assets), sky_for(scene, session, assets)
-            session.replace_stone(scene, stone, home=scene.camera, sky=sky)
+            stage = stage_for(Scene.read(event.scene), session, library)
+            session.replace_stones(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
         case _:
             assert_never(event)
 
 
-def stone_for(scene: Scene, session: Session | None, assets: Assets) -> Shape | None:
-    """The shape of a scene's stone: the session's, if that is the same shape."""
-    if not scene.stones:
-        return None
-    if session is not None and session.stone is not None and _shape(scene) == _shape(session.scene):
-        return session.stone
-    return assets.stone(scene.stones[0])
+def stage_for(scene: Scene, session: Session, library: Library) -> Stage:
+    """The stage of a scene, with what the session has of it already. May make shapes, which takes a while."""
+    return Stage.of(scene, library, before=session.stage.under(session.sky))
 
 
-def sky_for(scene: Scene, session: Session | None, assets: Assets) -> Sky:
-    """A scene's own sky, or the session's if the scene is under that one."""
-    if session is not None and session.sky.environment == scene.environment:
-        return session.sky
-    return own_sky(scene.environment, assets)
-
-
-def past_subject(past: Past, session: Session, assets: Assets) -> tuple[Shape | None, Panorama | None]:
-    """The stone and the picture of the sky that a session showed at a step; NotFoundError if they are not kept any
-    more. May make the stone, which takes a while."""
+def past_stage(past: Past, session: Session, library: Library) -> Stage:
+    """What a session showed at a step; NotFoundError if that is not kept any more. May make shapes, which takes a
+    while."""
     try:
-        stone = stone_for(past.scene, session, assets)
-        return stone, sky_for(past.scene, session, assets).panorama
+        return stage_for(past.scene, session, library)
     except SceneError as error:
         raise NotFoundError(f"what was shown at step {past.step} is not kept any more: {error}") from error
 
 
-def own_sky(environment: Environment, assets: Assets) -> Sky:
-    """The other sky than the light one: the environment, or, if that is light itself, the dark."""
-    if environment.kind == "light":
-        return Sky(DarkEnvironment(kind="dark"))
-    return Sky(environment, assets.panorama(environment))
+def own_sky(sky: Sky) -> Sky:
+    """The other sky than the light one: that of a scene, or, if that is light itself, the dark."""
+    return Sky(DarkEnvironment(kind="dark")) if sky.environment.kind == "light" else sky
 
 
 def _move(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> None:
     try:
         if event.target == "camera":
-            session.change(session.scene.model_copy(update={"camera": _moved_camera(session.scene.camera, event)}))
+            scene = session.scene.model_copy(update={"camera": _moved_camera(session.scene.camera, event)})
         else:
-            session.change(_with_light_moved(session.scene, event, event.target))
+            scene = _with_light_moved(session.scene, event, event.target)
     except ValidationError as error:
         raise InputError(
             f"{event.type} would move the {event.target} out of the world: {error.errors()[0]['msg']}"
         ) from error
+    session.change(session.stage.showing(scene))
 
 
 def _look_at_stone(session: Session) -> None:
@@ -102,9 +89,10 @@ def _look_at_stone(session: Session) -> None:
         raise InputError("expected a scene with a stone, got none: there is nothing to look at")
     camera, position = session.scene.camera, session.shown.scene.stones[0].position
     try:
-        session.change(session.scene.model_copy(update={"camera": viewpoint.look_at(camera, position)}))
+        scene = session.scene.model_copy(update={"camera": viewpoint.look_at(camera, position)})
     except ValidationError as error:
         raise InputError(f"the stone is beyond where a camera can be: {error.errors()[0]['msg']}") from error
+    session.change(session.stage.showing(scene))
 
 
 def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:
@@ -146,12 +134,6 @@ def _with_mirror_toggled(scene: Scene) -> Scene:
     return scene.model_copy(update={"floor": Plane(kind=kind), "walls": walls})
 
 
-def _with_environment_toggled(session: Session) -> Scene:
-    light = session.scene.environment.kind == "light"
-    environment: Environment = session.sky.environment if light else LightEnvironment(kind="light")
-    return session.scene.model_copy(update={"environment": environment})
-
-
 def _with_walls_toggled(scene: Scene) -> Scene:
     if scene.walls.kind != "none":
         walls = Plane(kind="none")
@@ -160,7 +142,7 @@ def _with_walls_toggled(scene: Scene) -> Scene:
     return scene.model_copy(update={"walls": walls})
 
 
-def _patch(session: Session, patch: dict[str, Any], assets: Assets) -> None:
+def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
     """Apply a merge patch to the scene as it is now, and to the camera that a reset goes back to."""
     before = session.scene
     document = before.model_dump(mode="json")
@@ -169,18 +151,14 @@ def _patch(session: Session, patch: dict[str, Any], assets: Assets) -> None:
     if "camera" in patch:
         at_home = document | {"camera": home.model_dump(mode="json")}
         home = Scene.read(merge_patch(at_home, patch)).camera
-    sky = None if after.environment == before.environment else sky_for(after, session, assets)
-    if _shape(after) != _shape(before):
-        session.replace_stone(after, stone_for(after, session, assets), home=home, sky=sky)
+    stage = stage_for(after, session, library)
+    sky = None if after.environment == before.environment else own_sky(stage.sky)
+    if stage.shapes != session.stage.shapes:
+        session.replace_stones(stage, home=home, sky=sky)
     elif _start(after) != _start(before):
-        session.start_anew(after, home=home, sky=sky)
+        session.start_anew(stage, home=home, sky=sky)
     else:
-        session.change(after, home=home, sky=sky)
-
-
-def _shape(scene: Scene) -> object:
-    """What the stone's shape depends on."""
-    return [(stone.cut, stone.mesh) for stone in scene.stones]
+        session.change(stage, home=home, sky=sky)
 
 
 def _start(scene: Scene) -> object:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import thread_time
 from typing import Any
 
@@ -17,21 +17,11 @@ from culet.engine.session.picking import struck_point
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError, NotFoundError
-from culet.geometry.shape import Shape
-from culet.rendering.panoramas import Panorama
-from culet.scene import Camera, Environment, Scene
+from culet.scene import Camera, Scene
 from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
+from culet.stage import Sky, Stage
 from culet_protocol.engine import SessionState
 from culet_protocol.messages import BALANCED, Balance
-
-
-@dataclass(frozen=True, eq=False)
-class Sky:
-    """A session's own sky: what a switch from the light one goes back to."""
-
-    environment: Environment
-    panorama: Panorama | None = None
-    """Of an environment that is an image."""
 
 
 @dataclass(frozen=True)
@@ -39,14 +29,16 @@ class Shown:
     """Everything that one picture depends on."""
 
     step: int
-    scene: Scene
-    """With the live camera and the stone's pose."""
-    stone: Shape | None
-    panorama: Panorama | None = field(compare=False)
-    """The one that the scene's environment names."""
+    stage: Stage
+    """With the live camera and the stones' poses."""
     simulation_time: float
     """s."""
     moving: bool
+
+    @property
+    def scene(self) -> Scene:
+        """That of the stage."""
+        return self.stage.scene
 
 
 @dataclass(frozen=True)
@@ -55,7 +47,7 @@ class Past:
 
     step: int
     scene: Scene
-    """With the live camera and the stone's pose."""
+    """With the live camera and the stones' poses."""
 
 
 class Session:
@@ -64,8 +56,7 @@ class Session:
     def __init__(
         self,
         name: str,
-        scene: Scene,
-        stone: Shape | None,
+        stage: Stage,
         *,
         sky: Sky | None = None,
         history: int = 600,
@@ -89,29 +80,30 @@ class Session:
         self._allowance = Allowance()
         self.pace = Pace()
         """Of the simulation."""
-        self._authored = scene
-        self._camera = scene.camera
-        self.sky = sky or Sky(scene.environment)
-        """Its environment is the scene's, or was, before the scene was put under the light one."""
-        self._place(scene, stone)
-        self._clock = _clock(scene)
+        self.stage = stage
+        """As it is now: with the live camera, and the stones where they start."""
+        self.home = stage.scene.camera
+        """The camera as the scene has it."""
+        self.sky = sky or stage.sky
+        """That of the stage, or of the stage before it was put under the light one."""
+        self._place(stage)
+        self._clock = _clock(stage.scene)
         self.shown = self._look(step=1)
 
     @classmethod
     def restored(
         cls,
         name: str,
-        scene: Scene,
-        stone: Shape | None,
+        stage: Stage,
         snapshot: Snapshot,
         *,
         sky: Sky | None = None,
         history: int = 600,
     ) -> Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
-        session = cls(name, scene, stone, sky=sky, history=history)
-        session._authored = scene.model_copy(update={"camera": snapshot.home})
-        session._clock = _clock(scene, snapshot.fraction)
+        session = cls(name, stage, sky=sky, history=history)
+        session.home = snapshot.home
+        session._clock = _clock(stage.scene, snapshot.fraction)
         session.falling = snapshot.falling and session._simulation is not None
         session.sequence = snapshot.next_sequence
         session.balance = Balance(exactness=snapshot.exactness, pinned=snapshot.pinned)
@@ -122,18 +114,8 @@ class Session:
 
     @property
     def scene(self) -> Scene:
-        """As it is now: with the live camera, and the stone where it starts."""
-        return self._authored.model_copy(update={"camera": self._camera})
-
-    @property
-    def home(self) -> Camera:
-        """The camera as the scene has it."""
-        return self._authored.camera
-
-    @property
-    def stone(self) -> Shape | None:
-        """The shape of the scene's stone."""
-        return self._stone
+        """That of the stage."""
+        return self.stage.scene
 
     @property
     def moving(self) -> bool:
@@ -145,13 +127,13 @@ class Session:
         """Whether the stone has come to rest for good, unless somebody changes something."""
         return self._simulation is not None and self._simulation.settled
 
-    def change(self, scene: Scene, *, home: Camera | None = None, sky: Sky | None = None) -> None:
-        """Show this scene and its camera; `home` is where a reset takes the camera, by default where it was.
+    def change(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
+        """Show this stage by its camera; `home` is where a reset takes the camera, by default where it was.
 
-        The stone goes on from where it is, by the scene's settings. `sky` belongs to a scene with another environment
-        of its own. InputError, and nothing changed, if the stone cannot have these settings.
+        The stone goes on from where it is, by the scene's settings. `sky` is that of a stage with an environment of its
+        own. InputError, and nothing changed, if the stone cannot have these settings.
         """
-        was_moving = self.moving
+        scene, was_moving = stage.scene, self.moving
         if self._simulation is not None:
             self._simulation.adjust(scene.simulation)
             self._simulation.surround(surfaces_of(scene))
@@ -159,25 +141,23 @@ class Session:
             self._clock = _clock(scene, self._clock.fraction)
         if not was_moving:
             self._advanced_at = None  # the time that it rested is not made up for
-        self._authored = scene.model_copy(update={"camera": home or self.home})
+        self.stage = stage
+        self.home = home or self.home
         self.sky = sky or self.sky
-        self._camera = scene.camera
         self._show()
 
-    def start_anew(self, scene: Scene, *, home: Camera | None = None, sky: Sky | None = None) -> None:
+    def start_anew(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """As `change`, with the stone put to the scene's start, from where it falls at once if it was falling."""
-        self._place(scene, self._stone)
+        self._place(stage)
         self._advanced_at = None
         self._clock.restart()
-        self.change(scene, home=home, sky=sky)
+        self.change(stage, home=home, sky=sky)
 
-    def replace_stone(
-        self, scene: Scene, stone: Shape | None, *, home: Camera | None = None, sky: Sky | None = None
-    ) -> None:
+    def replace_stones(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """As `change`, with another stone, or none: at rest where the scene has it."""
-        self._place(scene, stone)
+        self._place(stage)
         self._stop()
-        self.change(scene, home=home, sky=sky)
+        self.change(stage, home=home, sky=sky)
 
     def set_falling(self, falling: bool) -> None:
         """Start or pause free fall; InputError if there is nothing to fall."""
@@ -204,13 +184,13 @@ class Session:
 
         Time goes on, if the stone is hit. InputError if there is no stone, or the blow is too strong.
         """
-        if self._simulation is None or self._stone is None:
+        if self._simulation is None:
             raise InputError("expected a scene with a stone, got none: nothing can be pushed")
         position, orientation = self._simulation.state.position, self._simulation.state.orientation
-        point = struck_point(self._camera, self._stone, position, orientation, x, y)
+        point = struck_point(self.scene.camera, self.stage.shapes[0], position, orientation, x, y)
         if point is None:
             return
-        right_axis, up_axis, _ = axes(self._camera)
+        right_axis, up_axis, _ = axes(self.scene.camera)
         a, b, c = ((right * right_axis + up * up_axis) * self._simulation.body.mass).tolist()
         was_moving = self.moving
         self._simulation.push((a, b, c), point)
@@ -331,21 +311,16 @@ class Session:
             self.shown = self._look(step=self.shown.step + 1)
 
     def _look(self, step: int) -> Shown:
-        scene, time = self.scene, 0.0
+        stage, time = self.stage, 0.0
         if self._simulation is not None:
             fraction = self._clock.fraction
-            scene = scene.moved(*self._simulation.interpolated(fraction))
+            stage = stage.posed([self._simulation.interpolated(fraction)])
             before, after = self._simulation.previous.time, self._simulation.state.time
             time = before + (after - before) * fraction
-        return Shown(step, scene, self._stone, self.sky.panorama, time, self.moving)
+        return Shown(step, stage, time, self.moving)
 
-    def _place(self, scene: Scene, stone: Shape | None) -> None:
-        simulation: Simulation | None = None
-        if stone is not None and scene.stones:
-            start = scene.stones[0]
-            simulation = Simulation(scene.simulation, stone, start.position, start.orientation, surfaces_of(scene))
-        self._stone = stone
-        self._simulation = simulation
+    def _place(self, stage: Stage) -> None:
+        self._simulation = Simulation.of(stage) if stage.shapes else None
 
 
 def _clock(scene: Scene, fraction: float = 0.0) -> FixedStepClock:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.rendering.panoramas import Panorama
-from culet.rendering.sky_files.colour import (
+from culet.optics.panoramas import Panorama
+from culet.optics.sky_files.colour import (
     NAMES,
     REC_709,
     Point,
@@ -26,8 +26,8 @@ from culet.rendering.sky_files.colour import (
     to_rec709,
     to_xyz,
 )
-from culet.rendering.sky_files.decoder import Decoder, decoding
-from culet.rendering.sky_files.picture import Allocate, Census, check_size
+from culet.optics.sky_files.decoder import Decoder, decoding
+from culet.optics.sky_files.picture import Allocate, Census, check_size
 
 INTEROP_PRIMARIES = {
     "lin_rec709_scene": REC_709,

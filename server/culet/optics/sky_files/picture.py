@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError, TooLargeError
-from culet.rendering.panoramas import Panorama
+from culet.optics.panoramas import Panorama
 
 MOST_PIXELS = 2**25
 """Of a sky that is read, unless told otherwise: 8192 x 4096, which take 384 MiB."""

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.rendering.panoramas import Panorama
-from culet.rendering.sky_files.colour import (
+from culet.optics.panoramas import Panorama
+from culet.optics.sky_files.colour import (
     RADIANCE,
     REC_709,
     Matrix,
@@ -26,8 +26,8 @@ from culet.rendering.sky_files.colour import (
     to_rec709,
     to_xyz,
 )
-from culet.rendering.sky_files.decoder import decoding
-from culet.rendering.sky_files.picture import Allocate, Census, check_size
+from culet.optics.sky_files.decoder import decoding
+from culet.optics.sky_files.picture import Allocate, Census, check_size
 
 MOST_HEADER_BYTES = 2**16
 RGBE, XYZE = "32-bit_rle_rgbe", "32-bit_rle_xyze"

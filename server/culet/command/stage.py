@@ -1,4 +1,4 @@
-"""Scene, stone and sky that a command is about, from files and names. What reading needs is imported by the reading."""
+"""The stage that a command is about, from files and names. What reading needs is imported by the reading."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -16,42 +16,39 @@ from culet.errors import InputError, MeshError, SceneError
 
 if TYPE_CHECKING:
     from culet.geometry.shape import Shape
-    from culet.rendering.panoramas import Panorama
+    from culet.optics.sky_files.picture import SkyPicture
     from culet.scene import Scene
+    from culet.stage import Stage
 
 
-class Subject(NamedTuple):
-    """What a command is about."""
-
-    scene: Scene
-    stone: Shape | None
-    """None if the scene has none."""
-    panorama: Panorama | None
-    """The sky from a file; None if the scene's own counts."""
+FILE = "file"
+"""In place of the id of an upload: the mesh or the sky that a command was given as a file."""
 
 
-def read_subject(file: Path | None, preset: str | None, mesh: Path | None, sky: Path | None = None) -> Subject:
+def read_stage(file: Path | None, preset: str | None, mesh: Path | None, sky: Path | None = None) -> Stage:
     """From what the user named; InputError says which of it cannot be used, and why. Findings go to stderr."""
-    from culet.geometry.load import shape_of
     from culet.scene import Scene
     from culet.scene import preset as preset_scene
+    from culet.stage import Library, Stage
 
     if file is not None and preset is not None:
         raise SceneError("expected a scene file or a preset, got both")
-    meshes = {}
+    meshes, skies = {}, {}
     with _naming(file):
         scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
     if mesh is not None:
-        meshes["file"] = _mesh(mesh)
-        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": "file"})
+        meshes[FILE] = _mesh(mesh)
+        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": FILE})
         scene = scene.model_copy(update={"stones": (stone,)})
-    scene, panorama = _with_sky(scene, sky)
+    if sky is not None:
+        skies[FILE] = _sky(sky)
+        scene = _under_the_file(scene)
     with _naming(file):
-        return Subject(scene, shape_of(scene.stones[0], meshes) if scene.stones else None, panorama)
+        return Stage.of(scene, Library(meshes, skies))
 
 
 def _mesh(file: Path) -> Shape:
-    """The stone in a mesh file; what was found in it, or repaired, goes to stderr."""
+    """The shape in a mesh file; what was found in it, or repaired, goes to stderr."""
     from culet.geometry.mesh import shape_from_mesh
 
     try:
@@ -59,18 +56,15 @@ def _mesh(file: Path) -> Shape:
     except OSError as error:
         raise MeshError(f"{file}: cannot be read: {error.strerror}") from error
     with _naming(file):
-        stone = shape_from_mesh(data, file.suffix.lower().lstrip("."), name=file.stem)
-    _report(file, stone.findings)
-    return stone
+        shape = shape_from_mesh(data, file.suffix.lower().lstrip("."), name=file.stem)
+    _report(file, shape.findings)
+    return shape
 
 
-def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
-    """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
-    from culet.rendering.sky_files.reading import read_sky
-    from culet.scene.model import ImageEnvironment
+def _sky(file: Path) -> SkyPicture:
+    """The panorama in a file; what was found in it, or left out, goes to stderr."""
+    from culet.optics.sky_files.reading import read_sky
 
-    if file is None:
-        return scene, None
     try:
         data = file.read_bytes()
     except OSError as error:
@@ -78,8 +72,15 @@ def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
     with _naming(file), libraries_silenced():
         picture = read_sky(data, file.suffix.lower().lstrip("."))
     _report(file, picture.findings)
+    return picture
+
+
+def _under_the_file(scene: Scene) -> Scene:
+    """The scene under the panorama from a file, which keeps the scale and turn that it may have given to another."""
+    from culet.scene.model import ImageEnvironment
+
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
-    return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), picture.pixels
+    return scene.model_copy(update={"environment": image.model_copy(update={"image": FILE})})
 
 
 def _report(file: Path, findings: Iterable[str]) -> None:

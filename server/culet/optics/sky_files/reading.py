@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from culet.errors import InputError
-from culet.rendering.sky_files.exr import read_exr
-from culet.rendering.sky_files.picture import (
+from culet.optics.sky_files.exr import read_exr
+from culet.optics.sky_files.picture import (
     MOST_PIXELS,
     Allocate,
     Census,
@@ -14,8 +14,8 @@ from culet.rendering.sky_files.picture import (
     new_panorama,
     shape_findings,
 )
-from culet.rendering.sky_files.png import read_png
-from culet.rendering.sky_files.radiance import read_radiance
+from culet.optics.sky_files.png import read_png
+from culet.optics.sky_files.radiance import read_radiance
 
 READERS = {"exr": read_exr, "hdr": read_radiance, "png": read_png}
 

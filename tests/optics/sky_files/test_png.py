@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.rendering.sky_files.reading import read_sky
-from rendering.sky_files.writers import PNG_CHANNELS, chunk, png
+from culet.optics.sky_files.reading import read_sky
+from optics.sky_files.writers import PNG_CHANNELS, chunk, png
 
 Array = NDArray[Any]
 

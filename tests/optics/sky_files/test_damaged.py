@@ -10,8 +10,8 @@ import OpenEXR
 import pytest
 
 from culet.errors import InputError
-from culet.rendering.sky_files.reading import read_sky
-from rendering.sky_files.writers import hdr, png, run_lengths
+from culet.optics.sky_files.reading import read_sky
+from optics.sky_files.writers import hdr, png, run_lengths
 
 COLOURS = np.random.default_rng(5).random((32, 64, 3)).astype(np.float32)
 RGBE = np.concatenate([(128 + 127 * COLOURS), np.full((32, 64, 1), 128)], axis=-1).astype(np.uint8)

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.rendering.panoramas import Panorama
-from culet.rendering.sky_files.colour import (
+from culet.optics.panoramas import Panorama
+from culet.optics.sky_files.colour import (
     NAMES,
     REC_709,
     Matrix,
@@ -26,8 +26,8 @@ from culet.rendering.sky_files.colour import (
     name_of,
     to_rec709,
 )
-from culet.rendering.sky_files.decoder import MAGIC, decoding
-from culet.rendering.sky_files.picture import Allocate, Census, check_size
+from culet.optics.sky_files.decoder import MAGIC, decoding
+from culet.optics.sky_files.picture import Allocate, Census, check_size
 
 Rows = NDArray[np.float32]
 Transfer = Callable[[Rows], Rows]

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.rendering.sky_files.reading import read_sky
-from rendering.sky_files.writers import hdr, run_lengths
+from culet.optics.sky_files.reading import read_sky
+from optics.sky_files.writers import hdr, run_lengths
 
 Array = NDArray[Any]
 

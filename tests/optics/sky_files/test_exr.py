@@ -13,9 +13,9 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.errors import InputError, TooLargeError
-from culet.rendering.sky_files.colour import NAMES, REC_709, to_xyz
-from culet.rendering.sky_files.reading import read_sky
-from rendering.sky_files.writers import attribute, exr, floats, grey, text
+from culet.optics.sky_files.colour import NAMES, REC_709, to_xyz
+from culet.optics.sky_files.reading import read_sky
+from optics.sky_files.writers import attribute, exr, floats, grey, text
 
 Array = NDArray[Any]
 
