@@ -21,11 +21,17 @@ def source(name: str) -> str:
     return _join(name, set())
 
 
+@cache
+def written(name: str) -> str:
+    """The text of a file as it is written."""
+    return files(__name__).joinpath(name).read_text(encoding="utf-8")
+
+
 def _join(name: str, seen: set[str]) -> str:
     if name in seen:
         return ""
     seen.add(name)
-    text = files(__name__).joinpath(name).read_text(encoding="utf-8")
+    text = written(name)
     parts, line, position = [f'#line 1 "{name}"\n'], 1, 0
     for include in _INCLUDE.finditer(text):
         before = text[position : include.start()]

@@ -108,8 +108,9 @@
 
 // Neighbouring pixels take different wavelengths: GROUPS of chains, one for each pixel of a square. What belongs to a chain
 // then differs by lane.
+#define SPECTRAL_GROUPS 4
 #if SPECTRAL
-#define GROUPS 4
+#define GROUPS SPECTRAL_GROUPS
 typedef realL chainL;
 #else
 #define GROUPS 1

@@ -13,12 +13,12 @@ static inline maskL passes_stone(vec3L origin, vec3L direction, realL t_min) {
 
 static inline crossingL stone_entry(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask) {
   if (GEOMETRY == HULL) return hull_entry(world.facets, world.scene->facets, origin, direction, t_min);
-  return mesh_crossing(world.scene, world.tree, origin, direction, t_min, (real)1e30, mask, 1);
+  return mesh_crossing(world.scene, tree_of(world), origin, direction, t_min, (real)1e30, mask, 1);
 }
 
 static inline crossingL stone_exit(world_t world, vec3L origin, vec3L direction, maskL mask) {
   if (GEOMETRY == HULL) return hull_exit(world.facets, world.scene->facets, origin, direction);
-  return mesh_crossing(world.scene, world.tree, origin, direction, splat(0), (real)1e30, mask, -1);
+  return mesh_crossing(world.scene, tree_of(world), origin, direction, splat(0), (real)1e30, mask, -1);
 }
 
 // Whether the stone lies between points of the room and a light.
@@ -31,7 +31,7 @@ static inline maskL stone_shadow(world_t world, int light, vec3L point, vec3L to
   if (GEOMETRY == HULL)
     return near &
            hull_shadow(world.shadows, world.scene->shadow_start[light], world.scene->shadow_start[light + 1], point);
-  return mesh_crossing(world.scene, world.tree, point, to_light, splat(0), 1, near, 1).hit;
+  return mesh_crossing(world.scene, tree_of(world), point, to_light, splat(0), 1, near, 1).hit;
 }
 
 #endif

@@ -15,12 +15,10 @@ typedef chain_work_t work_t;
 // A sample takes as many launches as it needs: each work-item makes `steps` steps, then keeps the tile that it is at in
 // `kept` and ends, so that no launch lasts long, whatever a pixel costs. The next launch goes on where this one ended: the
 // picture is the same to the last bit.
-__kernel void render(__global real4 *image, __constant const parameters_t *scene, __global const real4 *facets,
-                     __global const real4 *shadows, __global const real *boxes, __global const int *links,
-                     __global const real *corners, __global const chain_t *chains, __global const float *panorama,
-                     double jitter_x, double jitter_y, int count, volatile __global uint *progress, int accumulate,
-                     __global float *tallies, __global work_t *kept, int steps) {
-  const world_t world = {scene, facets, shadows, {boxes, links, corners}, chains, panorama};
+__kernel void render(WORLD_BUFFERS(AS_ARGUMENT) __global real4 *image, double jitter_x, double jitter_y, int count,
+                     volatile __global uint *progress, int accumulate, __global float *tallies, __global work_t *kept,
+                     int steps) {
+  const world_t world = {WORLD_BUFFERS(AS_VALUE)};
   const int across = tiles_across(scene);
   volatile __global uint *own = progress + OF_ITEMS + ITEM_NUMBERS * get_global_id(0);
   int left = steps;

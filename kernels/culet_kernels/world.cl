@@ -4,13 +4,29 @@
 #include "mesh.cl"
 #include "parameters.cl"
 
+// The buffers that make a scene, in the order in which they are the kernel's first arguments. This is the only list of them:
+// the host passes them by these names (rendering/layout.py).
+#define WORLD_BUFFERS(BUFFER)                                                                                          \
+  BUFFER(__constant const parameters_t, scene)                                                                         \
+  BUFFER(__global const real4, facets)  /* HULL: normal and offset, in the world's axes */                             \
+  BUFFER(__global const real4, shadows) /* HULL: planes of the lights' shadow volumes */                               \
+  BUFFER(__global const real, boxes)    /* MESH: see tree_t */                                                         \
+  BUFFER(__global const int, links)                                                                                    \
+  BUFFER(__global const real, corners)                                                                                 \
+  BUFFER(__global const chain_t, chains)                                                                               \
+  BUFFER(__global const float, panorama) /* IMAGE: radiance by row from the zenith down, column and channel */
+
+#define AS_MEMBER(type, name) type *name;
+#define AS_ARGUMENT(type, name) type *name,
+#define AS_VALUE(type, name) name,
+
 typedef struct {
-  __constant const parameters_t *scene;
-  __global const real4 *facets;   // HULL: normal and offset, in the world's axes
-  __global const real4 *shadows;  // HULL: planes of the lights' shadow volumes
-  tree_t tree;                    // MESH
-  __global const chain_t *chains;
-  __global const float *panorama; // IMAGE: radiance by row from the zenith down, column and channel
+  WORLD_BUFFERS(AS_MEMBER)
 } world_t;
+
+static inline tree_t tree_of(world_t world) {
+  const tree_t tree = {world.boxes, world.links, world.corners};
+  return tree;
+}
 
 #endif

@@ -9,20 +9,15 @@ from culet.optics.bands import bands
 from culet.optics.dispersion import channel_indices
 from culet.optics.materials import material_of
 from culet.rendering.device import Real
+from culet.rendering.layout import constants, struct
 from culet.scene.model import Scene
 
-GROUPS = 4
-"""Sets of wavelengths that neighbouring pixels take: GROUPS of features.cl."""
+GROUPS = constants("features.cl")["SPECTRAL_GROUPS"]
+"""Sets of wavelengths that neighbouring pixels take."""
 DEFAULT_SIZE_MM = 3.25
 """Radius R of a round brilliant of about one carat (6.5 mm across), for a coloured material in a scene without size."""
 GOLDEN = 0.6180339887498949
 """Fractional part of the golden ratio: multiples of it, modulo 1, fill the strata of the spectrum evenly."""
-
-
-def layout(real: Real) -> np.dtype[np.void]:
-    """`chain_t` of parameters.cl."""
-    r = np.dtype(real)
-    return np.dtype([("eta", r), ("absorption", r), ("share", r, 3), ("summed_share", r)], align=True)
 
 
 def is_spectral(scene: Scene) -> bool:
@@ -54,7 +49,7 @@ def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArr
     they move within their strata from sample to sample.
     """
     if not is_spectral(scene):
-        table = np.zeros(1 if common and scene.optics.estimator == "chain" else 3, layout(real))
+        table = np.zeros(1 if common and scene.optics.estimator == "chain" else 3, struct("chain_t", real))
         table["eta"] = channel_indices(scene.stones[0].material)[: len(table)]
         table["absorption"] = absorption(scene)[: len(table)]
         table["share"] = np.eye(3)[: len(table)]
@@ -63,7 +58,7 @@ def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArr
     material = material_of(stone.material)
     spectrum = bands(scene.optics.bands, offset=(0.5 + sample * GOLDEN) % 1, groups=GROUPS)
     size = DEFAULT_SIZE_MM if stone.size_mm is None else stone.size_mm
-    table = np.zeros(len(spectrum.wavelength), layout(real))
+    table = np.zeros(len(spectrum.wavelength), struct("chain_t", real))
     table["eta"] = material.index(spectrum.wavelength, clamp=True)
     table["absorption"] = material.absorption_per_mm(spectrum.wavelength) * size + _asked(scene, spectrum.wavelength)
     table["share"] = spectrum.weights

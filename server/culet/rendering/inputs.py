@@ -22,7 +22,7 @@ from culet.stage import Stage
 
 
 class Inputs:
-    """Buffers of one stage, in the order of the kernels' arguments; of them only struct and chains differ by sample."""
+    """Buffers of one scene, by the kernels' names; of them only `scene` and `chains` differ by sample."""
 
     def __init__(
         self,
@@ -40,7 +40,7 @@ class Inputs:
         self._sample = -1
         shadow_start, shadows, facets = np.zeros(1, np.int32), np.zeros((1, 4)), np.zeros((1, 4))
         self._struct = parameters(scene, shape, width, height, real)
-        mesh: list[Any] = [None, None, None]
+        mesh: dict[str, Any] = dict.fromkeys(("boxes", "links", "corners"))
         if shape is not None and features.geometry == Geometry.HULL:
             facets = world_planes(scene, shape)
             if features.lights != 0:
@@ -48,7 +48,8 @@ class Inputs:
                 self._struct["shadow_start"][: len(shadow_start)] = shadow_start
         elif shape is not None:
             tree = tree_of(shape)
-            mesh = [self._upload(array) for array in (tree.boxes.astype(real), tree.links, tree.corners.astype(real))]
+            rows = {"boxes": tree.boxes.astype(real), "links": tree.links, "corners": tree.corners.astype(real)}
+            mesh = {name: self._upload(array) for name, array in rows.items()}
         self._has_stone = shape is not None
         self._panorama = None
         panorama = stage.panorama
@@ -57,9 +58,13 @@ class Inputs:
             self._struct["panorama_turn"] = scene.environment.turn_degrees / 360
             self._struct["panorama_scale"] = scene.environment.scale
             self._panorama = device.panorama(panorama)
-        self._fixed = [self._upload(facets.astype(real)), self._upload(shadows.astype(real)), *mesh]
+        self._fixed = {
+            "facets": self._upload(facets.astype(real)),
+            "shadows": self._upload(shadows.astype(real)),
+            **mesh,
+        }
 
-    def of_sample(self, sample: int) -> list[Any]:
+    def of_sample(self, sample: int) -> dict[str, Any]:
         """The kernels' arguments for that sample."""
         if self._sample < 0 or (self._changes and sample != self._sample):
             chains = self._chains(sample)
@@ -67,7 +72,7 @@ class Inputs:
             self._uploaded = self._upload(self._struct), self._upload(chains)
             self._sample = sample
         struct, chains = self._uploaded
-        return [struct, *self._fixed, chains, self._panorama]
+        return {"scene": struct, **self._fixed, "chains": chains, "panorama": self._panorama}
 
     def _chains(self, sample: int) -> NDArray[np.void]:
         scene = self._scene if self._has_stone else Scene()

@@ -1,4 +1,4 @@
-"""A scene's quantities as the kernels read them: the mirror of parameters.cl."""
+"""A scene's quantities as the kernels read them: `parameters_t` of parameters.cl."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from culet.geometry.shape import Shape
 from culet.rendering.chains import absorption
 from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
+from culet.rendering.layout import struct
 from culet.rendering.projection import camera_is_inside, placement, project
 from culet.rendering.studio import set_studio
-from culet.scene.lamps import MOST_LAMPS
 from culet.scene.model import (
     ConstantEnvironment,
     Environment,
@@ -22,38 +22,6 @@ from culet.scene.model import (
 )
 from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
 from culet.scene.studio import StudioEnvironment
-
-MAX_LAMPS = MOST_LAMPS
-MAX_LIGHTS = 8
-MAX_SURFACES = 4
-
-
-def layout(real: Real) -> np.dtype[np.void]:
-    """The struct for kernels of that precision, aligned as C does."""
-    r, d, i = np.dtype(real), np.float64, np.int32
-    return np.dtype(
-        [
-            ("foot", d, 3), ("foot_column", d, 3), ("foot_row", d, 3),
-            ("direction", r, 3), ("direction_column", r, 3), ("direction_row", r, 3),
-            ("reach", r), ("cutoff", r), ("panorama_scale", r), ("panorama_turn", r),
-            ("centre", r, 3), ("absorption", r, 3),
-            ("sky_bottom", r, 3), ("sky_top", r, 3), ("lamp", r, (MAX_LAMPS, 3)),
-            ("lamp_rim", r, MAX_LAMPS), ("lamp_slope", r, MAX_LAMPS),
-            ("lamp_radiance", r, (MAX_LAMPS, 3)), ("box", r, (MAX_LAMPS, 3, 3)), ("box_edge", r, (MAX_LAMPS, 2)),
-            ("box_level", r, (MAX_LAMPS, 2)), ("box_radiance", r, (MAX_LAMPS, 3)),
-            ("head", r, 3), ("head_rim", r), ("head_slope", r), ("head_radiance", r, 3),
-            ("backdrop_centre", r, 3), ("backdrop_edge", r, 3), ("backdrop_focus", r, 2), ("backdrop_scale", r, 2),
-            ("floor_colour", r, 3), ("floor_reflectance", r), ("floor_fade", r), ("floor_roughness", r),
-            ("contact", r, (3, 3)), ("contact_shadow", r), ("surface", r, (MAX_SURFACES, 4)),
-            ("light", r, (MAX_LIGHTS, 3)), ("light_colour", r, (MAX_LIGHTS, 3)), ("axes", r, (3, 3)),
-            ("shadow_start", i, MAX_LIGHTS + 1), ("facets", i), ("lights", i), ("lamps", i), ("boxes", i),
-            ("max_bounces", i),
-            ("width", i), ("height", i), ("chains", i), ("panorama_width", i), ("panorama_height", i), ("sample", i),
-            ("floor_kind", i), ("walls_kind", i), ("sky_kind", i), ("fresnel_kind", i), ("end_kind", i),
-            ("camera_inside", i), ("has_head", i), ("has_backdrop", i), ("glare", i), ("convex", i), ("pierces", i),
-        ],
-        align=True,
-    )  # fmt: skip
 
 
 def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -90,7 +58,7 @@ def parameters(scene: Scene, shape: Shape | None, width: int, height: int, real:
 
     What depends on other buffers (shadows, chains, panorama) is left zero.
     """
-    p = np.zeros((), layout(real))
+    p = np.zeros((), struct("parameters_t", real))
     centre, rotation = placement(scene)
     projection = project(scene, width, height)
     p["foot"], p["foot_column"], p["foot_row"] = projection.foot

@@ -6,6 +6,7 @@ import logging
 import math
 import threading
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,8 +19,8 @@ from culet.rendering import kernel_cache
 from culet.rendering.compiling import compiling
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
+from culet.rendering.layout import arguments, constants, in_order, struct
 from culet.rendering.making import alone
-from culet.rendering.parameters import layout
 
 log = logging.getLogger(__name__)
 
@@ -33,24 +34,30 @@ TILE = 32
 """Pixels on each side of what a core renders at a time."""
 
 
-TILES_DEALT, WORK_BYTES, OF_ITEMS = 0, 1, 2
-"""Where a sample's progress has what, as in tile.cl; then for each work-item whether it keeps a tile that is not done,
-and how many steps it has made in the last launch."""
+TILES_DEALT, WORK_BYTES, OF_ITEMS, ITEM_NUMBERS = (
+    constants("tile.cl")[name] for name in ("TILES_DEALT", "WORK_BYTES", "OF_ITEMS", "ITEM_NUMBERS")
+)
+"""Where a sample's progress has what; then for each work-item whether it keeps a tile that is not done, and how many
+steps it has made in the last launch."""
 
 
 def progress_size(units: int) -> int:
     """Numbers of the progress of a sample to which so many work-items see."""
-    return OF_ITEMS + 2 * units
+    return OF_ITEMS + ITEM_NUMBERS * units
 
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
     """The render kernel of one program."""
 
-    launch: Any
+    entry: Any
     """pyopencl's."""
     kept_bytes: int
     """That a work-item keeps of a tile under way."""
+
+    def launch(self, queue: Any, items: int, given: Mapping[str, object]) -> Any:  # noqa: ANN401 - pyopencl has no types
+        """So many work-items, with the arguments by name; returns the event."""
+        return self.entry(queue, (items,), (1,), *in_order(given))
 
 
 @dataclass(frozen=True)
@@ -176,13 +183,11 @@ class Programs:
 def warm_up(device: Device, kernel: Any) -> int:  # noqa: ANN401
     """Launch once for no tiles, in a queue of its own; the bytes that a work-item keeps of a tile under way."""
     queue = cl.CommandQueue(device.context)
-    size = layout(np.float64).itemsize  # of the largest argument that is read: a scene in either precision
+    size = struct("parameters_t", np.float64).itemsize  # of the largest argument that is read, in either precision
     scratch = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, size)
     progress = np.zeros(progress_size(1), np.uint32)
     target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR, hostbuf=progress)
-    real, integer = np.float64(0), np.int32(0)
-    kernel(
-        queue, (1,), (1,), *[scratch] * 9, real, real, integer, target, integer, scratch, scratch, np.int32(1)
-    )  # fmt: skip
+    given: dict[str, object] = {each.name: scratch if each.scalar is None else 0 for each in arguments()}
+    kernel(queue, (1,), (1,), *in_order({**given, "progress": target, "steps": 1}))
     cl.enqueue_copy(queue, progress, target)
     return int(progress[WORK_BYTES])

@@ -17,6 +17,7 @@ from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, features_of
 from culet.rendering.inputs import Inputs
+from culet.rendering.layout import constants
 from culet.rendering.pace import Pace
 from culet.rendering.program import (
     OF_ITEMS,
@@ -33,8 +34,8 @@ from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene
 from culet.stage import Stage
 
-TALLIES = 2
-"""Numbers for each tile, as in tile.cl."""
+TALLIES = constants("tile.cl")["TALLIES"]
+"""Numbers for each tile."""
 ALMOST = 1 - 2**-20
 """The part of a sample that is done when its pixels are, but not what comes after."""
 DEVELOP_BLOCK = 16
@@ -218,10 +219,21 @@ class Picture:
         cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
         while True:
             event = self._kernel.launch(
-                device.queue, (device.units,), (1,), target, *self._inputs.of_sample(self.samples),
-                np.float64(x), np.float64(y), np.int32(count), buffer, np.int32(accumulate), self._tallies, kept,
-                np.int32(self._pace.steps(seconds)),
-            )  # fmt: skip
+                device.queue,
+                device.units,
+                {
+                    **self._inputs.of_sample(self.samples),
+                    "image": target,
+                    "accumulate": accumulate,
+                    "tallies": self._tallies,
+                    "jitter_x": x,
+                    "jitter_y": y,
+                    "steps": self._pace.steps(seconds),
+                    "count": count,
+                    "progress": buffer,
+                    "kept": kept,
+                },
+            )
             event.wait()
             cl.enqueue_copy(device.queue, progress, buffer)
             taken = time.perf_counter() - start
@@ -240,7 +252,7 @@ class Picture:
     @property
     def program(self) -> Any:  # noqa: ANN401 - pyopencl has no types
         """The built program that renders this picture."""
-        return self._kernel.launch.program
+        return self._kernel.entry.program
 
     def linear(self) -> NDArray[np.floating[Any]]:
         """(height, width, 3) mean linear radiance."""

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
+from culet.rendering.layout import constants
 
-WIDTH = 16
-"""Children of a node, and triangles of a leaf: TREE_WIDTH of mesh.cl."""
-STACK = 128
-"""Nodes that a ray may have waiting: TREE_STACK of mesh.cl."""
+WIDTH = constants("mesh.cl")["TREE_WIDTH"]
+"""Children of a node, and triangles of a leaf."""
+STACK = constants("mesh.cl")["TREE_STACK"]
+"""Nodes that a ray may have waiting."""
 BINS = 32
 """Places at which a split is tried, along each axis."""
 

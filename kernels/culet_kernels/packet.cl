@@ -1,0 +1,82 @@
+// A packet of rays: what a ray carries along, and the rows of numbers in which packets are kept.
+#ifndef CULET_PACKET
+#define CULET_PACKET
+#include "polarisation.cl"
+
+// A ray's tag: its pixel within the tile, above that the group that the pixel belongs to, and above that how often the ray
+// has met the surface from inside.
+#define PIXEL_BITS 12
+#define GROUP_BITS 2
+#define PIXEL_MASK ((1 << PIXEL_BITS) - 1)
+#define BOUNCE_SHIFT (PIXEL_BITS + GROUP_BITS)
+#define ONE_BOUNCE (1 << BOUNCE_SHIFT)
+
+// A chain has one weight; one that the channels share has one for each, where they are absorbed unequally.
+#define WEIGHTS (!SPECTRAL && DISPERSION == 0 && ABSORPTION != 0 ? 3 : 1)
+
+typedef struct {
+  vec3L origin, direction;
+  realL weight[WEIGHTS];
+  realL radiance[CHANNELS];
+  polarisationL polarisation;
+  intL tag;
+} packetL;
+
+// Does something with each number of a packet, in the order of its rows. This list and the one of the whole numbers are all
+// that says how a packet is kept.
+#define NUMBERS (6 + WEIGHTS + CHANNELS + (POLARISED ? 6 : 0))
+#define EACH_NUMBER(packet, WITH)                                                                                      \
+  WITH((packet)->origin.x)                                                                                             \
+  WITH((packet)->origin.y)                                                                                             \
+  WITH((packet)->origin.z)                                                                                             \
+  WITH((packet)->direction.x)                                                                                          \
+  WITH((packet)->direction.y)                                                                                          \
+  WITH((packet)->direction.z)                                                                                          \
+  EACH (k, WEIGHTS) {                                                                                                  \
+    WITH((packet)->weight[k])                                                                                          \
+  }                                                                                                                    \
+  EACH (k, CHANNELS) {                                                                                                 \
+    WITH((packet)->radiance[k])                                                                                        \
+  }                                                                                                                    \
+  if (POLARISED) {                                                                                                     \
+    WITH((packet)->polarisation.q)                                                                                     \
+    WITH((packet)->polarisation.u)                                                                                     \
+    WITH((packet)->polarisation.v)                                                                                     \
+    WITH((packet)->polarisation.axis.x)                                                                                \
+    WITH((packet)->polarisation.axis.y)                                                                                \
+    WITH((packet)->polarisation.axis.z)                                                                                \
+  }
+#define WHOLES 1
+#define EACH_WHOLE(packet, WITH) WITH((packet)->tag)
+
+// Rows that lie `stride` numbers apart. A packet is written whole, and counted as far as it is meant.
+#define PACK_NUMBER(number)                                                                                            \
+  pack_lanes(packing, number, rows);                                                                                   \
+  rows += stride;
+#define PACK_WHOLE(number)                                                                                             \
+  pack_ints(packing, number, wholes);                                                                                  \
+  wholes += stride;
+#define LOAD_NUMBER(number)                                                                                            \
+  number = load_lanes(rows);                                                                                           \
+  rows += stride;
+#define LOAD_WHOLE(number)                                                                                             \
+  number = load_ints(wholes);                                                                                          \
+  wholes += stride;
+
+// The lanes of a packet that the packing takes, to rows.
+static inline void pack_packet(packing_t packing, const packetL *packet, real *rows, int *wholes, int stride) {
+  EACH_NUMBER(packet, PACK_NUMBER)
+  EACH_WHOLE(packet, PACK_WHOLE)
+}
+
+__attribute__((always_inline)) static inline packetL load_packet(const real *rows, const int *wholes, int stride) {
+  packetL packet;
+  const realL none = splat(0);
+  const polarisationL unknown = {none, none, none, {none, none, none}};
+  packet.polarisation = unknown;
+  EACH_NUMBER(&packet, LOAD_NUMBER)
+  EACH_WHOLE(&packet, LOAD_WHOLE)
+  return packet;
+}
+
+#endif
