@@ -8,6 +8,7 @@
     ├── NotFoundError           no such session, mesh or state
     ├── BusyError               a queue or a number of sessions is at its limit
     ├── EngineUnavailableError  the render process does not answer
+    ├── SolverUnavailableError  no compiled solver, and no compiler to make one
     └── DeviceError             no OpenCL device that works, or a kernel that does not build
         └── KernelCacheError    the driver cannot write the programs that it compiles
 
@@ -71,6 +72,13 @@ class EngineUnavailableError(CuletError):
 
     status = 503
     title = "engine unavailable"
+
+
+class SolverUnavailableError(CuletError):
+    """No compiled solver of several stones, and no compiler to make one; says what is missing and what to do."""
+
+    status = 503
+    title = "no solver of several stones"
 
 
 class DeviceError(CuletError):

@@ -15,7 +15,7 @@ from culet.geometry.shape import Shape
 from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.floor import sphere_gap
 from culet.simulation.hull import Hull, hull_of
-from culet.simulation.inertia import inertia_tensor
+from culet.simulation.inertia import InertiaKind, inertia_tensor
 from culet.simulation.principal_axes import PrincipalAxis, principal_axes
 from culet.simulation.rotation import rotate, rotate_back
 from culet.simulation.state import Quaternion, RigidState, Triple
@@ -40,10 +40,7 @@ class RigidBody:
     @classmethod
     def of(cls, settings: SimulationSettings, shape: Shape, surfaces: tuple[Surface, ...] = (FLOOR,)) -> Self:
         """The body of that stone between these surfaces; InputError if its inertia tensor is none."""
-        per_mass = _rows(inertia_tensor(settings.inertia, shape))
-        inverse = _inverse(per_mass)
-        mass = settings.mass
-        return cls(shape, mass, _scaled(per_mass, mass), _scaled(inverse, 1 / mass), surfaces)
+        return cls(shape, settings.mass, *inertia_of(settings.inertia, shape, settings.mass), surfaces)
 
     @cached_property
     def hull(self) -> Hull:
@@ -94,7 +91,7 @@ class RigidBody:
 
     def angular_momentum(self, orientation: Quaternion, omega: Triple) -> Triple:
         """Of that angular velocity (world axes, rad/s), in world axes, mass R^2/s."""
-        return rotate(orientation, _apply(self.inertia, rotate_back(orientation, omega)))
+        return angular_momentum_of(self.inertia, orientation, omega)
 
     def energy(self, state: RigidState, gravity: float) -> float:
         """Kinetic and potential, mass R^2/s^2; the latter is 0 where the bounding sphere touches the floor."""
@@ -102,6 +99,20 @@ class RigidBody:
         linear = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) / (2 * self.mass)
         rotational = 0.5 * (angular[0] * omega[0] + angular[1] * omega[1] + angular[2] * omega[2])
         return linear + rotational + self.mass * gravity * sphere_gap(state.position)
+
+
+def inertia_of(kind: InertiaKind, shape: Shape, factor: float) -> tuple[Rows, Rows]:
+    """The tensor that a scene names, and its inverse, of a shape of R = 1 and a mass of 1, times a factor.
+
+    The factor of a placed stone is its mass times its scale squared. InputError if the tensor is none.
+    """
+    per_mass = _rows(inertia_tensor(kind, shape))
+    return _scaled(per_mass, factor), _scaled(_inverse(per_mass), 1 / factor)
+
+
+def angular_momentum_of(inertia: Rows, orientation: Quaternion, omega: Triple) -> Triple:
+    """Of a body with that tensor in its own axes, in world axes."""
+    return rotate(orientation, _apply(inertia, rotate_back(orientation, omega)))
 
 
 def _apply(rows: Rows, v: Triple) -> Triple:

@@ -1,0 +1,109 @@
+"""culet_solver.h for ctypes: the same structures and functions. A call releases Python's lock while it runs."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, Structure, c_double, c_int32, c_size_t, c_void_p
+
+VERSION = 1
+"""CULET_INTERFACE."""
+MAX_VERTICES = 512
+MAX_SURFACES = 16
+NO_MEMORY = -1
+NO_ROOM = -2
+
+Doubles = POINTER(c_double)
+Integers = POINTER(c_int32)
+
+
+class Law(Structure):
+    """CuletLaw."""
+
+    _fields_ = (
+        ("gravity", c_double),
+        ("bounce_speed", c_double),
+        ("contact_step", c_double),
+        ("rolling_resistance", c_double),
+        ("sleeping", c_int32),
+        ("substeps", c_int32),
+        ("sweeps", c_int32),
+    )
+
+
+class Hull(Structure):
+    """CuletHull."""
+
+    _fields_ = (
+        ("vertex_count", c_int32),
+        ("face_count", c_int32),
+        ("edge_count", c_int32),
+        ("vertices", Doubles),
+        ("planes", Doubles),
+        ("first", Integers),
+        ("corners", Integers),
+        ("edges", Integers),
+    )
+
+
+class Properties(Structure):
+    """CuletBody."""
+
+    _fields_ = (
+        ("mass", c_double),
+        ("inertia", c_double * 9),
+        ("inverse_inertia", c_double * 9),
+        ("axes", c_double * 9),
+        ("moments", c_double * 3),
+        ("restitution", c_double),
+        ("friction", c_double),
+    )
+
+
+class State(Structure):
+    """CuletState."""
+
+    _fields_ = (
+        ("position", c_double * 3),
+        ("orientation", c_double * 4),
+        ("velocity", c_double * 3),
+        ("angular_momentum", c_double * 3),
+        ("spin", c_double * 3),
+        ("asleep", c_int32),
+        ("held", c_int32),
+    )
+
+
+class Touch(Structure):
+    """CuletTouch."""
+
+    _fields_ = (("contacts", c_int32), ("penetration", c_double))
+
+
+_FUNCTIONS: dict[str, tuple[object, tuple[object, ...]]] = {
+    "culet_interface": (c_int32, ()),
+    "culet_world_new": (c_void_p, (c_int32,)),
+    "culet_world_free": (None, (c_void_p,)),
+    "culet_world_set_law": (None, (c_void_p, POINTER(Law))),
+    "culet_world_set_surfaces": (None, (c_void_p, c_int32, Doubles)),
+    "culet_world_add": (c_int32, (c_void_p, POINTER(Hull), POINTER(Properties), POINTER(State))),
+    "culet_world_remove": (None, (c_void_p, c_int32)),
+    "culet_world_set_body": (None, (c_void_p, c_int32, POINTER(Properties))),
+    "culet_world_set_state": (None, (c_void_p, c_int32, POINTER(State))),
+    "culet_world_hold": (None, (c_void_p, c_int32, c_int32)),
+    "culet_world_push": (None, (c_void_p, c_int32, Doubles, Doubles)),
+    "culet_world_wake": (None, (c_void_p,)),
+    "culet_world_step": (c_int32, (c_void_p, c_double)),
+    "culet_world_states": (None, (c_void_p, POINTER(State))),
+    "culet_world_touches": (None, (c_void_p, POINTER(Touch))),
+    "culet_world_size": (c_size_t, (c_void_p,)),
+    "culet_world_save": (None, (c_void_p, c_void_p)),
+    "culet_world_load": (c_int32, (c_void_p, c_void_p, c_size_t)),
+    "culet_world_separation": (c_double, (c_void_p, c_int32, c_int32, c_double)),
+}
+
+
+def declare(library: ctypes.CDLL) -> None:
+    """Tell ctypes what each function takes and gives."""
+    for name, (result, arguments) in _FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
