@@ -263,7 +263,7 @@ async def test_a_stone_that_fell_asleep_is_drawn_in_full_once_and_refined(
     await play(world, 30 * full_seconds, rate=rate)
     world.session.set_falling(True)
     await play(world, 40 * full_seconds + 30, rate=rate)
-    assert world.session.asleep
+    assert world.session.motion.asleep
     assert [(drawn.full, drawn.size == WANTED) for drawn in world.drawn[-1:]] == [(True, True)]
     assert not world.drawn[-2].full
     assert world.samples == REST_SAMPLES

@@ -171,18 +171,18 @@ def test_the_stone_falls_pauses_and_goes_back() -> None:
     assert subject.pose() == fallen
     after(subject, messages.ResetStone())
     assert subject.pose() == start
-    assert not subject.falling
+    assert not subject.motion.falling
 
 
 def test_a_stone_that_sleeps_is_dropped_anew_by_the_same_key() -> None:
     subject = falling(session(simulation={"restitution": 0, "gravity": 100}))
     for tenth in range(20):  # it sleeps after 1 s
         subject.advance(tenth / 10)
-    assert (subject.asleep, subject.falling, subject.moving) == (True, True, False)
-    assert subject.report(edited=False).asleep
+    assert (subject.motion.asleep, subject.motion.falling, subject.motion.moving) == (True, True, False)
+    assert subject.state(edited=False).asleep
     after(subject, messages.ToggleFall())
     assert subject.pose() == session().pose(), "its start"
-    assert (subject.asleep, subject.falling, subject.moving) == (False, True, True)
+    assert (subject.motion.asleep, subject.motion.falling, subject.motion.moving) == (False, True, True)
     subject.advance(100)
     subject.advance(100.2)
     assert 0 < subject.shown.simulation_time <= 0.2
@@ -199,7 +199,7 @@ def test_a_patch_of_what_is_not_about_motion_leaves_the_stone_in_the_air() -> No
     material: dict[str, Any] = subject.scene.model_dump(mode="json")["stones"][0] | {"material": "classic"}
     after(subject, messages.PatchScene(patch={"stones": [material], "floor": {"kind": "matte"}}))
     assert subject.pose() == pose
-    assert subject.falling
+    assert subject.motion.falling
     assert subject.shown.scene.stones[0].material == "classic"
 
 
@@ -207,7 +207,7 @@ def test_another_shape_is_put_at_the_start_at_rest() -> None:
     subject = falling(session())
     scene = after(subject, messages.PatchScene(patch={"stones": [{"cut": {"table_percent": 60}}]}))
     assert subject.shown.scene.stones[0].position == scene.stones[0].position
-    assert not subject.falling
+    assert not subject.motion.falling
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_another_start_is_shown_and_a_falling_stone_falls_from_there(patch: dict
     scene = after(subject, messages.PatchScene(patch=patch))
     assert subject.pose() == session(**scene.model_dump(mode="json")).pose()
     assert subject.shown.simulation_time == 0
-    assert (subject.falling, subject.moving) == (falls, falls)
+    assert (subject.motion.falling, subject.motion.moving) == (falls, falls)
     fresh = session(**scene.model_dump(mode="json"))
     fresh.set_falling(falls)
     for one in (subject, fresh):
@@ -252,7 +252,7 @@ def test_a_new_scene_replaces_camera_and_stone() -> None:
     scene = after(subject, messages.SetScene(scene={"stones": [{"position": [0, 2, 0]}]}))
     assert scene == Scene.read({"stones": [{"position": [0, 2, 0]}]})
     assert subject.shown.scene == scene
-    assert not subject.falling
+    assert not subject.motion.falling
 
 
 @pytest.mark.parametrize(
@@ -274,4 +274,4 @@ def test_a_bad_scene_is_refused_by_field_and_changes_nothing(event: SessionEvent
     with pytest.raises(SceneError) as caught:
         after(subject, event)
     assert caught.value.field == field
-    assert (subject.shown, subject.scene, subject.falling) == (shown, scene, True)
+    assert (subject.shown, subject.scene, subject.motion.falling) == (shown, scene, True)

@@ -37,7 +37,7 @@ def motion(session: Session) -> Any:  # noqa: ANN401
 
 def velocities(session: Session) -> list[float]:
     """Linear, R/s, and angular, rad/s."""
-    simulation, mass = session._simulation, session.scene.simulation.mass
+    simulation, mass = session.motion.simulation, session.scene.simulation.mass
     assert simulation is not None
     state = simulation.state
     omega = simulation.body.angular_velocity(state)
@@ -66,7 +66,7 @@ def test_a_setting_acts_at_once_and_leaves_the_stone_where_it_is(change: dict[st
     assert changed.pose() == unchanged.pose()
     assert changed.shown.simulation_time == unchanged.shown.simulation_time > 0.15
     assert velocities(changed) == pytest.approx(velocities(unchanged), rel=1e-12)  # measured 2e-16
-    assert changed.falling
+    assert changed.motion.falling
     for frame in range(1, 101):
         for session in (changed, unchanged):
             session.advance(0.2 + frame / 50)
@@ -78,7 +78,7 @@ def test_a_pause_is_kept_and_the_same_settings_are_no_change() -> None:
     session.advance(0.2)
     session.set_falling(False)
     patch(session, gravity=2)
-    assert not session.falling
+    assert not session.motion.falling
     shown = session.shown
     patch(session, gravity=2)
     assert session.shown is shown
@@ -104,10 +104,10 @@ def test_the_same_change_at_the_same_step_gives_the_same_path_at_any_frame_rate(
 
 def at_rest(**scene: Any) -> tuple[Session, float]:  # noqa: ANN401
     session, now = falling(scene), 0.0
-    while session.moving and now < 60:
+    while session.motion.moving and now < 60:
         now += 0.2
         session.advance(now)
-    assert not session.moving
+    assert not session.motion.moving
     return session, now
 
 
@@ -115,7 +115,7 @@ def test_a_stone_at_rest_wakes_just_if_the_change_moves_it() -> None:
     session, now = at_rest()
     resting = session.pose()
     patch(session, gravity=4, friction=0.05, restitution=1)
-    assert not session.moving  # a floor that is level holds it without friction, at any weight
+    assert not session.motion.moving  # a floor that is level holds it without friction, at any weight
     patch(session, model="classic")  # whose sphere must rise out of the floor
     assert session.shown.moving
     session.advance(now + 1000)  # the time that it rested is not made up for
@@ -128,7 +128,7 @@ def test_a_stone_at_rest_wakes_just_if_the_change_moves_it() -> None:
 def test_a_stone_that_has_come_to_rest_is_dropped_again_from_another_start(start: dict[str, Any]) -> None:
     session, now = at_rest()
     events.apply(session, PatchScene(patch=start), NOTHING)
-    assert session.moving
+    assert session.motion.moving
     session.advance(now + 1000)
     assert session.shown.simulation_time == 0
     session.advance(now + 1000.1)
@@ -141,7 +141,7 @@ def test_another_engine_goes_on_with_the_settings_of_before() -> None:
     session = falling()
     session.advance(0.21)
     patch(session, gravity=3, time_step=1 / 90, model="classic")
-    report = json.loads(session.report(edited=True).model_dump_json())
+    report = json.loads(session.state(edited=True).model_dump_json())
     other = Session.restored(session.name, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     assert other.shown.scene == session.shown.scene
     for one in (session, other):

@@ -53,7 +53,7 @@ def test_a_stone_that_is_not_convex_is_struck_on_its_sphere() -> None:
 def test_a_push_moves_a_paused_stone_by_that_speed_and_lets_time_go_on() -> None:
     session = Session("0" * 32, Stage.of(SCENE))
     session.push(0, 0, 0.5, 0)  # the camera looks at the stone, and its right is +x
-    assert session.moving
+    assert session.motion.moving
     session.advance(100.0)
     session.advance(100.1)
     pose = session.pose()
@@ -67,10 +67,10 @@ def test_a_push_wakes_a_stone_that_rests_without_a_jump_in_time() -> None:
     session = Session("0" * 32, Stage.of(SCENE))
     session.set_falling(True)
     now = 0.0
-    while session.moving and now < 60:
+    while session.motion.moving and now < 60:
         session.advance(now)
         now += 0.2
-    assert not session.moving
+    assert not session.motion.moving
     time = session.shown.simulation_time
     session.push(0, -0.2, 1, 1)
     assert session.shown.moving
@@ -83,7 +83,7 @@ def test_a_push_past_the_stone_changes_nothing() -> None:
     before = session.shown
     session.push(5, 5, 1, 1)
     assert session.shown == before
-    assert not session.moving
+    assert not session.motion.moving
 
 
 def test_nothing_can_be_pushed_in_a_scene_without_a_stone() -> None:

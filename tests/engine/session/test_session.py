@@ -57,8 +57,8 @@ def test_a_long_pause_between_frames_is_slow_motion_and_no_leap() -> None:
 
 def test_of_a_stone_that_sleeps_not_even_the_time_shown_goes_on() -> None:
     session = fallen(10, frames=300)
-    assert session.falling
-    assert session.asleep
+    assert session.motion.falling
+    assert session.motion.asleep
     resting = session.shown
     assert not resting.moving
     session.advance(200)
@@ -86,12 +86,12 @@ def test_a_restored_session_shows_the_same_and_moves_on_the_same() -> None:
     session.change(
         STAGE.showing(SCENE.model_copy(update={"camera": SCENE.camera.model_copy(update={"fov_degrees": 20.0})}))
     )
-    report = json.loads(session.report(edited=True).model_dump_json())
+    report = json.loads(session.state(edited=True).model_dump_json())
     restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     assert restored.pose() == session.pose()
     assert restored.scene == session.scene
     assert restored.home == SCENE.camera
-    assert restored.falling
+    assert restored.motion.falling
     for one in (session, restored):
         one.set_falling(True)
         one.advance(0)
@@ -128,7 +128,7 @@ class Processor:
 
     def __init__(self, session: Session, seconds_a_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now, self.steps = 0.0, 0
-        simulation = session._simulation
+        simulation = session.motion.simulation
         assert simulation is not None
         step = simulation.step
 
@@ -138,7 +138,7 @@ class Processor:
             step()
 
         monkeypatch.setattr(simulation, "step", costly)
-        monkeypatch.setattr(session, "_timer", lambda: self.now)
+        monkeypatch.setattr(session.motion, "_timer", lambda: self.now)
 
 
 def costly_fall(seconds_a_step: float, frame: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, list[float]]:
@@ -165,38 +165,38 @@ def test_steps_that_take_too_long_leave_half_of_the_time_to_others(
     assert max(spent) <= MOST_WORK + seconds_a_step  # measured: 0.024, 0.03 and 1
     assert sum(spent) <= WORK_SHARE * 4 + MOST_WORK + seconds_a_step  # measured: 1.53, 1.92 and 3
     assert session.shown.simulation_time < 4  # slow motion
-    assert session._clock.dropped > 0
+    assert session.motion.clock.dropped > 0
 
 
 def test_steps_that_a_frame_has_time_for_are_all_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     session, _ = costly_fall(0.001, 1 / 30, monkeypatch)
-    assert session._clock.dropped == 0
+    assert session.motion.clock.dropped == 0
 
 
 def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     session, _ = costly_fall(0.03, 1 / 30, monkeypatch)
     alone = Session(NAME, STAGE)
-    assert session._simulation is not None
-    assert alone._simulation is not None
-    for _ in range(session._simulation.state.step):
-        alone._simulation.step()
-    assert session._simulation.state == alone._simulation.state
+    assert session.motion.simulation is not None
+    assert alone.motion.simulation is not None
+    for _ in range(session.motion.simulation.state.step):
+        alone.motion.simulation.step()
+    assert session.motion.simulation.state == alone.motion.simulation.state
 
 
 def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeypatch: pytest.MonkeyPatch) -> None:
     session = fallen(0.21)
-    report = json.loads(session.report(edited=True).model_dump_json())
+    report = json.loads(session.state(edited=True).model_dump_json())
     restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     for one in (session, restored):
-        assert one.falling
+        assert one.motion.falling
 
         def failing() -> None:
             raise ZeroDivisionError
 
-        monkeypatch.setattr(one._simulation, "step", failing)
+        monkeypatch.setattr(one.motion.simulation, "step", failing)
         if one is restored:  # it begins to count time with its first frame
             one.advance(200)
         with pytest.raises(ZeroDivisionError):
             one.advance(201)
-        assert (one.falling, one.moving, one.shown.moving) == (False, False, False)
+        assert (one.motion.falling, one.motion.moving, one.shown.moving) == (False, False, False)
         one.advance(202)  # nothing more is tried

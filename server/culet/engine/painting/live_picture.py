@@ -141,7 +141,7 @@ class LivePicture:
     @property
     def at_rest(self) -> bool:
         """Whether the picture is right until somebody changes something."""
-        return self.current and not self.session.moving
+        return self.current and not self.session.motion.moving
 
     @property
     def settled(self) -> bool:
@@ -287,7 +287,7 @@ class LivePicture:
     def abandon(self, now: float) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
         self.work, self.picture = None, None
-        self.session.pause()
+        self.session.motion.pause()
         self.unwatched_at = now
         if self.state in (State.REDUCED, State.FULL):
             self.state = State.BLANK

@@ -213,7 +213,7 @@ class Painter:
         work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated)
         if self._share(live) >= 1:
             work.piece_seconds = ALONE_SECONDS
-        work.slow = shown.moving and live.session.pace.slow
+        work.slow = shown.moving and live.session.motion.pace.slow
         work.spent = self._now() - begun_at
         work.start(self._renderer)
         live.work = work

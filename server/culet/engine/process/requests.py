@@ -144,16 +144,16 @@ class Requests:
 
     def _has_moved(self, live: LivePicture) -> bool:
         session = live.session
-        return session.asleep != live.told_asleep or self._told.get(session.name) != _numbers(session)
+        return session.motion.asleep != live.told_asleep or self._told.get(session.name) != _numbers(session)
 
     async def _report_motion(self, live: LivePicture) -> None:
         session = live.session
         try:
             async with session.lock:  # or a step could be taken between the parts of the snapshot
                 self._told[session.name] = _numbers(session)
-                if session.asleep != live.told_asleep:
-                    live.told_asleep = session.asleep
-                    self._tell(session.report(edited=False))
+                if session.motion.asleep != live.told_asleep:
+                    live.told_asleep = session.motion.asleep
+                    self._tell(session.state(edited=False))
                 else:
                     self._tell(protocol.SessionMotion(session=session.name, moved=session.snapshot().moving_part()))
         finally:
@@ -172,7 +172,7 @@ class Requests:
             "uptime_seconds": time.monotonic() - self._started,
             "sessions": len(pictures),
             "sessions_watched": sum(live.watched for live in pictures),
-            "sessions_moving": sum(live.watched and live.session.moving for live in pictures),
+            "sessions_moving": sum(live.watched and live.session.motion.moving for live in pictures),
             "stills_waiting": len(self._stills),
             "meshes": len(self._meshes),
             "skies": len(self._skies),
@@ -186,8 +186,12 @@ class Requests:
 
     def _pace(self) -> dict[str, Any]:
         """How far simulations that somebody watches are behind real time."""
-        paces = [live.session.pace for live in self._painter.pictures.values()]
-        moving = [live.session.pace for live in self._painter.pictures.values() if live.watched and live.session.moving]
+        paces = [live.session.motion.pace for live in self._painter.pictures.values()]
+        moving = [
+            live.session.motion.pace
+            for live in self._painter.pictures.values()
+            if live.watched and live.session.motion.moving
+        ]
         return {
             "simulated_seconds": self._closed_pace[0] + sum(pace.seconds for pace in paces),
             "simulated_seconds_dropped": self._closed_pace[1] + sum(pace.dropped for pace in paces),
@@ -262,10 +266,10 @@ class Requests:
         return size + sum(own for key, own in panoramas.items() if key not in kept)
 
     def _history_bytes(self) -> int:
-        return SHOWN_BYTES * sum(live.session.remembered for live in self._painter.pictures.values())
+        return SHOWN_BYTES * sum(len(live.session.history) for live in self._painter.pictures.values())
 
     def _close(self, session: str) -> dict[str, Any]:
-        pace = self._live(session).session.pace
+        pace = self._live(session).session.motion.pace
         self._closed_pace = self._closed_pace[0] + pace.seconds, self._closed_pace[1] + pace.dropped
         del self._painter.pictures[session]
         del self._touched[session]
@@ -284,10 +288,10 @@ class Requests:
                     await asyncio.to_thread(apply)
                 else:
                     apply()
-                self._tell(session.report(edited=True))
+                self._tell(session.state(edited=True))
         finally:
             self._painter.wake()
-        return {"step": session.shown.step, "falling": session.falling}
+        return {"step": session.shown.step, "falling": session.motion.falling}
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
         live = self._live(request.session)
@@ -395,8 +399,8 @@ def described(live: LivePicture) -> dict[str, Any]:
     return {
         "session": session.name,
         "scene": session.scene.model_dump(mode="json"),
-        "falling": session.falling,
-        "asleep": session.asleep,
+        "falling": session.motion.falling,
+        "asleep": session.motion.asleep,
         "exactness": session.balance.exactness,
         "pinned": session.balance.pinned,
         "watched": live.watched,

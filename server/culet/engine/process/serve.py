@@ -273,7 +273,7 @@ class Engine:
         self._spawn(self._peers.tell(encoded(problem)))
         live = self._painter.pictures.get(session)
         if live is not None:  # its stone may have stopped
-            self._tell(live.session.report(edited=True))
+            self._tell(live.session.state(edited=True))
 
     async def _try_again(self, session: str) -> None:
         await asyncio.sleep(RETRY_SECONDS)

@@ -7,8 +7,9 @@ from typing import Any, Literal, assert_never
 from pydantic import ValidationError
 
 from culet.engine.session import viewpoint
+from culet.engine.session.history import Past
 from culet.engine.session.merge_patch import merge_patch
-from culet.engine.session.session import Past, Session
+from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
 from culet.scene import Camera, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment

@@ -1,24 +1,24 @@
 """One session: a scene as its viewers have edited it, the stone in motion, and what was shown lately.
 
-A session does not render and does not know who watches. Every change goes through `change`, `advance` or `set_falling`,
-which give what is shown a new step number whenever it differs from before.
+A session does not render and does not know who watches. Every change goes through a method of `Session`, which gives
+what is shown a new step number whenever it differs from before.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 from time import thread_time
 from typing import Any
 
+from culet.engine.session.history import History, Past
+from culet.engine.session.motion import Motion
 from culet.engine.session.picking import struck_point
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
-from culet.errors import InputError, NotFoundError
+from culet.errors import InputError
 from culet.scene import Camera, Scene
-from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
 from culet.stage import Sky, Stage
 from culet_protocol.engine import SessionState
 from culet_protocol.messages import BALANCED, Balance
@@ -41,15 +41,6 @@ class Shown:
         return self.stage.scene
 
 
-@dataclass(frozen=True)
-class Past:
-    """What was shown, by the names of its mesh and sky: however long it is remembered, it keeps neither."""
-
-    step: int
-    scene: Scene
-    """With the live camera and the stones' poses."""
-
-
 class Session:
     """Mutable; changed under `lock` only, since a change may wait for a thread that makes a stone."""
 
@@ -68,33 +59,26 @@ class Session:
         self.key = bytes.fromhex(name)
         """The 16 bytes that its frames begin with."""
         self.lock = asyncio.Lock()
-        self.falling = False
         self.balance = Balance(exactness=BALANCED, pinned=False)
         """Of speed and exactness, while things move."""
         self.sequence = 0
         """Of the frame sent last."""
-        self._history_length = history
-        self._history: OrderedDict[int, Past] = OrderedDict()
-        self._advanced_at: float | None = None
-        self._timer = timer
-        self._allowance = Allowance()
-        self.pace = Pace()
-        """Of the simulation."""
+        self.history = History(history)
+        self.motion = Motion(stage, timer=timer)
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
         self.home = stage.scene.camera
         """The camera as the scene has it."""
         self.sky = sky or stage.sky
-        """That of the stage, or of the stage before it was put under the light one."""
-        self._place(stage)
-        self._clock = _clock(stage.scene)
+        """The session's own sky: the stage's, or the one of the stage before a viewer switched to the light sky."""
         self.shown = self._look(step=1)
 
     @classmethod
     def restored(
         cls,
         name: str,
-        stage: Stage,
+        scene: Scene,
+        stone: Stone | None,
         snapshot: Snapshot,
         *,
         sky: Sky | None = None,
@@ -103,12 +87,9 @@ class Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
         session = cls(name, stage, sky=sky, history=history)
         session.home = snapshot.home
-        session._clock = _clock(stage.scene, snapshot.fraction)
-        session.falling = snapshot.falling and session._simulation is not None
         session.sequence = snapshot.next_sequence
         session.balance = Balance(exactness=snapshot.exactness, pinned=snapshot.pinned)
-        if session._simulation is not None and snapshot.simulation is not None:
-            session._simulation.restore(snapshot.simulation)
+        session.motion.restore(snapshot.simulation, snapshot.fraction, falling=snapshot.falling)
         session.shown = session._look(step=snapshot.next_step)
         return session
 
@@ -117,30 +98,13 @@ class Session:
         """That of the stage."""
         return self.stage.scene
 
-    @property
-    def moving(self) -> bool:
-        """Whether time would change what is shown."""
-        return self.falling and self._simulation is not None and not self.asleep
-
-    @property
-    def asleep(self) -> bool:
-        """Whether the stone has come to rest for good, unless somebody changes something."""
-        return self._simulation is not None and self._simulation.settled
-
     def change(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """Show this stage by its camera; `home` is where a reset takes the camera, by default where it was.
 
         The stone goes on from where it is, by the scene's settings. `sky` is that of a stage with an environment of its
         own. InputError, and nothing changed, if the stone cannot have these settings.
         """
-        scene, was_moving = stage.scene, self.moving
-        if self._simulation is not None:
-            self._simulation.adjust(scene.simulation)
-            self._simulation.surround(surfaces_of(scene))
-        if scene.simulation.time_step != self._clock.time_step:
-            self._clock = _clock(scene, self._clock.fraction)
-        if not was_moving:
-            self._advanced_at = None  # the time that it rested is not made up for
+        self.motion.follow(stage.scene)
         self.stage = stage
         self.home = home or self.home
         self.sky = sky or self.sky
@@ -148,131 +112,76 @@ class Session:
 
     def start_anew(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """As `change`, with the stone put to the scene's start, from where it falls at once if it was falling."""
-        self._place(stage)
-        self._advanced_at = None
-        self._clock.restart()
+        self.motion.place(stage)
         self.change(stage, home=home, sky=sky)
 
     def replace_stones(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """As `change`, with another stone, or none: at rest where the scene has it."""
-        self._place(stage)
-        self._stop()
+        self.motion.place(stage)
+        self.motion.stop()
         self.change(stage, home=home, sky=sky)
 
     def set_falling(self, falling: bool) -> None:
         """Start or pause free fall; InputError if there is nothing to fall."""
-        if self._simulation is None:
-            raise InputError("expected a scene with a stone, got none: nothing can fall")
-        if falling:
-            self._simulation.prepare()
-        self.falling = falling
-        self._advanced_at = None
+        self.motion.set_falling(falling)
         self._show()
 
     def toggle_fall(self) -> None:
-        """Start or pause free fall. A stone that sleeps, or has not moved yet, is dropped from where the scene has it,
-        and from above there if it stands on the floor. InputError if there is nothing to fall."""
-        simulation, was_falling = self._simulation, self.falling
-        if simulation is not None and (self.asleep or (simulation.at_start and not was_falling)):
-            self._stop()
-            simulation.drop()
-            was_falling = False
-        self.set_falling(not was_falling)
+        """As `Motion.toggle_fall`."""
+        self.motion.toggle_fall()
+        self._show()
 
     def push(self, x: float, y: float, right: float, up: float) -> None:
         """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.
 
         Time goes on, if the stone is hit. InputError if there is no stone, or the blow is too strong.
         """
-        if self._simulation is None:
+        if self.motion.simulation is None:
             raise InputError("expected a scene with a stone, got none: nothing can be pushed")
-        position, orientation = self._simulation.state.position, self._simulation.state.orientation
-        point = struck_point(self.scene.camera, self.stage.shapes[0], position, orientation, x, y)
+        state = self.motion.simulation.state
+        point = struck_point(self.scene.camera, self.stage.shapes[0], state.position, state.orientation, x, y)
         if point is None:
             return
         right_axis, up_axis, _ = axes(self.scene.camera)
-        a, b, c = ((right * right_axis + up * up_axis) * self._simulation.body.mass).tolist()
-        was_moving = self.moving
-        self._simulation.push((a, b, c), point)
-        self.falling = True
-        if not was_moving:
-            self._advanced_at = None
+        a, b, c = (right * right_axis + up * up_axis).tolist()
+        self.motion.push(point, (a, b, c))
         self._show()
 
     def reset_stone(self) -> None:
         """Put the stone back to where the scene has it, and stop it."""
-        if self._simulation is not None:
-            self._simulation.reset()
-        self._stop()
+        self.motion.reset()
         self._show()
 
     def advance(self, now: float, share: float = 1.0) -> None:
-        """Simulate up to `now`, in seconds of a steady clock, in fixed steps; show the pose between the last two.
-
-        Steps may take their part of the `share` of the time that the session can have beside others.
+        """Simulate up to `now` as `Motion.advance` does; show the pose between the last two states.
 
         Of a stone that does not move nothing changes, not even the time shown: another time would be another picture,
-        to be drawn anew. Steps that take too long are given up (`Allowance`). If one fails, the stone stops, and the
-        error is raised.
+        to be drawn anew.
         """
-        if self._simulation is None or not self.moving:
-            return
-        elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
-        self._advanced_at = now
         try:
-            self._step(self._simulation, elapsed, share)
-            self._show()
+            moved = self.motion.advance(now, share)
         except Exception:
-            self._stop()
             self._show()
             raise
-
-    def pause(self) -> None:
-        """Nobody watches: the time that passes now is not made up for, nor is it lost."""
-        self._advanced_at = None
-
-    def _step(self, simulation: Simulation, elapsed: float, share: float) -> None:
-        self._allowance.grow(elapsed, share)
-        due = self._clock.advance(elapsed)
-        for taken in range(due):
-            if self._allowance.spent:
-                self._clock.drop(due - taken)
-                break
-            begun = self._timer()
-            simulation.step()
-            self._allowance.spend(self._timer() - begun)
-        self.pace.passed(elapsed, self._clock.dropped)
+        if moved:
+            self._show()
 
     def remember(self, shown: Shown) -> None:
         """Keep what a frame was made of, so that it can be rendered again."""
-        self._history[shown.step] = Past(shown.step, shown.scene)
-        while len(self._history) > self._history_length:
-            self._history.popitem(last=False)
-
-    @property
-    def remembered(self) -> int:
-        """Shown states that are kept."""
-        return len(self._history)
+        self.history.add(Past(shown.step, shown.scene))
 
     def recall(self, step: int | None) -> Past:
         """What was shown at a step (None: now), or NotFoundError."""
-        if step is None or step == self.shown.step:
-            return Past(self.shown.step, self.shown.scene)
-        try:
-            return self._history[step]
-        except KeyError:
-            raise NotFoundError(
-                f"step {step} was never shown or is forgotten; the session is at step {self.shown.step} "
-                f"and keeps the last {self._history_length} that it showed"
-            ) from None
+        now = Past(self.shown.step, self.shown.scene)
+        return now if step is None else self.history.at(step, now)
 
-    def report(self, *, edited: bool) -> SessionState:
+    def state(self, *, edited: bool) -> SessionState:
         """What the gateway needs to know, and another engine needs to go on."""
         return SessionState(
             session=self.name,
             scene=self.scene.model_dump(mode="json"),
-            falling=self.falling,
-            asleep=self.asleep,
+            falling=self.motion.falling,
+            asleep=self.motion.asleep,
             exactness=self.balance.exactness,
             pinned=self.balance.pinned,
             edited=edited,
@@ -282,9 +191,9 @@ class Session:
     def snapshot(self) -> Snapshot:
         """What the scene does not say."""
         return Snapshot(
-            simulation=None if self._simulation is None else self._simulation.snapshot(),
-            fraction=min(self._clock.fraction, LARGEST_FRACTION),
-            falling=self.falling,
+            simulation=self.motion.snapshot(),
+            fraction=min(self.motion.fraction, LARGEST_FRACTION),
+            falling=self.motion.falling,
             home=self.home,
             environment=self.sky.environment,
             exactness=self.balance.exactness,
@@ -300,31 +209,12 @@ class Session:
         stone = self.shown.scene.stones[0]
         return {"position": stone.position, "orientation": stone.orientation}
 
-    def _stop(self) -> None:
-        self.falling = False
-        self._advanced_at = None
-        self._clock.restart()
-
     def _show(self) -> None:
         look = self._look(step=self.shown.step)
         if look != self.shown:
             self.shown = self._look(step=self.shown.step + 1)
 
     def _look(self, step: int) -> Shown:
-        stage, time = self.stage, 0.0
-        if self._simulation is not None:
-            fraction = self._clock.fraction
-            stage = stage.posed([self._simulation.interpolated(fraction)])
-            before, after = self._simulation.previous.time, self._simulation.state.time
-            time = before + (after - before) * fraction
-        return Shown(step, stage, time, self.moving)
-
-    def _place(self, stage: Stage) -> None:
-        self._simulation = Simulation.of(stage) if stage.shapes else None
-
-
-def _clock(scene: Scene, fraction: float = 0.0) -> FixedStepClock:
-    """A clock for the scene's steps that is so far between two of them."""
-    clock = FixedStepClock(scene.simulation.time_step)
-    clock.advance(min(fraction, LARGEST_FRACTION) * clock.time_step)
-    return clock
+        pose = self.motion.pose()
+        stage = self.stage if pose is None else self.stage.posed([pose])
+        return Shown(step, stage, self.motion.time, self.motion.moving)
