@@ -3,8 +3,9 @@
 import pytest
 
 from culet.engine.painting import schedule
+from culet.engine.painting.frame_sender import UNSENT_FRAMES
 from culet.engine.painting.frame_work import FrameWork, Kind
-from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, UNSENT_FRAMES, LivePicture, State
+from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, LivePicture, State
 from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
@@ -28,12 +29,12 @@ def painted(picture: LivePicture, *, final: bool) -> LivePicture:
     picture.picture = None if final else RENDERER.picture(STAGE, 16, 16)
     picture.painted, picture.painted_size = picture.session.shown, picture.size
     picture.state = State.FINAL if final else State.FULL
-    picture.message, picture.sent_at = b"frame", 0
+    picture.outgoing.message, picture.outgoing.sent_at = b"frame", 0
     return picture
 
 
 def in_work(picture: LivePicture, kind: Kind = Kind.FULL) -> LivePicture:
-    picture.work = FrameWork(kind, picture.session.shown, picture.size, picture.frames, begun_at=0)
+    picture.making = FrameWork(kind, picture.session.shown, picture.size, picture.frames, begun_at=0)
     return picture
 
 
@@ -119,9 +120,9 @@ def test_a_frame_in_the_making_goes_on_as_long_as_somebody_watches() -> None:
 
 def test_no_frame_is_begun_while_those_before_it_wait_to_be_sent() -> None:
     picture = live()
-    picture.unsent = UNSENT_FRAMES
+    picture.outgoing.unsent = UNSENT_FRAMES
     assert next_of([picture], now=100) is None
-    picture.unsent -= 1
+    picture.outgoing.unsent -= 1
     assert next_of([picture], now=100) is picture
 
 

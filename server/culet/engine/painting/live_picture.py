@@ -1,4 +1,4 @@
-"""The live picture of one session: who wants it, how good it is, and when its next frame is due."""
+"""The live picture of one session: who wants it, what there is of it, and when its next frame is due."""
 
 from __future__ import annotations
 
@@ -7,26 +7,28 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import assert_never
 
-from culet.engine.governing.governor import Governor, asked_rate, read_ladder
+from culet.engine.governing.governor import asked_rate
+from culet.engine.painting.frame_sender import Outgoing
 from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.quality import Quality
 from culet.engine.painting.renderer import Picture
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Session, Shown
-from culet.scene.model import Optics
 from culet_protocol.messages import Balance
 
 NATIVE_RATE = 30.0
 """Frames per second for viewers that only subscribe, and cannot say what they take."""
 NATIVE_SIZE = (960, 540)
-"""Pixels, likewise."""
+"""Pixels, for the same viewers."""
 
 REST_SAMPLES = 16
 """Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
 
 SETTLE_SECONDS = 0.2
-"""A picture whose camera or scene changes again so soon after it was drawn, however long that took, is being moved: it
-is governed as a falling one is, and drawn in full once this time has passed without a change. One that takes longer
-than this in full is governed at its first change too, or nothing would be seen of the change meanwhile."""
+"""If the camera or the scene changes again within this time after a picture was drawn, somebody is moving something:
+the picture is governed as a falling stone's is. The picture is drawn in full once this time has passed without a
+change. How long the drawing took does not count. A picture that takes longer than this in full is governed at its first
+change too, or nothing would be seen of the change meanwhile."""
 
 REPEAT_SECONDS = 1.0
 """A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
@@ -35,23 +37,12 @@ REST_WEIGHT = 0.25
 """Share of the render thread's time for a picture at rest beside one that moves: it can wait, motion cannot."""
 
 STALE_SECONDS = 0.25
-"""A reduced frame that takes longer is given up for something newer, unless the one before it was."""
+"""A reduced frame that takes longer is given up for something newer, unless the frame before was given up too."""
 FIRST_LOOK_SECONDS = 0.5
-"""Of work on a picture in full of which nothing is to be seen yet: then a reduced one is made first."""
-DEAREST_SECONDS = 2.0
-"""Of work on one frame of a pinned quality. What takes longer is governed as if it were not pinned: of a stone that
-moves something is to be seen."""
-
-DEAR_SECONDS = 0.4
-"""Of work on one frame that the governor planned. It is given up for a cheaper one, if there is one."""
-
-UNSENT_FRAMES = 2
-"""That may wait to be encoded and sent before no other is begun."""
+"""Of work on a picture in full of which nothing is to be seen yet: then a reduced picture is made first."""
 
 NEVER = -1e9
 """s, of a steady clock: when what has not happened yet last happened."""
-
-LADDER = read_ladder()
 
 
 class State(Enum):
@@ -67,6 +58,24 @@ class State(Enum):
     """With all its samples."""
     REFUSED = auto()
     """It could not be rendered."""
+
+
+@dataclass(frozen=True, eq=False)
+class Simulating:
+    """The session's time is brought up to now, for the next frame."""
+
+    task: asyncio.Task[None]
+
+
+@dataclass(frozen=True, eq=False)
+class Preparing:
+    """Programs and trees are made that the next picture needs."""
+
+    task: asyncio.Task[None]
+
+
+Making = Simulating | Preparing | FrameWork
+"""What is under way: a next frame's simulation, then the frame itself, in between maybe what that needs."""
 
 
 @dataclass(eq=False)
@@ -86,39 +95,20 @@ class LivePicture:
     painted: Shown | None = None
     """What the picture drawn last shows, or what was refused."""
     painted_size: tuple[int, int] = (0, 0)
-    work: FrameWork | None = None
-    """The frame in the making."""
-    governor: Governor = field(default_factory=lambda: Governor(LADDER))
+    render_seconds: float = 0.0
+    """Of all samples of the picture."""
+    making: Making | None = None
+    """The next frame, or a better one of what is shown; None while nothing is under way."""
+    outgoing: Outgoing = field(default_factory=Outgoing)
+    quality: Quality = field(default_factory=Quality)
     settles_at: float = 0.0
     """s, steady clock: from when on a reduced picture is to be drawn in full, if nothing moves."""
     changed_at: float = NEVER
     """s, steady clock: when something new had last been drawn, or been given up for something newer."""
-    full_seconds: float = 0.0
-    """Of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
-    too_dear: tuple[Balance, Optics, tuple[int, int]] | None = None
-    """The pinned balance, optics and size of which a frame took too long."""
-    gave_up: bool = False
-    """The frame begun last was given up for something newer."""
-    message: bytes | None = None
-    """The frame sent last."""
-    told_asleep: bool = False
-    """The gateway was told unasked that the stone sleeps."""
     unwatched_at: float = NEVER
     """s, steady clock: when nobody watched last."""
-    sent_at: float = 0.0
-    """s, steady clock."""
     begun_at: float = NEVER
     """s, steady clock: when the last frame was begun, or should have been if it was a little late."""
-    publishing: asyncio.Task[None] | None = None
-    """The frame that was finished last, on its way out."""
-    unsent: int = 0
-    """Frames on their way out."""
-    beginning: asyncio.Task[None] | None = None
-    """The next frame's simulation."""
-    preparing: asyncio.Task[None] | None = None
-    """What the next picture needs of programs and trees."""
-    render_seconds: float = 0.0
-    """Of all samples of the picture."""
     frames: Account = field(init=False)
     """Of frames that somebody waits for."""
     rest: Account = field(init=False)
@@ -126,6 +116,11 @@ class LivePicture:
 
     def __post_init__(self) -> None:
         self.frames, self.rest = Account(self), Account(self, REST_WEIGHT)
+
+    @property
+    def work(self) -> FrameWork | None:
+        """The frame in the making, if it has come so far."""
+        return self.making if isinstance(self.making, FrameWork) else None
 
     @property
     def frames_per_second(self) -> float:
@@ -150,9 +145,7 @@ class LivePicture:
 
     def due_at(self) -> float | None:
         """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
-        if not self.watched or self.work is not None or self.unsent >= UNSENT_FRAMES:
-            return None
-        if self.beginning is not None or self.preparing is not None:
+        if not self.watched or self.making is not None or self.outgoing.full:
             return None
         if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
             return None
@@ -183,15 +176,12 @@ class LivePicture:
         if shown.moving or shown is self.painted:  # in the latter case only the size changed, or it is drawn in full
             return shown.moving
         again = self.begun_at - self.changed_at < max(SETTLE_SECONDS, 2 / self.frames_per_second)
-        return again or self.full_seconds > SETTLE_SECONDS
+        return again or self.quality.full_seconds > SETTLE_SECONDS
 
     @property
     def balance(self) -> Balance:
         """The session's, but not pinned to what has proven too dear."""
-        balance = self.session.balance
-        if self.too_dear == (balance, self.session.shown.scene.optics, self.size):
-            return balance.model_copy(update={"pinned": False})
-        return balance
+        return self.quality.balance(self.session.balance, self.session.shown.scene.optics, self.size)
 
     def begin(self, now: float) -> None:
         """A frame is begun. One that is late by less than a frame does not make those after it late."""
@@ -204,15 +194,14 @@ class LivePicture:
         assert work.picture is not None  # noqa: S101 - of a frame that is done
         if work.shown is not self.painted:
             self.changed_at = now
-        self.work, self.gave_up = None, False
+        self.making = None
+        self.quality.drew(work)
         self.painted, self.painted_size, self.render_seconds = work.shown, work.wanted, work.render_seconds
         self.picture = work.picture
         match work.kind:
             case Kind.PLANNED:
                 self.state, self.settles_at = State.REDUCED, now + SETTLE_SECONDS
-            case Kind.FULL:
-                self.state, self.full_seconds = State.FULL, work.render_seconds
-            case Kind.REFINED:
+            case Kind.FULL | Kind.REFINED:
                 self.state = State.FULL
             case _:
                 assert_never(work.kind)
@@ -229,9 +218,9 @@ class LivePicture:
         newer = work.shown is not self.session.shown or work.wanted != self.size
         match work.kind:
             case Kind.PLANNED:
-                if self._too_dear(work):
+                if self.quality.is_too_dear(work, pinned=self.balance.pinned):
                     return True
-                return newer and now - work.begun_at > STALE_SECONDS and not self.gave_up
+                return newer and now - work.begun_at > STALE_SECONDS and not self.quality.gave_up
             case Kind.FULL:
                 unseen = self.painted is not work.shown
                 return newer or (unseen and work.spent > FIRST_LOOK_SECONDS)
@@ -242,42 +231,31 @@ class LivePicture:
 
     def give_up(self, now: float) -> None:
         """Drop the frame in the making."""
-        work, self.work = self.work, None
+        work = self.work
         if work is None:
             return
+        self.making = None
         self.changed_at = now
         match work.kind:
             case Kind.PLANNED:
-                assert work.plan is not None  # noqa: S101 - of planned work
-                if not self._too_dear(work):
-                    self.gave_up = True
-                elif self.balance.pinned:
-                    self.too_dear = (self.session.balance, work.shown.scene.optics, work.wanted)
-                else:
-                    self.governor.rendered(work.plan, work.expected_seconds, 0.0, self.frames_per_second)
+                self.quality.give_up_planned(
+                    work, self.session.balance, self.frames_per_second, pinned=self.balance.pinned
+                )
             case Kind.FULL:
-                self.full_seconds = max(self.full_seconds, work.spent)
+                self.quality.give_up_full(work)
             case Kind.REFINED:  # its sums are neither those of before nor those of after
                 self.picture, self.state = None, State.BLANK
             case _:
                 assert_never(work.kind)
 
-    def _too_dear(self, work: FrameWork) -> bool:
-        """Whether planned work takes so long that another plan is better."""
-        if self.balance.pinned:
-            return work.spent > DEAREST_SECONDS
-        return work.plan is not None and work.spent > DEAR_SECONDS and self.governor.has_cheaper(work.plan)
-
     def wants_refinement(self) -> bool:
-        """Whether more samples would improve what is seen."""
-        return (
-            self.watched and self.at_rest and self.state is State.FULL and self.work is None and self.beginning is None
-            and self.unsent < UNSENT_FRAMES
-        )  # fmt: skip
+        """Whether more samples would improve what is seen, and nothing is in their way."""
+        idle = self.making is None and not self.outgoing.full
+        return self.watched and self.at_rest and self.state is State.FULL and idle
 
     def refuse(self, shown: Shown) -> None:
         """It cannot be rendered."""
-        self.work, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
+        self.making, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
 
     def try_again(self) -> None:
         """What could not be rendered may be rendered now."""
@@ -286,7 +264,9 @@ class LivePicture:
 
     def abandon(self, now: float) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
-        self.work, self.picture = None, None
+        if isinstance(self.making, FrameWork):
+            self.making = None
+        self.picture = None
         self.session.motion.pause()
         self.unwatched_at = now
         if self.state in (State.REDUCED, State.FULL):
@@ -296,4 +276,5 @@ class LivePicture:
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
-        return self.sent_at + REPEAT_SECONDS if self.watched and self.current and self.message else None
+        known = self.watched and self.current and self.outgoing.message
+        return self.outgoing.sent_at + REPEAT_SECONDS if known else None

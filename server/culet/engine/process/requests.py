@@ -8,7 +8,7 @@ import os
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import Any, assert_never
+from typing import Any, NamedTuple, assert_never
 
 from culet.engine.library.uploads import MESH, SKY, UploadStore
 from culet.engine.painting.live_picture import LivePicture
@@ -44,7 +44,7 @@ LONG_EVENTS = frozenset({"patch_scene", "set_scene", "toggle_fall", "toggle_wall
 """They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
 
 MOTION_SECONDS = 0.05
-"""Between reports of a session that moves. If this engine dies, so much of the motion is lost at most."""
+"""Between two messages about a session that moves. If this engine dies, so much of the motion is lost at most."""
 
 Answer = tuple[dict[str, Any], bytes | None]
 
@@ -82,9 +82,9 @@ class Requests:
         """Stills that somebody waits for."""
         self._clients: dict[str, str] = {}
         """Who opened the sessions."""
-        self._told: dict[str, tuple[int, int]] = {}
-        """What of each session was told last: its step and frame."""
-        self._reporting: set[str] = set()
+        self._told: dict[str, _Told] = {}
+        """What of each session was told last, unasked."""
+        self._telling: set[str] = set()
         self._subscriptions: set[bytes] = set()
         self._started = time.monotonic()
         self._closed_pace = 0.0, 0.0
@@ -132,32 +132,31 @@ class Requests:
         if subscribed:
             self._painter.show_again(live)
 
-    async def report_motion(self) -> None:
+    async def tell_motion(self) -> None:
         """Tell of every session that changes by itself, often, what another engine needs to go on; for ever."""
         async with asyncio.TaskGroup() as tasks:
             while True:
                 for live in self._painter.pictures.values():
-                    if live.session.name not in self._reporting and self._has_moved(live):
-                        self._reporting.add(live.session.name)
-                        tasks.create_task(self._report_motion(live))
+                    if live.session.name not in self._telling and self._has_moved(live):
+                        self._telling.add(live.session.name)
+                        tasks.create_task(self._tell_motion(live))
                 await asyncio.sleep(MOTION_SECONDS)
 
     def _has_moved(self, live: LivePicture) -> bool:
         session = live.session
-        return session.motion.asleep != live.told_asleep or self._told.get(session.name) != _numbers(session)
+        return self._told.get(session.name) != _numbers(session)
 
-    async def _report_motion(self, live: LivePicture) -> None:
+    async def _tell_motion(self, live: LivePicture) -> None:
         session = live.session
         try:
             async with session.lock:  # or a step could be taken between the parts of the snapshot
-                self._told[session.name] = _numbers(session)
-                if session.motion.asleep != live.told_asleep:
-                    live.told_asleep = session.motion.asleep
+                before, self._told[session.name] = self._told.get(session.name), _numbers(session)
+                if session.motion.asleep != (before is not None and before.asleep):
                     self._tell(session.state(edited=False))
                 else:
                     self._tell(protocol.SessionMotion(session=session.name, moved=session.snapshot().moving_part()))
         finally:
-            self._reporting.discard(session.name)
+            self._telling.discard(session.name)
 
     def close_unwatched(self) -> None:
         """Forget the sessions that nobody watches."""
@@ -255,7 +254,7 @@ class Requests:
         panoramas: dict[int, int] = {}
         size = 0
         for live in self._painter.pictures.values():
-            size += SESSION_BYTES + len(live.message or b"")
+            size += SESSION_BYTES + len(live.outgoing.message or b"")
             painted = live.painted.stage.panorama if live.painted else None
             for panorama in (live.session.sky.panorama, painted):
                 if panorama is not None:
@@ -382,9 +381,16 @@ def picture_bytes(width: int, height: int) -> int:
     return 35 * width * height
 
 
-def _numbers(session: Session) -> tuple[int, int]:
+class _Told(NamedTuple):
     """What changes whenever another engine would have to be told something."""
-    return session.shown.step, session.sequence
+
+    step: int
+    sequence: int
+    asleep: bool
+
+
+def _numbers(session: Session) -> _Told:
+    return _Told(session.shown.step, session.sequence, session.motion.asleep)
 
 
 def _file(data: bytes | None) -> bytes:

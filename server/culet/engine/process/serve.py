@@ -163,7 +163,7 @@ class Engine:
             render_thread,
             stills,
             send=self._send_frame,
-            report=self._report_problem,
+            tell_problem=self._tell_problem,
             encode_still=encode,
             still_seconds=limits.still_seconds,
         )
@@ -186,7 +186,7 @@ class Engine:
                 self._take_requests(),
                 self._take_subscriptions(),
                 self._beat(),
-                self._requests.report_motion(),
+                self._requests.tell_motion(),
                 self._painter.run(),
                 self._watchdog.run(),
             )
@@ -266,7 +266,7 @@ class Engine:
     def _tell(self, state: protocol.SessionState | protocol.SessionMotion) -> None:
         self._spawn(self._peers.tell(encoded(state)))
 
-    def _report_problem(self, session: str, error: CuletError) -> None:
+    def _tell_problem(self, session: str, error: CuletError) -> None:
         if error.status == 503:  # it may be gone by itself, as the lack of room for a program
             self._spawn(self._try_again(session))
         problem = protocol.SessionProblem(session=session, title=error.title, detail=str(error))

@@ -77,8 +77,7 @@ class Session:
     def restored(
         cls,
         name: str,
-        scene: Scene,
-        stone: Stone | None,
+        stage: Stage,
         snapshot: Snapshot,
         *,
         sky: Sky | None = None,

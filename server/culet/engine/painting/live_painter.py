@@ -1,0 +1,165 @@
+"""Live frames and their refinements: simulated on threads of their own, drawn in pieces on the render thread."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+from culet.engine.painting.counters import Tally
+from culet.engine.painting.failure import as_culet_error
+from culet.engine.painting.frame_sender import FrameSender
+from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, proceed
+from culet.engine.painting.live_picture import NEVER, REST_SAMPLES, LivePicture, Preparing, Simulating
+from culet.engine.painting.preparation import in_daemon_thread
+from culet.engine.painting.render_thread import RenderThread
+from culet.engine.painting.renderer import ALONE_SECONDS, Renderer
+from culet.engine.painting.shares import Account, Shares
+from culet.engine.session.session import Session, Shown
+from culet.errors import CuletError
+
+SIMULATE_THREADS = 4
+"""As many stones whose steps take long do not keep the others from moving."""
+
+
+class LivePainter:
+    """Brings one live picture after the other a piece further."""
+
+    def __init__(
+        self,
+        renderer: Renderer,
+        thread: RenderThread,
+        shares: Shares,
+        sender: FrameSender,
+        *,
+        share_of: Callable[[LivePicture], float],
+        tell_problem: Callable[[Session, CuletError], None],
+        wake: Callable[[], None],
+        tally: Tally,
+        clock: Callable[[], float],
+    ) -> None:
+        """`share_of` tells the part of the render thread's time that a picture can have; `wake` is called when
+        something that was waited for is there."""
+        self._renderer = renderer
+        self._thread = thread
+        self._shares = shares
+        self._sender = sender
+        self._share_of = share_of
+        self._tell_problem = tell_problem
+        self._wake = wake
+        self._tally = tally
+        self._now = clock
+        self._simulate_threads = ThreadPoolExecutor(SIMULATE_THREADS, "simulate")
+
+    async def advance(self, live: LivePicture) -> None:
+        """The next piece of a frame or of a refinement, begun if need be."""
+        if live.wants_refinement():
+            self._begin_refinement(live)
+        if live.work is not None:
+            await self._go_on(live, live.work)
+        else:
+            self._begin(live)
+
+    def stop(self) -> None:
+        """Simulate nothing more."""
+        self._simulate_threads.shutdown(wait=False, cancel_futures=True)
+
+    def _begin(self, live: LivePicture) -> None:
+        """Simulate up to now, while others are drawn: at the extremes a single step takes a second."""
+        account, now, settled = live.next_account, self._now(), live.settled
+        if live.begun_at > NEVER and (due_at := live.due_at()) is not None:
+            self._tally.durations.frame_wait.add(max(0.0, now - max(due_at, live.unwatched_at)))
+        live.begin(now)
+        live.making = Simulating(asyncio.create_task(self._simulate(live, account, settled=settled)))
+
+    async def _simulate(self, live: LivePicture, account: Account, *, settled: bool) -> None:
+        session, work = live.session, None
+        try:
+            async with session.lock:
+                begun_at = self._now()  # waiting for the lock is no work that the next frame has to do again
+                started = time.perf_counter()
+                try:
+                    await asyncio.get_running_loop().run_in_executor(
+                        self._simulate_threads, session.advance, begun_at, self._share_of(live)
+                    )
+                except Exception as error:  # one session's failure must not end the others'; its stone has stopped
+                    self._tell_problem(session, as_culet_error(error, CuletError, "simulating"))
+                simulate_seconds = time.perf_counter() - started
+                self._shares.charge(account, self._now() - begun_at, self._now())
+                shown = session.shown
+                session.remember(shown)
+            if not live.current or live.picture is None or settled:  # or the simulation has not moved on
+                work = self._planned(live, shown, account, begun_at, simulate_seconds)
+        except Exception as error:  # as above
+            self._refuse(live, session.shown, error)
+        finally:
+            live.making = work
+            self._wake()
+
+    def _planned(
+        self, live: LivePicture, shown: Shown, account: Account, begun_at: float, simulated: float
+    ) -> FrameWork:
+        """Choose how to draw what is shown."""
+        wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
+        plan = live.quality.governor.plan(shown.scene, wanted, live.balance) if live.governed else None
+        kind = Kind.FULL if plan is None else Kind.PLANNED
+        work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated)
+        if self._share_of(live) >= 1:
+            work.piece_seconds = ALONE_SECONDS
+        work.slow = shown.moving and live.session.motion.pace.slow
+        work.spent = self._now() - begun_at
+        work.start(self._renderer)
+        return work
+
+    def _begin_refinement(self, live: LivePicture) -> None:
+        """As many samples more as the picture has."""
+        picture, shown = live.picture, live.painted
+        assert picture is not None  # noqa: S101 - of a picture that wants to be refined
+        assert shown is not None  # noqa: S101 - likewise
+        samples = min(picture.samples, REST_SAMPLES - picture.samples)
+        work = FrameWork(
+            Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, samples=samples,
+            final=picture.samples + samples >= REST_SAMPLES, render_seconds=live.render_seconds,
+        )  # fmt: skip
+        work.start(self._renderer)
+        live.making = work
+
+    async def _go_on(self, live: LivePicture, work: FrameWork) -> None:
+        """The next piece; what is done is sent."""
+        started = self._now()
+        try:
+            more = await self._thread.run(work.account, proceed, work.pieces, self._now)
+        except Unprepared:
+            live.making = Preparing(asyncio.create_task(self._prepare(live, work)))
+            return
+        except Exception as error:  # one session's failure must not end the others'
+            self._refuse(live, work.shown, error)
+            return
+        work.spent += self._now() - started
+        if more or work.frame is None or work.picture is None:
+            return
+        live.drew(work, self._now())
+        if work.kind is Kind.REFINED:
+            self._tally.counters.refinements += 1
+        else:
+            self._tally.counters.frames_rendered += 1
+        if work.plan is not None:
+            seconds = work.picture.seconds
+            live.quality.governor.rendered(
+                work.plan, seconds, work.spent - seconds, live.frames_per_second, self._share_of(live)
+            )  # fmt: skip
+        self._sender.publish(live.session, live.outgoing, work.frame, work.begun_at)
+
+    async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
+        try:
+            await in_daemon_thread(lambda: self._renderer.make_ready(work.stage))
+        except Exception as error:  # as above
+            self._refuse(live, work.shown, error)
+        finally:
+            live.making = None
+            self._wake()
+
+    def _refuse(self, live: LivePicture, shown: Shown, error: Exception) -> None:
+        live.refuse(shown)
+        self._tell_problem(live.session, as_culet_error(error))

@@ -1,0 +1,63 @@
+"""How well the moving frames of one session are drawn, and what has proven too dear."""
+
+from __future__ import annotations
+
+from culet.engine.governing.governor import Governor, read_ladder
+from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.scene.model import Optics
+from culet_protocol.messages import Balance
+
+DEAREST_SECONDS = 2.0
+"""Of work on one frame of a pinned quality. A frame that takes longer is governed as if its quality were not pinned: of
+a stone that moves something is to be seen."""
+
+DEAR_SECONDS = 0.4
+"""Of work on one frame that the governor planned. Such a frame is given up for a cheaper one, if there is one."""
+
+LADDER = read_ladder()
+
+
+class Quality:
+    """Mutable; of one live picture."""
+
+    def __init__(self) -> None:
+        """Nothing is known yet."""
+        self.governor = Governor(LADDER)
+        self.full_seconds = 0.0
+        """s of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
+        self.gave_up = False
+        """The frame begun last was given up for something newer."""
+        self._too_dear: tuple[Balance, Optics, tuple[int, int]] | None = None
+        """The pinned balance, optics and size of which a frame took too long."""
+
+    def balance(self, chosen: Balance, optics: Optics, size: tuple[int, int]) -> Balance:
+        """The balance that the viewers chose, but not pinned to what has proven too dear."""
+        if self._too_dear == (chosen, optics, size):
+            return chosen.model_copy(update={"pinned": False})
+        return chosen
+
+    def is_too_dear(self, work: FrameWork, *, pinned: bool) -> bool:
+        """Whether planned work takes so long that another plan is better."""
+        if pinned:
+            return work.spent > DEAREST_SECONDS
+        return work.plan is not None and work.spent > DEAR_SECONDS and self.governor.has_cheaper(work.plan)
+
+    def drew(self, work: FrameWork) -> None:
+        """A frame is done."""
+        self.gave_up = False
+        if work.kind is Kind.FULL:
+            self.full_seconds = work.render_seconds
+
+    def give_up_planned(self, work: FrameWork, chosen: Balance, rate: float, *, pinned: bool) -> None:
+        """A planned frame was not finished; frames were to come `rate` times a second."""
+        assert work.plan is not None  # noqa: S101 - of planned work
+        if not self.is_too_dear(work, pinned=pinned):
+            self.gave_up = True
+        elif pinned:
+            self._too_dear = (chosen, work.shown.scene.optics, work.wanted)
+        else:
+            self.governor.rendered(work.plan, work.expected_seconds, 0.0, rate)
+
+    def give_up_full(self, work: FrameWork) -> None:
+        """A frame in full was not finished."""
+        self.full_seconds = max(self.full_seconds, work.spent)
