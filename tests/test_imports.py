@@ -1,9 +1,15 @@
-"""What each part may not load: the gateway no device, the engine no web server, the clients nothing of the server."""
+"""What each part may not load: the gateway no device, the engine no web server, the clients nothing of the server; and
+that what a part needs never needs that part."""
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
@@ -26,3 +32,82 @@ def test_a_part_does_not_load_what_belongs_to_another(module: str) -> None:
     loaded = run.stdout.split()
     assert module in loaded
     assert [name for name in loaded if f"{name}.".startswith(tuple(f"{each}." for each in NOT_LOADED[module]))] == []
+
+
+PACKAGES = ("culet", "culet_kernels", "culet_protocol", "culet_client")
+
+
+def sources(package: str) -> dict[str, Path]:
+    """Files by module."""
+    spec = find_spec(package)
+    assert spec is not None
+    assert spec.origin is not None
+    folder = Path(spec.origin).parent
+    found = {}
+    for file in folder.rglob("*.py"):
+        parts = (package, *file.relative_to(folder).with_suffix("").parts)
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = file
+    return found
+
+
+def imported(text: str) -> Iterator[tuple[str, str | None]]:
+    """Modules, and what is taken of them, wherever a file imports them."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, None) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+def graph() -> dict[str, set[str]]:
+    """What each module of ours imports of ours."""
+    files = {module: file for package in PACKAGES for module, file in sources(package).items()}
+    needs: dict[str, set[str]] = {}
+    for module, file in files.items():
+        names = {
+            f"{of}.{name}" if f"{of}.{name}" in files else of for of, name in imported(file.read_text(encoding="utf-8"))
+        }
+        needs[module] = {name for name in names if name in files and name != module}
+    return needs
+
+
+def room(module: str) -> str:
+    """The part of the server that a module belongs to, such as `culet.rendering`; of other packages, all of it."""
+    name, *rest = module.split(".")
+    return f"{name}.{rest[0]}" if name == "culet" and rest else name
+
+
+def rooms() -> dict[str, set[str]]:
+    """What each part imports."""
+    needs: dict[str, set[str]] = {}
+    for module, modules in graph().items():
+        needs.setdefault(room(module), set()).update({room(other) for other in modules} - {room(module)})
+    return needs
+
+
+def circle(needs: dict[str, set[str]]) -> list[str]:
+    """One, if there is any."""
+    try:
+        TopologicalSorter(needs).prepare()
+    except CycleError as error:
+        found: list[str] = error.args[1]
+        return found
+    return []
+
+
+def test_no_module_needs_what_needs_it() -> None:
+    needs = graph()
+    assert "culet.optics.panoramas" in needs["culet.stage"], "or nothing would be seen here"
+    assert circle(needs) == []
+
+
+def test_no_part_needs_what_needs_it() -> None:
+    needs = rooms()
+    assert {"culet.rendering", "culet.gateway", "culet.engine"} <= needs.keys()
+    assert circle(needs) == []
+
+
+def test_a_circle_is_found_wherever_it_is_closed() -> None:
+    assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": set()})) == {"a", "b", "c"}
+    inside = "def late():\n    from culet.rendering import program\n"
+    assert list(imported(inside)) == [("culet.rendering", "program")]

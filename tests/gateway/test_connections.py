@@ -12,8 +12,9 @@ import httpx
 import pytest
 
 from culet.errors import NotFoundError
-from culet.gateway import connections
-from culet.gateway.connections import RESERVED_FILES, connection_limit
+from culet.gateway import connection_guard, guarded_http, lingering_transport
+from culet.gateway.guarded_http import GuardedHttp
+from culet.gateway.open_files import RESERVED_FILES, connection_limit
 from culet.gateway.sessions import Sessions
 from culet.gateway.uploads import Uploads
 from gateway.running import PATIENCE, Gateway, eventually, gateway_alone
@@ -60,10 +61,11 @@ async def peers(gateway: Gateway, said: bytes, count: int = 1) -> AsyncIterator[
 @pytest.fixture
 def quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Times that a test can wait for."""
-    monkeypatch.setattr(connections, "LOOK_SECONDS", 0.02)
-    monkeypatch.setattr(connections, "PROGRESS_SECONDS", 0.2)
-    monkeypatch.setattr(connections, "LINGER_SECONDS", 0.2)
-    monkeypatch.setattr(connections, "UNREAD_SECONDS", 1.0)
+    monkeypatch.setattr(connection_guard, "LOOK_SECONDS", 0.02)
+    monkeypatch.setattr(connection_guard, "PROGRESS_SECONDS", 0.2)
+    for module in (connection_guard, guarded_http, lingering_transport):
+        monkeypatch.setattr(module, "LINGER_SECONDS", 0.2)
+    monkeypatch.setattr(connection_guard, "UNREAD_SECONDS", 1.0)
 
 
 @pytest.mark.usefixtures("quick_looks")
@@ -216,13 +218,13 @@ def test_connections_never_take_the_last_open_file() -> None:
 async def test_an_answer_is_sent_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without TCP_NODELAY the body waits for the acknowledgement of the head."""
     made: list[int] = []
-    real = connections.GuardedHttp.connection_made
+    real = GuardedHttp.connection_made
 
-    def noted(self: connections.GuardedHttp, transport: asyncio.Transport) -> None:
+    def noted(self: GuardedHttp, transport: asyncio.Transport) -> None:
         made.append(transport.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
         real(self, transport)
 
-    monkeypatch.setattr(connections.GuardedHttp, "connection_made", noted)
+    monkeypatch.setattr(GuardedHttp, "connection_made", noted)
     async with gateway_alone():
         assert made
         assert all(made)

@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from culet.errors import EngineUnavailableError
-from culet.gateway.link import EngineLink
+from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.settings import GatewaySettings
 from gateway.running import PATIENCE, Endpoints, Gateway, gateway_alone
 
@@ -33,12 +33,13 @@ async def greetings(engine: Endpoints) -> AsyncIterator[list[bool]]:
     said: list[bool] = []
     link = EngineLink(GatewaySettings(control=engine.control, frames=engine.frames))
 
-    async def greet(new_process: bool) -> None:
-        said.append(new_process)
-        if len(said) == 1:
-            raise EngineUnavailableError("too busy to answer")
+    class Busy(EngineEvents):
+        async def engine_up(self, new_process: bool) -> None:
+            said.append(new_process)
+            if len(said) == 1:
+                raise EngineUnavailableError("too busy to answer")
 
-    link.on_up = greet
+    link.events = Busy()
     running = asyncio.create_task(link.run())
     try:
         yield said

@@ -15,7 +15,8 @@ import pytest
 from culet.gateway.allowance import FREE
 from culet.gateway.bucket import BURST_SECONDS
 from culet.gateway.link import EngineLink
-from culet.gateway.sessions import TICK_SECONDS, Session, Sessions
+from culet.gateway.session_record import SessionRecord
+from culet.gateway.sessions import TICK_SECONDS, Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.stream import BYTES_PER_COST, EVENT_COST, MAX_CONTROL_BYTES
 from culet.gateway.uploads import Uploads
@@ -110,7 +111,7 @@ async def test_one_demand_of_a_session_is_under_way_and_of_those_that_wait_the_l
         return {}, b""
 
     monkeypatch.setattr(EngineLink, "request", request)
-    session = Session("ab" * 16, {})
+    session = SessionRecord("ab" * 16, {})
     sessions._sessions[session.id] = session
     viewer = sessions.join(session)
     for width in range(16, 1016):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from culet.gateway.link import EngineLink
-from culet.gateway.sessions import Session, Sessions
+from culet.gateway.session_record import SessionRecord
+from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
 from culet.gateway.viewer import DEFAULT_SIZE
@@ -22,14 +23,14 @@ def sessions() -> Sessions:
 
 
 def test_a_viewer_that_joins_has_the_latest_frame_at_once(sessions: Sessions) -> None:
-    session = Session("ab" * 16, {})
+    session = SessionRecord("ab" * 16, {})
     frame = Frame(session.topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"picture")
     session.latest = (frame, frame.pack())
     assert sessions.join(session).next_frame(0) == frame.pack()
 
 
 def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_is_down(sessions: Sessions) -> None:
-    session = Session("ab" * 16, {"floor": {}})
+    session = SessionRecord("ab" * 16, {"floor": {}})
     viewer = sessions.join(session)
     notices = [viewer.next_notice(0) for _ in range(4)]
     assert notices == [State(scene={"floor": {}}, falling=False), Viewers(count=1), Engine(status="down"), None]
@@ -38,7 +39,7 @@ def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_i
 def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_watched_longest(
     sessions: Sessions,
 ) -> None:
-    session = Session("ab" * 16, {})
+    session = SessionRecord("ab" * 16, {})
     assert session.wanted(0) == (0, *DEFAULT_SIZE)
     desk, phone = sessions.join(session), sessions.join(session)
     now = phone.watching_since

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.rendering import program
+from culet.rendering import build
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS
@@ -37,7 +37,7 @@ def test_what_mirrors_cut_of_a_chain_counts_in_however_many_parts_it_is_followed
     """Two segments at a time, and all in one go. Without what chains that go on have lost, 1.9e-4 were missing."""
     scene = legacy({"optics": {"cutoff": 0.1}})
     in_parts = take(exact, scene).cut_map()
-    monkeypatch.setattr(program, "FLAGS", (*program.FLAGS, "-DSTRIDE=256"))
+    monkeypatch.setattr(build, "FLAGS", (*build.FLAGS, "-DSTRIDE=256"))
     at_once = take(Renderer(exact.device, lanes=exact.variant.lanes, real=np.float64), scene).cut_map()
     assert in_parts == pytest.approx(at_once, rel=1e-12, abs=1e-15)
 

@@ -13,16 +13,18 @@ import pytest
 
 from culet.errors import KernelCacheError
 from culet.rendering import kernel_cache, precompile, program
+from culet.rendering.build import Variant
 from culet.rendering.device import open_device
 from culet.rendering.features import Features
-from culet.rendering.program import Programs, Variant
+from culet.rendering.program import Programs
 
 REMOVED = """
 import shutil, sys
 from culet.rendering import kernel_cache
 from culet.rendering.device import open_device
 from culet.rendering.features import Features, Geometry
-from culet.rendering.program import Programs, Variant
+from culet.rendering.build import Variant
+from culet.rendering.program import Programs
 device = open_device()
 shutil.rmtree(kernel_cache.folder())
 Programs(device).exact(Features(geometry=Geometry.EMPTY), Variant())

@@ -9,10 +9,10 @@ import pyopencl as cl
 import pytest
 
 import culet_kernels
+from culet.rendering.build import FLAGS, Variant
 from culet.rendering.chains import GROUPS
 from culet.rendering.device import Device
 from culet.rendering.layout import arguments, constants, in_order, struct
-from culet.rendering.program import FLAGS, Variant
 from culet.scene.lamps import MOST_LAMPS
 
 PROBE = """

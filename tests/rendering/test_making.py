@@ -16,7 +16,8 @@ MAKE = """
 import time
 from culet.rendering.device import open_device
 from culet.rendering.features import Features, Geometry
-from culet.rendering.program import Programs, Variant
+from culet.rendering.build import Variant
+from culet.rendering.program import Programs
 programs = Programs(open_device())
 began = time.process_time()
 programs.exact(Features(Geometry.HULL), Variant(lanes=4))

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 from culet.errors import DeviceError
-from culet.rendering import precompile
+from culet.rendering import precompile, program
+from culet.rendering.build import Variant
 from culet.rendering.features import Features
-from culet.rendering.program import Programs, Variant
+from culet.rendering.program import Programs
 
 GENERAL = Features()
 SPECIAL = Features(floor=0)
@@ -45,7 +46,7 @@ def ask(programs: Programs, times: int) -> list[Any]:
 
 @pytest.fixture(autouse=True)
 def compiled_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(precompile, "precompile", lambda _features, _variant, **_how: True)
+    monkeypatch.setattr(program, "precompile", lambda _features, _variant, **_how: True)
 
 
 def test_the_general_program_serves_until_the_special_one_is_ready() -> None:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 import culet_kernels
 from culet.geometry.shape import Shape
+from culet.rendering.build import FLAGS, Variant
 from culet.rendering.device import Device, Real
 from culet.rendering.layout import struct
-from culet.rendering.program import FLAGS, Variant
 from culet.rendering.projection import rotation_matrix
 from culet.rendering.tree import tree_of
 from rendering.views import Array

@@ -339,7 +339,7 @@ async def test_a_killed_gateway_comes_back_with_the_sessions_that_the_engine_kep
 
 SPEAKER = """
 import sys, time
-from culet.service.notify import Notice, notify, notify_patience
+from culet.notify import Notice, notify, notify_patience
 sys.stdin.readline()
 notify(Notice.READY)
 notify_patience(float(sys.argv[1]))

@@ -71,12 +71,12 @@ class Staged(EngineLink):
     def move(self) -> None:
         """A frame of the falling stone comes."""
         self.step += 1
-        self.recorder.take(frame(self.step, Flags.MOVING), b"")
+        self.recorder.frame_came(frame(self.step, Flags.MOVING), b"")
 
     def rest(self) -> None:
         """A frame of the stone that has come to rest comes."""
         self.step += 1
-        self.recorder.take(frame(self.step, Flags.NONE), b"")
+        self.recorder.frame_came(frame(self.step, Flags.NONE), b"")
 
 
 class Stage:
@@ -141,7 +141,7 @@ async def test_a_frame_from_before_the_drop_does_not_count_as_rest() -> None:
     before = stage.link.step
     stage.link.rest()
     await stage.play.drop()
-    stage.recorder.take(frame(before, Flags.NONE), b"")
+    stage.recorder.frame_came(frame(before, Flags.NONE), b"")
     await stage.play.fall(BRIEF)
     assert stage.link.drops == 2
 

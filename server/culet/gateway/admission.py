@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Mapping
 
 from starlette.datastructures import Headers
@@ -13,6 +12,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from culet.errors import BusyError, TooLargeError
 from culet.gateway.client_address import client_of
+from culet.gateway.holdings import Holdings
 from culet.gateway.origins import Hosts, is_address, may_enter
 from culet.gateway.problems import RETRY_AFTER_SECONDS, problem, problem_of
 from culet.gateway.settings import GatewaySettings
@@ -26,26 +26,26 @@ class Bodies:
     """Bytes of request bodies that are under way, in all and of each client."""
 
     def __init__(self, limit: int, limit_of_client: int) -> None:
-        self.bytes = 0
+        self._held = Holdings()
         self._limit = limit
         self._limit_of_client = limit_of_client
-        self._of_client: Counter[str] = Counter()
+
+    @property
+    def bytes(self) -> int:
+        """Of all clients."""
+        return self._held.total
 
     def room_for(self, client: str, size: int) -> bool:
         """Whether so many bytes more would be within the limits."""
-        return self.bytes + size <= self._limit and self._of_client[client] + size <= self._limit_of_client
+        return self.bytes + size <= self._limit and self._held.of(client) + size <= self._limit_of_client
 
     def take(self, client: str, size: int) -> None:
         """So many bytes came."""
-        self.bytes += size
-        self._of_client[client] += size
+        self._held.take(client, size)
 
     def give_back(self, client: str, size: int) -> None:
         """A request with so many bytes is done with."""
-        self.bytes -= size
-        self._of_client[client] -= size
-        if not self._of_client[client]:
-            del self._of_client[client]
+        self._held.give_back(client, size)
 
 
 class Admission:
@@ -63,7 +63,7 @@ class Admission:
         own = () if is_address(settings.host) else (settings.host,)
         self._hosts = Hosts([*settings.allow_host, *own])
         self._bodies = Bodies(settings.max_bodies_bytes, settings.max_client_bodies_bytes)
-        self._open: Counter[str] = Counter()
+        self._open = Holdings()
         """Requests and streams under way, of each client."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -75,13 +75,8 @@ class Admission:
             await refusal(scope, receive, send)
             return
         client = client_of(scope)
-        self._open[client] += 1
-        try:
+        with self._open.held(client):
             await self._counted(client, scope, receive, send)
-        finally:
-            self._open[client] -= 1
-            if not self._open[client]:
-                del self._open[client]
 
     def _refusal(self, scope: Scope) -> Response | None:
         """Why not, by what the head says."""
@@ -92,8 +87,8 @@ class Admission:
             )
             return problem(421, "misdirected request", detail)
         client = client_of(scope)
-        if self._open[client] >= self._settings.max_connections_per_address:
-            detail = f"{client} has {self._open[client]} requests and streams under way, which is the limit"
+        if self._open.of(client) >= self._settings.max_connections_per_address:
+            detail = f"{client} has {self._open.of(client)} requests and streams under way, which is the limit"
             return problem_of(BusyError(detail))
         if scope["type"] == "websocket":
             return None  # told by a close code who may open streams

@@ -12,7 +12,6 @@ import asyncio
 import contextlib
 import json
 import logging
-from collections.abc import Awaitable, Callable
 from typing import Any, assert_never
 
 import zmq
@@ -52,11 +51,34 @@ GREET_AGAIN_SECONDS = 1.0
 _ERROR_OF_STATUS: dict[int, type[CuletError]] = {404: NotFoundError, 429: BusyError, 503: EngineUnavailableError}
 
 
+class EngineEvents:
+    """Who is told what an engine says unasked; this one heeds nothing of it."""
+
+    def frame_came(self, frame: Frame, message: bytes) -> None:
+        """A frame, unpacked and as the message that it came in."""
+
+    def session_changed(self, state: SessionState) -> None:
+        """A session is another one than before."""
+
+    def session_moved(self, motion: SessionMotion) -> None:
+        """A session's stone moved, or its picture was refined."""
+
+    def session_failed(self, problem: SessionProblem) -> None:
+        """A session's picture could not be rendered, or its stone not be moved."""
+
+    def engine_down(self) -> None:
+        """The engine does not answer any more."""
+
+    async def engine_up(self, new_process: bool) -> None:
+        """The engine answers, maybe as another process than before. Runs in a task of its own."""
+
+
 class EngineLink:
     """Connects by itself, and again whenever an engine comes. States: down -> up (heartbeats come) -> down (silence).
 
-    `up` is told with the instance's name every time the engine answers again after silence, or is another process;
-    by then requests are possible. `down` is told on silence, or before `up` if the process changed without one.
+    `events.engine_up` is called every time the engine answers again after silence, or is another process; by then
+    requests are possible. `events.engine_down` is called on silence, or before `engine_up` if the process changed
+    without a silence.
     """
 
     def __init__(self, settings: GatewaySettings) -> None:
@@ -66,18 +88,13 @@ class EngineLink:
         self.instances = 0
         """Engine processes seen so far."""
         self.frames_received = 0
-        self.on_frame: Callable[[Frame, bytes], None] = lambda _frame, _message: None
-        self.on_state: Callable[[SessionState], None] = lambda _state: None
-        self.on_motion: Callable[[SessionMotion], None] = lambda _motion: None
-        self.on_problem: Callable[[SessionProblem], None] = lambda _problem: None
-        self.on_up: Callable[[bool], Awaitable[None]] | None = None
-        """Awaited in a task of its own; the argument says whether this is another process than before."""
-        self.on_down: Callable[[], None] = lambda: None
+        self.events = EngineEvents()
+        """Told what the engine says unasked."""
         self._settings = settings
         self._last_heard = 0.0
         self._away_since = -float("inf")
         self._greeted: str | None = None
-        """The instance that `on_up` was done with last."""
+        """The instance that `events.engine_up` was done with last."""
         self._numbers = 0
         self._pending: dict[int, asyncio.Future[tuple[Reply, bytes | memoryview]]] = {}
         self._greeting: asyncio.Task[None] | None = None
@@ -225,7 +242,7 @@ class EngineLink:
                 log.warning("dropped what is not a frame: %s", error)
                 continue
             self.frames_received += 1
-            self.on_frame(frame, message)
+            self.events.frame_came(frame, message)
 
     async def _read_control(self, socket: zmq.asyncio.Socket) -> None:
         while True:
@@ -240,11 +257,11 @@ class EngineLink:
                 case Heartbeat():
                     self._hear(message.instance)
                 case SessionState():
-                    self.on_state(message)
+                    self.events.session_changed(message)
                 case SessionMotion():
-                    self.on_motion(message)
+                    self.events.session_moved(message)
                 case SessionProblem():
-                    self.on_problem(message)
+                    self.events.session_failed(message)
                 case Reply():
                     answer = self._pending.get(number)
                     if answer and not answer.done():
@@ -263,15 +280,14 @@ class EngineLink:
             self.instance = instance
             self.instances += 1
         self.ready.set()
-        if self.on_up:
-            if self._greeting:
-                self._greeting.cancel()
-            self._greeting = asyncio.create_task(self._greet(self.on_up, instance))
+        if self._greeting:
+            self._greeting.cancel()
+        self._greeting = asyncio.create_task(self._greet(instance))
 
-    async def _greet(self, on_up: Callable[[bool], Awaitable[None]], instance: str) -> None:
+    async def _greet(self, instance: str) -> None:
         while self.ready.is_set():  # or else it went again, and the next one is greeted anew
             try:
-                await on_up(self._greeted not in (None, instance))
+                await self.events.engine_up(self._greeted not in (None, instance))
             except EngineUnavailableError as error:
                 log.warning("the render process could not be greeted: %s", error)
                 await asyncio.sleep(GREET_AGAIN_SECONDS)
@@ -295,7 +311,7 @@ class EngineLink:
         self.ready.clear()
         self._away_since = asyncio.get_running_loop().time()
         self._fail_pending(reason)
-        self.on_down()
+        self.events.engine_down()
 
     def _fail_pending(self, reason: str) -> None:
         for answer in self._pending.values():

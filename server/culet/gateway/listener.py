@@ -15,10 +15,11 @@ import uvicorn
 from culet.gateway.address import BACKLOG, listening_socket, url_of
 from culet.gateway.app import create_app
 from culet.gateway.client_address import read_proxies, trusted_hosts
-from culet.gateway.connections import Guard, GuardedConfig
+from culet.gateway.connection_guard import Guard
+from culet.gateway.guarded_http import GuardedConfig
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
-from culet.service.notify import Notice, notify
+from culet.notify import Notice, notify
 from culet.settings import MEBIBYTE
 
 GRACEFUL_SHUTDOWN_SECONDS = 3

@@ -13,7 +13,7 @@ from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers, check_numbers, finite
-from culet.gateway.sessions import Session
+from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
 from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Height, Width, response_class_of
 from culet.scene import Scene, preset
@@ -203,7 +203,7 @@ async def _frame(
     return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
 
 
-def _answer(session: Session) -> SessionAnswer:
+def _answer(session: SessionRecord) -> SessionAnswer:
     return SessionAnswer(
         id=session.id,
         scene=session.scene,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from culet.errors import BusyError
+from culet.gateway.holdings import Holdings
 
 
 class StillPlaces:
@@ -14,20 +14,15 @@ class StillPlaces:
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
-        self._taken: Counter[str] = Counter()
+        self._taken = Holdings()
 
     def __len__(self) -> int:
-        return self._taken.total()
+        return self._taken.total
 
     @contextmanager
     def place(self, client: str) -> Iterator[None]:
         """Hold a place, or BusyError."""
-        if self._taken[client] >= self._limit:
+        if self._taken.of(client) >= self._limit:
             raise BusyError(f"{client} waits for {self._limit} pictures already, which is the limit for one client")
-        self._taken[client] += 1
-        try:
+        with self._taken.held(client):
             yield
-        finally:
-            self._taken[client] -= 1
-            if not self._taken[client]:
-                del self._taken[client]

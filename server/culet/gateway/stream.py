@@ -21,7 +21,7 @@ from culet.gateway.bucket import Bucket
 from culet.gateway.client_address import client_of
 from culet.gateway.origins import may_enter
 from culet.gateway.problems import check_numbers
-from culet.gateway.sessions import Session
+from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
 from culet.gateway.viewer import Standing, Viewer
 from culet.scene.model import scene_error
@@ -98,7 +98,7 @@ class _Stream:
     """The two tasks of one viewer."""
 
     def __init__(
-        self, websocket: WebSocket, gateway: Gateway, session: Session, viewer: Viewer, client: Bucket
+        self, websocket: WebSocket, gateway: Gateway, session: SessionRecord, viewer: Viewer, client: Bucket
     ) -> None:
         self._websocket = websocket
         self._gateway = gateway

@@ -15,9 +15,9 @@ import numpy as np
 
 from culet.errors import DeviceError
 from culet.parent import ending_with
+from culet.rendering.build import Variant, make
 from culet.rendering.device import open_device
 from culet.rendering.features import Features
-from culet.rendering.program import Programs, Variant
 
 NICENESS = 10
 """Of the compiling process, unless somebody waits for it: frames come first."""
@@ -50,7 +50,7 @@ def main() -> None:
     order = json.loads(sys.argv[1])
     ending_with(order["parent"])()  # nobody needs the program any more
     variant = Variant(**{**order["variant"], "real": np.dtype(order["variant"]["real"]).type})
-    Programs(open_device(), own_process=True).exact(Features(**order["features"]), variant)
+    make(open_device(), Features(**order["features"]), variant)
 
 
 if __name__ == "__main__":

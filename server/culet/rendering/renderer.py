@@ -13,22 +13,14 @@ from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
 from culet.rendering.bounds import largest_radiance
+from culet.rendering.build import OF_ITEMS, TILE, TILES_DEALT, Kernel, Variant, build, progress_size
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
 from culet.rendering.pace import Pace
-from culet.rendering.program import (
-    OF_ITEMS,
-    TILE,
-    TILES_DEALT,
-    Kernel,
-    Programs,
-    Variant,
-    build,
-    progress_size,
-)
+from culet.rendering.program import Programs
 from culet.rendering.sums import Fold, Sums
 from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene

@@ -10,8 +10,8 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
+from culet.rendering.build import Variant, build
 from culet.rendering.device import Device, Real
-from culet.rendering.program import Variant, build
 
 BLOCK = 1024
 """Pixels of a work-item that folds."""

@@ -16,8 +16,8 @@ from typing import Any
 from culet.endpoints import check_free
 from culet.gateway.address import listening_socket, url_of
 from culet.gateway.settings import settings_of
+from culet.notify import Notice, notify
 from culet.service.command_lines import engine_command, gateway_command
-from culet.service.notify import Notice, notify
 from culet.service.socket_folder import socket_folder
 from culet.service.supervisor import Part, Supervisor
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from culet.errors import EngineUnavailableError
+from culet.notify import ADDRESS, PATIENCE, Notice
 from culet.parent import ending_with
-from culet.service.notify import ADDRESS, PATIENCE, Notice
 
 log = logging.getLogger(__name__)
 

@@ -16,8 +16,8 @@ import numpy as np
 import pyopencl as cl
 
 from culet import __version__
+from culet.rendering.build import FLAGS
 from culet.rendering.features import Features, features_of
-from culet.rendering.program import FLAGS
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
 from culet.study.cases import CASES, FEATURE_CASES, stage_of

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from culet.engine.governing.governor import asked_rate
-from culet.gateway.link import EngineLink
+from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
 from culet.study.motion_record import LATE_MS, Change, Seen, Settled, Summary, settle, summarise
@@ -63,7 +63,7 @@ CHANGES: tuple[tuple[str, SessionEvent], ...] = (
 
 
 @dataclass
-class Recorder:
+class Recorder(EngineEvents):
     """Keeps the headers of one session's frames as they come, and knows whether the stone rests.
 
     That is a state of the last frame, not an event: whoever asks later is told the same, and `seen` may be emptied.
@@ -74,7 +74,7 @@ class Recorder:
     """A frame has; cleared by whoever waits for the next one."""
     _last: Frame | None = None
 
-    def take(self, frame: Frame, _message: bytes) -> None:
+    def frame_came(self, frame: Frame, message: bytes) -> None:
         """A frame has come."""
         self.seen.append(Seen.of(frame, time.monotonic()))
         self._last = frame
@@ -152,7 +152,7 @@ async def measure(scene: Scene, seconds: float, size: tuple[int, int], exactness
     """Run an engine and play to it; takes the seconds and three quarters of a minute more."""
     async with running_engine() as (link, process):
         recorder = Recorder()
-        link.on_frame = recorder.take
+        link.events = recorder
         play = Play(link, recorder)
         await play.open(scene, size, Balance(exactness=exactness, pinned=False))
         await play.drop()

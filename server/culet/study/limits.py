@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyopencl as cl
 
+from culet.rendering.build import Variant, build
 from culet.rendering.device import Device, Real
-from culet.rendering.program import Variant, build
 
 ACCUMULATORS = 12
 """As in limits.cl."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from culet.rendering import program
+from culet.rendering import build
 from culet.rendering.device import Device
 from culet.rendering.renderer import Picture, Renderer
 from culet.study.frame import Frame
@@ -21,12 +21,12 @@ PRECISE_FLAGS = ("-cl-std=CL1.2",)
 @contextlib.contextmanager
 def compiled_with(flags: tuple[str, ...]) -> Iterator[None]:
     """Programs that are built meanwhile get these flags. For a study alone: not for a process that serves."""
-    usual = program.FLAGS
-    program.FLAGS = flags  # type: ignore[assignment]
+    usual = build.FLAGS
+    build.FLAGS = flags  # type: ignore[assignment]
     try:
         yield
     finally:
-        program.FLAGS = usual
+        build.FLAGS = usual
 
 
 class Renderers:
@@ -41,7 +41,7 @@ class Renderers:
         stage = frame.stage.showing(knobs.applied_to(frame.stage.scene))
         if knobs.geometry == "triangles":
             stage = replace(stage, shapes=tuple(replace(shape, convex=False) for shape in stage.shapes))
-        with compiled_with(program.FLAGS if knobs.relaxed_maths else PRECISE_FLAGS):
+        with compiled_with(build.FLAGS if knobs.relaxed_maths else PRECISE_FLAGS):
             renderer = self._renderer(knobs)
             columns, rows = (max(1, round(knobs.scale * length)) for length in (frame.width, frame.height))
             return renderer.picture(stage, columns, rows)

@@ -10,8 +10,8 @@ import asyncio
 import faulthandler
 from concurrent.futures import Executor
 
+from culet.notify import Notice, notify, notify_patience
 from culet.rendering import compiling
-from culet.service.notify import Notice, notify, notify_patience
 
 HANG_SECONDS = 20.0
 """Of standing still. Pieces of rendering take 0.1 s, on a loaded machine some more; shorter, and a machine that is busy

@@ -1,0 +1,106 @@
+"""What the engine tells unasked, put into the records of the sessions and told to their viewers."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Awaitable, Callable
+
+from culet.errors import CuletError
+from culet.gateway.client_address import UNKNOWN
+from culet.gateway.link import EngineEvents, EngineLink
+from culet.gateway.session_record import SessionRecord
+from culet_protocol.engine import ListSessions, SessionMotion, SessionProblem, SessionState
+from culet_protocol.frame import Frame
+from culet_protocol.messages import Engine, Problem
+
+log = logging.getLogger(__name__)
+
+REOPENED_AT_ONCE = 4
+"""Sessions, in a new engine: some of them need files that are read by processes."""
+
+
+class EngineNews(EngineEvents):
+    """Listens to a link."""
+
+    def __init__(
+        self,
+        link: EngineLink,
+        records: dict[str, SessionRecord],
+        reopen: Callable[[SessionRecord], Awaitable[None]],
+    ) -> None:
+        """`reopen` gives a session to an engine that does not know it."""
+        self.taken_over = asyncio.Event()
+        """Set once this gateway knows the sessions that the engine had when it came."""
+        self._link = link
+        self._records = records
+        self._reopen = reopen
+
+    def frame_came(self, frame: Frame, message: bytes) -> None:
+        """The session's latest frame."""
+        session = self._records.get(frame.session.hex())
+        if session is None:
+            return
+        session.latest = (frame, message)
+        for viewer in session.viewers:
+            viewer.offer(frame, message)
+
+    def session_changed(self, state: SessionState) -> None:
+        """Somebody edited the session, or its stone fell asleep or was woken."""
+        session = self._records.get(state.session)
+        if session is None:
+            return
+        told_asleep = session.asleep
+        session.hear(state)
+        if state.edited or session.asleep != told_asleep:
+            session.tell(session.state())
+
+    def session_moved(self, motion: SessionMotion) -> None:
+        """The session's stone moved, or its picture was refined."""
+        session = self._records.get(motion.session)
+        if session and session.snapshot:
+            session.snapshot = session.snapshot | motion.moved
+
+    def session_failed(self, problem: SessionProblem) -> None:
+        """What the session shows could not be rendered, or not be moved."""
+        session = self._records.get(problem.session)
+        if session:
+            session.tell(Problem(code="render_failed", message=f"{problem.title}: {problem.detail}"))
+
+    def engine_down(self) -> None:
+        """The engine does not answer any more."""
+        for session in self._records.values():
+            session.tell(Engine(status="down"))
+
+    async def engine_up(self, new_process: bool) -> None:
+        """The engine answers again, maybe as another process, which knows nothing of the sessions."""
+        if not self.taken_over.is_set():
+            await self._take_over()
+        elif new_process:
+            watched_first = sorted(self._records.values(), key=lambda session: not session.viewers)
+            turn = asyncio.Semaphore(REOPENED_AT_ONCE)
+            await asyncio.gather(*(self._try_to_reopen(session, turn) for session in watched_first))
+        for session in self._records.values():
+            session.tell(Engine(status="up"))
+
+    async def _take_over(self) -> None:
+        """Know the sessions that the engine has: a gateway before this one may have died."""
+        answer, _ = await self._link.request(ListSessions())
+        for described in answer["sessions"]:
+            session = SessionRecord(described["session"], described["scene"], described["client"] or UNKNOWN)
+            session.learn(described)
+            session.watched = True  # or so it may have been, and its page may be about to come back
+            session.viewer_left = time.monotonic()
+            self._records.setdefault(session.id, session)
+        if answer["sessions"]:
+            log.info("took over %d sessions", len(answer["sessions"]))
+        self.taken_over.set()
+
+    async def _try_to_reopen(self, session: SessionRecord, turn: asyncio.Semaphore) -> None:
+        try:
+            async with turn:
+                await self._reopen(session)
+        except CuletError as error:
+            session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
+            log.warning("a session could not be opened again: %s", error)

@@ -1,0 +1,94 @@
+"""What the gateway knows of one session: enough to show it to viewers, and to give it to another engine."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from culet.gateway.client_address import UNKNOWN
+from culet.gateway.viewer import DEFAULT_SIZE, Viewer
+from culet_protocol.engine import SessionState
+from culet_protocol.frame import Frame
+from culet_protocol.messages import BALANCED, Notice, Snapshot, State
+
+SNAPSHOT_BYTES_PER_SECOND = 4000
+"""To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
+EVENTS_UNDER_WAY = 8
+"""Events of one session that the engine has not answered; more wait with who sent them."""
+
+
+class SessionRecord:
+    """One session; its truth is in the engine, this is the last that was heard of it."""
+
+    def __init__(self, session: str, scene: dict[str, Any], owner: str = UNKNOWN) -> None:
+        self.id = session
+        self.owner = owner
+        """The client that opened it."""
+        self.topic = bytes.fromhex(session)
+        self.scene = scene
+        self.falling = self.asleep = False
+        self.exactness, self.pinned = BALANCED, False
+        self.snapshot: dict[str, Any] | None = None
+        self.snapshot_told: dict[str, Any] | None = None
+        self.next_snapshot_at = -float("inf")
+        self.viewers: list[Viewer] = []
+        self.latest: tuple[Frame, bytes] | None = None
+        self.used = time.monotonic()
+        self.watched = False
+        """Whether anybody ever watched it, or had a picture of it."""
+        self.viewer_left = -float("inf")
+        self.viewers_told = 0
+        """How many of them the viewers were last told of."""
+        self.subscribed = False
+        self.demand: tuple[float, int, int] = (0.0, *DEFAULT_SIZE)
+        """What the engine was last told."""
+        self.demanding: asyncio.Task[None] | None = None
+        """Tells the engine, one demand after the other."""
+        self.room = asyncio.Semaphore(EVENTS_UNDER_WAY)
+        """Held for each event until the engine has answered."""
+
+    def learn(self, described: Mapping[str, Any]) -> None:
+        """What the engine said of the session, as it is now."""
+        self.scene, self.snapshot = described["scene"], described["snapshot"]
+        self.falling, self.asleep = described["falling"], described["asleep"]
+        self.exactness, self.pinned = described["exactness"], described["pinned"]
+
+    def hear(self, state: SessionState) -> None:
+        """What the engine told of the session unasked."""
+        self.scene, self.snapshot = state.scene, state.snapshot
+        self.falling, self.asleep = state.falling, state.asleep
+        self.exactness, self.pinned = state.exactness, state.pinned
+
+    def tell_snapshot(self, now: float) -> None:
+        """Tell the viewers the snapshot, if it is another one and they can do with it now."""
+        if self.snapshot is self.snapshot_told or self.snapshot is None or now < self.next_snapshot_at:
+            return
+        notice = Snapshot(snapshot=self.snapshot)
+        size = len(notice.model_dump_json())
+        self.snapshot_told, self.next_snapshot_at = self.snapshot, now + max(1.0, size / SNAPSHOT_BYTES_PER_SECOND)
+        self.tell(notice)
+
+    def state(self) -> State:
+        """The notice for viewers."""
+        return State(
+            scene=self.scene,
+            falling=self.falling,
+            asleep=self.asleep,
+            exactness=self.exactness,
+            pinned=self.pinned,
+        )
+
+    def tell(self, notice: Notice) -> None:
+        """Tell every viewer."""
+        for viewer in self.viewers:
+            viewer.tell(notice)
+
+    def wanted(self, now: float) -> tuple[float, int, int]:
+        """Frames per second that some viewer can take, and the size that the one who has watched longest asked for."""
+        watching = [viewer for viewer in self.viewers if viewer.watches(now)]
+        rate = max((viewer.rate(now) for viewer in watching), default=0.0)
+        sized = [viewer for viewer in watching if viewer.size]
+        size = min(sized, key=lambda viewer: viewer.watching_since).size if sized else None
+        return (rate, *(size or (self.demand[1:] if watching else DEFAULT_SIZE)))
