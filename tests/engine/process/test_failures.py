@@ -14,8 +14,9 @@ import pytest
 import zmq.asyncio
 
 from culet.engine.painting.renderer import Picture
+from culet.engine.process.engine import Engine
 from culet.engine.process.limits import Limits
-from culet.engine.process.serve import Engine, encode_still
+from culet.engine.process.serve import encode_still
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.errors import DeviceError

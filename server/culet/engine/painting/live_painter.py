@@ -74,7 +74,8 @@ class LivePainter:
         live.making = Simulating(asyncio.create_task(self._simulate(live, account, settled=settled)))
 
     async def _simulate(self, live: LivePicture, account: Account, *, settled: bool) -> None:
-        session, work = live.session, None
+        session = live.session
+        work: FrameWork | None = None
         try:
             async with session.lock:
                 begun_at = self._now()  # waiting for the lock is no work that the next frame has to do again

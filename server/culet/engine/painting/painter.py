@@ -49,7 +49,7 @@ class Painter:
         self.pictures: dict[str, LivePicture] = {}
         self._renderer = renderer
         self._stills = stills
-        self._report_problem = tell_problem
+        self._tell_of_problem = tell_problem
         self._now = clock
         self._shares = Shares()
         self._tally = tally = Tally()
@@ -130,4 +130,4 @@ class Painter:
 
     def _tell_problem(self, session: Session, error: CuletError) -> None:
         self.counters.problems += 1
-        self._report_problem(session.name, error)
+        self._tell_of_problem(session.name, error)

@@ -3,54 +3,35 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import os
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple, assert_never
+from typing import Any, assert_never
 
 from culet.engine.library.uploads import MESH, SKY, UploadStore
-from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.still import SESSION_STILL_SAMPLES, Still, StillQueue
-from culet.engine.process.limits import Limits, check_still_size, check_still_work, live_size
+from culet.engine.painting.still import StillQueue
+from culet.engine.process.in_use import sky_bytes, uploads_in_use
+from culet.engine.process.limits import Limits, live_size
 from culet.engine.process.memory import Memory
+from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
+from culet.engine.process.picture_memory import size_within
+from culet.engine.process.still_requests import StillRequests
 from culet.engine.session import events
-from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
-from culet.errors import BusyError, InputError, NotFoundError
+from culet.errors import InputError
 from culet.optics.sky_files.picture import SkyPicture
-from culet.scene import Environment, Scene
-from culet.stage import Library, Sky, Stage, uploads_of
+from culet.stage import Library
 from culet_protocol import engine as protocol
-
-STILL_SIZE = (640, 360)
-"""Pixels of a still that names no size."""
-
-SUBSCRIPTIONS = 4096
-"""Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
-
-SESSION_BYTES = 2**20
-"""Of a session: its scene, its simulation with the stone's hull, and its stone if that is a cut."""
-SHOWN_BYTES = 2**14
-"""Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
-HISTORY_SHARE = 1 / 8
-"""Of the memory that all histories together may take."""
-LEAST_LIVE_SIZE = (160, 90)
-"""Pixels that a live picture has in any case."""
 
 LONG_EVENTS = frozenset({"patch_scene", "set_scene", "toggle_fall", "toggle_walls", "push"})
 """They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
-
-MOTION_SECONDS = 0.05
-"""Between two messages about a session that moves. If this engine dies, so much of the motion is lost at most."""
 
 Answer = tuple[dict[str, Any], bytes | None]
 
 
 class Requests:
-    """The engine's sessions, and the meaning of every request."""
+    """The meaning of every request."""
 
     def __init__(
         self,
@@ -59,54 +40,46 @@ class Requests:
         limits: Limits,
         device: dict[str, Any],
         *,
-        tell: Callable[[protocol.SessionState | protocol.SessionMotion], None],
+        tell: Callable[[protocol.SessionState], None],
         memory: Memory,
         forget_sky: Callable[[SkyPicture], object],
     ) -> None:
+        """`tell` tells the gateway of an edit, `forget_sky` the renderer of a sky that no scene can name any more."""
         self.instance = os.urandom(8).hex()
         """Differs for every process."""
         self._painter = painter
-        self._stills = stills
+        self._queue = stills
         self._limits = limits
         self._device = device
         self._tell = tell
         self._memory = memory
-        self._meshes = UploadStore(MESH, limits, memory, in_use=self._named)
-        self._skies = UploadStore(SKY, limits, memory, in_use=self._named, forgotten=forget_sky)
+        self._meshes = UploadStore(MESH, limits, memory, in_use=self._uploads_in_use)
+        self._skies = UploadStore(SKY, limits, memory, in_use=self._uploads_in_use, forgotten=forget_sky)
         self._library = Library(self._meshes, self._skies)
-        self._history = history_length(limits, memory.budget)
-        memory.count("sessions", self._session_bytes)
-        memory.count("histories", self._history_bytes)
-        self._touched: dict[str, float] = {}
-        self._awaited: set[Still] = set()
-        """Stills that somebody waits for."""
-        self._clients: dict[str, str] = {}
-        """Who opened the sessions."""
-        self._told: dict[str, _Told] = {}
-        """What of each session was told last, unasked."""
-        self._telling: set[str] = set()
-        self._subscriptions: set[bytes] = set()
+        self.sessions = OpenSessions(painter, limits, memory, self._library)
+        self._stills = StillRequests(painter, stills, self.sessions, self._library, limits, memory)
         self._started = time.monotonic()
-        self._closed_pace = 0.0, 0.0
-        """Of sessions that are closed: seconds that were to be simulated, and of these those that were dropped."""
+        memory.count("sessions", self._session_bytes)
 
     async def answer(self, request: protocol.Request, data: bytes | None) -> Answer:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
-                return await self._open(request), None
+                return described(await self.sessions.open(request)), None
             case protocol.CloseSession():
-                return self._close(request.session), None
+                self.sessions.close(request.session)
+                return {}, None
             case protocol.GetSession():
-                return described(self._live(request.session)), None
+                return described(self.sessions.get(request.session)), None
             case protocol.ListSessions():
-                return {"sessions": [self._described(live) for live in self._painter.pictures.values()]}, None
+                clients = [described(live) | {"client": self.sessions.client(live)} for live in self.sessions]
+                return {"sessions": clients}, None
             case protocol.Control():
                 return await self._control(request), None
             case protocol.Demand():
                 return self._demand(request), None
             case protocol.Render():
-                return await self._render(request)
+                return await self._stills.render(request)
             case protocol.PutMesh():
                 return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
             case protocol.PutSky():
@@ -118,168 +91,27 @@ class Requests:
             case _:
                 assert_never(request)
 
-    def watch(self, key: bytes, subscribed: bool) -> None:
-        """Somebody began or ceased to receive the frames of the session with these 16 bytes."""
-        if subscribed and len(self._subscriptions) < SUBSCRIPTIONS:  # maybe before the session is opened
-            self._subscriptions.add(key)
-        elif not subscribed:
-            self._subscriptions.discard(key)
-        live = self._painter.pictures.get(key.hex())
-        if live is None:
-            return
-        live.watched = subscribed
-        self._touched[live.session.name] = time.monotonic()
-        if subscribed:
-            self._painter.show_again(live)
-
-    async def tell_motion(self) -> None:
-        """Tell of every session that changes by itself, often, what another engine needs to go on; for ever."""
-        async with asyncio.TaskGroup() as tasks:
-            while True:
-                for live in self._painter.pictures.values():
-                    if live.session.name not in self._telling and self._has_moved(live):
-                        self._telling.add(live.session.name)
-                        tasks.create_task(self._tell_motion(live))
-                await asyncio.sleep(MOTION_SECONDS)
-
-    def _has_moved(self, live: LivePicture) -> bool:
-        session = live.session
-        return self._told.get(session.name) != _numbers(session)
-
-    async def _tell_motion(self, live: LivePicture) -> None:
-        session = live.session
-        try:
-            async with session.lock:  # or a step could be taken between the parts of the snapshot
-                before, self._told[session.name] = self._told.get(session.name), _numbers(session)
-                if session.motion.asleep != (before is not None and before.asleep):
-                    self._tell(session.state(edited=False))
-                else:
-                    self._tell(protocol.SessionMotion(session=session.name, moved=session.snapshot().moving_part()))
-        finally:
-            self._telling.discard(session.name)
-
-    def close_unwatched(self) -> None:
-        """Forget the sessions that nobody watches."""
-        for name in [name for name, live in self._painter.pictures.items() if not live.watched]:
-            self._close(name)
-
     def status(self) -> dict[str, Any]:
         """Counters and device."""
-        pictures = self._painter.pictures.values()
         return {
             "instance": self.instance,
             "uptime_seconds": time.monotonic() - self._started,
-            "sessions": len(pictures),
-            "sessions_watched": sum(live.watched for live in pictures),
-            "sessions_moving": sum(live.watched and live.session.motion.moving for live in pictures),
-            "stills_waiting": len(self._stills),
+            "sessions": len(self.sessions),
+            "sessions_watched": sum(live.watched for live in self.sessions),
+            "sessions_moving": sum(live.watched and live.session.motion.moving for live in self.sessions),
+            "stills_waiting": len(self._queue),
             "meshes": len(self._meshes),
             "skies": len(self._skies),
             **vars(self._painter.counters),
             "memory_budget_bytes": self._memory.budget,
             **{f"memory_{kind}_bytes": size for kind, size in self._memory.held().items()},
-            **self._pace(),
+            **self.sessions.pace(),
             **self._painter.durations.as_json(),
             "device": self._device,
         }
 
-    def _pace(self) -> dict[str, Any]:
-        """How far simulations that somebody watches are behind real time."""
-        paces = [live.session.motion.pace for live in self._painter.pictures.values()]
-        moving = [
-            live.session.motion.pace
-            for live in self._painter.pictures.values()
-            if live.watched and live.session.motion.moving
-        ]
-        return {
-            "simulated_seconds": self._closed_pace[0] + sum(pace.seconds for pace in paces),
-            "simulated_seconds_dropped": self._closed_pace[1] + sum(pace.dropped for pace in paces),
-            "sessions_slow": sum(pace.slow for pace in moving),
-            "slowest_pace": min((pace.lately for pace in moving), default=1.0),
-        }
-
-    async def _open(self, request: protocol.OpenSession) -> dict[str, Any]:
-        pictures = self._painter.pictures
-        if request.session in pictures:  # asked again by a gateway that heard nothing for a while
-            return described(self._live(request.session))
-        scene = Scene.read(request.scene)
-        snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
-        self._make_room()
-        own = scene.environment if snapshot is None else snapshot.environment or scene.environment
-        stage, sky = await asyncio.to_thread(self._opened, scene, own)
-        if request.session in pictures:  # opened twice at once
-            return described(self._live(request.session))
-        self._make_room()
-        history = self._history
-        if snapshot is None:
-            session = Session(request.session, stage, sky=sky, history=history)
-        else:
-            session = Session.restored(request.session, stage, snapshot, sky=sky, history=history)
-        if request.client is not None:
-            self._clients[request.session] = request.client
-        pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
-        self._painter.wake()
-        return described(self._live(request.session))
-
-    def _described(self, live: LivePicture) -> dict[str, Any]:
-        return described(live) | {"client": self._clients.get(live.session.name)}
-
-    def _make_room(self) -> None:
-        """For one more session; BusyError."""
-        with self._memory.reserved("sessions", SESSION_BYTES, "a session"):
-            pass
-        pictures, now = self._painter.pictures, time.monotonic()
-        if len(pictures) < self._limits.max_sessions:
-            return
-        idle = [name for name, live in pictures.items() if not live.watched]
-        oldest = min(idle, key=lambda name: self._touched[name], default=None)
-        if oldest is None or now - self._touched[oldest] < self._limits.engine_idle_seconds:
-            raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
-        self._close(oldest)
-
-    def _named(self) -> set[str]:
-        """The meshes and skies that sessions show, or would go back to, and that stills wait for."""
-        named = set[str]()
-        for live in self._painter.pictures.values():
-            named |= uploads_of(live.session.stage.scene, live.session.sky.environment)
-            if live.painted is not None:
-                named |= live.painted.stage.uses()
-        for still in self._awaited:
-            named |= still.stage.uses()
-        return named
-
-    def _session_bytes(self) -> int:
-        """Of open sessions, and of what only they and their stills hold of skies."""
-        kept = {id(sky.pixels) for sky in self._skies.contents()}
-        panoramas: dict[int, int] = {}
-        size = 0
-        for live in self._painter.pictures.values():
-            size += SESSION_BYTES + len(live.outgoing.message or b"")
-            painted = live.painted.stage.panorama if live.painted else None
-            for panorama in (live.session.sky.panorama, painted):
-                if panorama is not None:
-                    panoramas[id(panorama)] = panorama.nbytes
-        for still in self._awaited:
-            if still.stage.panorama is not None:
-                panoramas[id(still.stage.panorama)] = still.stage.panorama.nbytes
-        return size + sum(own for key, own in panoramas.items() if key not in kept)
-
-    def _history_bytes(self) -> int:
-        return SHOWN_BYTES * sum(len(live.session.history) for live in self._painter.pictures.values())
-
-    def _close(self, session: str) -> dict[str, Any]:
-        pace = self._live(session).session.motion.pace
-        self._closed_pace = self._closed_pace[0] + pace.seconds, self._closed_pace[1] + pace.dropped
-        del self._painter.pictures[session]
-        del self._touched[session]
-        self._told.pop(session, None)
-        self._clients.pop(session, None)
-        self._painter.wake()
-        return {}
-
     async def _control(self, request: protocol.Control) -> dict[str, Any]:
-        live = self._live(request.session)
-        session = live.session
+        session = self.sessions.get(request.session).session
         apply = partial(events.apply, session, request.event, self._library)
         try:
             async with session.lock:
@@ -293,128 +125,24 @@ class Requests:
         return {"step": session.shown.step, "falling": session.motion.falling}
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
-        live = self._live(request.session)
+        live = self.sessions.get(request.session)
+        others = [other for other in self.sessions if other is not live]
         live.rate = request.frames_per_second
-        live.size = self._size_within_memory(live, *live_size(request.width, request.height, self._limits))
+        live.size = size_within(self._memory, live_size(request.width, request.height, self._limits), others)
         self._painter.wake()
         return {"width": live.size[0], "height": live.size[1]}
 
-    def _size_within_memory(self, live: LivePicture, width: int, height: int) -> tuple[int, int]:
-        """The size, or one of that shape whose picture takes no more than half of the memory that is free."""
-        needed = picture_bytes(width, height)
-        others = sum(picture_bytes(*other.size) for other in self._painter.pictures.values() if other is not live)
-        held = self._memory.held()
-        taken = sum(held.values()) - held.get("pictures", 0) + others
-        room = max(0, self._memory.budget - taken) // 2
-        if needed <= room:
-            return width, height
-        self._memory.make_room(2 * needed)
-        scale = math.sqrt(max(room, picture_bytes(*LEAST_LIVE_SIZE)) / needed)
-        return (width, height) if scale >= 1 else (max(1, int(width * scale)), max(1, int(height * scale)))
+    def _uploads_in_use(self) -> set[str]:
+        return uploads_in_use(self.sessions, self._stills)
 
-    def _make_room_for(self, still: Still) -> None:
-        """BusyError if it does not fit besides what is held and what waits, of which no more pixels are begun at a time
-        than a largest still has."""
-        waiting = [other for other in self._awaited if other.picture is None]
-        needed = sum(picture_bytes(other.width, other.height) for other in (*waiting, still))
-        most = picture_bytes(self._limits.max_still_pixels, 1)
-        needed = max(picture_bytes(still.width, still.height), min(needed, most))
-        with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
-            pass
-
-    async def _render(self, request: protocol.Render) -> Answer:
-        if (request.scene is None) == (request.session is None):
-            raise InputError("expected either a scene or a session to render, got both or neither", "scene")
-        stage, default_size, step = await self._staged(request)
-        scene = stage.scene
-        width = default_size[0] if request.width is None else request.width
-        height = default_size[1] if request.height is None else request.height
-        check_still_size(width, height, self._limits)
-        samples = scene.sampling.samples_per_pixel
-        if request.session is not None:
-            samples = max(samples, SESSION_STILL_SAMPLES)
-        check_still_work(width, height, samples, scene.optics.bands, self._limits)
-        still = Still(stage, width, height, samples, request.format, request.client, time.monotonic())
-        await self._painter.make_ready(stage)
-        self._make_room_for(still)
-        self._stills.put(still)
-        self._awaited.add(still)
-        self._painter.wake()
-        try:
-            data = await still.done
-        finally:  # also where nobody waits for it any more
-            self._awaited.discard(still)
-            self._stills.remove(still)
-            self._painter.wake()
-        return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
-
-    async def _staged(self, request: protocol.Render) -> tuple[Stage, tuple[int, int], int | None]:
-        """What is to be rendered, the usual size of its picture, and the session's step that it is of."""
-        if request.session is None:
-            return await asyncio.to_thread(Stage.of, Scene.read(request.scene), self._library), STILL_SIZE, None
-        live = self._live(request.session)
-        async with live.session.lock:
-            past = live.session.recall(request.step)
-            stage = await asyncio.to_thread(events.past_stage, past, live.session, self._library)
-        return stage, live.size, past.step
-
-    def _live(self, session: str) -> LivePicture:
-        try:
-            live = self._painter.pictures[session]
-        except KeyError:
-            raise NotFoundError(f"no session {session}") from None
-        self._touched[session] = time.monotonic()
-        return live
-
-    def _opened(self, scene: Scene, environment: Environment) -> tuple[Stage, Sky]:
-        """The stage of a new session, and its own sky, which is of another environment if the scene's is the light."""
-        return Stage.of(scene, self._library), events.own_sky(self._library.sky(environment))
-
-
-def history_length(limits: Limits, budget: int) -> int:
-    """Shown states that each session may keep, so that all sessions' take HISTORY_SHARE of the memory at most."""
-    return max(1, min(limits.max_shown_states, int(HISTORY_SHARE * budget) // (SHOWN_BYTES * limits.max_sessions)))
-
-
-def picture_bytes(width: int, height: int) -> int:
-    """Of a picture while it is rendered: two sums of four float32, and three bytes that are shown, for each pixel."""
-    return 35 * width * height
-
-
-class _Told(NamedTuple):
-    """What changes whenever another engine would have to be told something."""
-
-    step: int
-    sequence: int
-    asleep: bool
-
-
-def _numbers(session: Session) -> _Told:
-    return _Told(session.shown.step, session.sequence, session.motion.asleep)
+    def _session_bytes(self) -> int:
+        """Of open sessions, and of what only they and their stills hold of skies."""
+        kept = [sky.pixels for sky in self._skies.contents()]
+        own = sum(SESSION_BYTES + len(live.outgoing.message or b"") for live in self.sessions)
+        return own + sky_bytes(self.sessions, self._stills, kept)
 
 
 def _file(data: bytes | None) -> bytes:
     if data is None:
         raise InputError("expected the file's bytes as the third part of the message, got none")
     return data
-
-
-def described(live: LivePicture) -> dict[str, Any]:
-    """A session as the gateway is told of it."""
-    session = live.session
-    return {
-        "session": session.name,
-        "scene": session.scene.model_dump(mode="json"),
-        "falling": session.motion.falling,
-        "asleep": session.motion.asleep,
-        "exactness": session.balance.exactness,
-        "pinned": session.balance.pinned,
-        "watched": live.watched,
-        "step": session.shown.step,
-        "simulation_time": session.shown.simulation_time,
-        "pose": session.pose(),
-        "snapshot": session.snapshot().model_dump(mode="json"),
-        "width": live.size[0],
-        "height": live.size[1],
-        "findings": [finding for shape in session.stage.shapes for finding in shape.findings],
-    }

@@ -1,0 +1,168 @@
+"""The sessions of this engine, each with its live picture: opened, found, watched, and closed."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from culet.engine.painting.live_picture import LivePicture
+from culet.engine.painting.painter import Painter
+from culet.engine.process.limits import Limits
+from culet.engine.process.memory import Memory
+from culet.engine.session import events
+from culet.engine.session.session import Session
+from culet.engine.session.snapshot import Snapshot
+from culet.errors import BusyError, NotFoundError
+from culet.scene import Environment, Scene
+from culet.stage import Library, Sky, Stage
+from culet_protocol.engine import OpenSession
+
+SUBSCRIPTIONS = 4096
+"""Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
+SESSION_BYTES = 2**20
+"""Of a session: its scene, its simulation with the stone's hull, and its stone if that is a cut."""
+SHOWN_BYTES = 2**14
+"""Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
+HISTORY_SHARE = 1 / 8
+"""Of the memory that all histories together may take."""
+
+
+class OpenSessions:
+    """Mutable. A session is told apart by its name."""
+
+    def __init__(self, painter: Painter, limits: Limits, memory: Memory, library: Library) -> None:
+        """Their pictures are the painter's."""
+        self.simulated_seconds = self.dropped_seconds = 0.0
+        """Of sessions that are closed: seconds that were to be simulated, and of these those that were dropped."""
+        self._painter = painter
+        self._limits = limits
+        self._memory = memory
+        self._library = library
+        self._history = history_length(limits, memory.budget)
+        self._touched: dict[str, float] = {}
+        """s, steady clock: when somebody last asked for each."""
+        self._clients: dict[str, str] = {}
+        """Who opened the sessions."""
+        self._subscriptions: set[bytes] = set()
+        memory.count("histories", lambda: SHOWN_BYTES * sum(len(live.session.history) for live in self))
+
+    def __len__(self) -> int:
+        return len(self._painter.pictures)
+
+    def __iter__(self) -> Iterator[LivePicture]:
+        return iter(self._painter.pictures.values())
+
+    def __contains__(self, session: str) -> bool:
+        return session in self._painter.pictures
+
+    def get(self, session: str) -> LivePicture:
+        """The session of that name, which thereby counts as used; NotFoundError."""
+        try:
+            live = self._painter.pictures[session]
+        except KeyError:
+            raise NotFoundError(f"no session {session}") from None
+        self._touched[session] = time.monotonic()
+        return live
+
+    def client(self, live: LivePicture) -> str | None:
+        """Who opened the session, as its gateway called that client."""
+        return self._clients.get(live.session.name)
+
+    async def open(self, request: OpenSession) -> LivePicture:
+        """A new session, or one that an engine before had; BusyError if there is no room."""
+        if request.session in self:  # asked again by a gateway that heard nothing for a while
+            return self.get(request.session)
+        scene = Scene.read(request.scene)
+        snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
+        self._make_room()
+        own = scene.environment if snapshot is None else snapshot.environment or scene.environment
+        stage, sky = await asyncio.to_thread(self._staged, scene, own)
+        if request.session in self:  # opened twice at once
+            return self.get(request.session)
+        self._make_room()
+        if snapshot is None:
+            session = Session(request.session, stage, sky=sky, history=self._history)
+        else:
+            session = Session.restored(request.session, stage, snapshot, sky=sky, history=self._history)
+        if request.client is not None:
+            self._clients[request.session] = request.client
+        self._painter.pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
+        self._painter.wake()
+        return self.get(request.session)
+
+    def close(self, session: str) -> None:
+        """Forget the session; NotFoundError."""
+        pace = self.get(session).session.motion.pace
+        self.simulated_seconds += pace.seconds
+        self.dropped_seconds += pace.dropped
+        del self._painter.pictures[session]
+        del self._touched[session]
+        self._clients.pop(session, None)
+        self._painter.wake()
+
+    def close_unwatched(self) -> None:
+        """Forget the sessions that nobody watches."""
+        for name in [live.session.name for live in self if not live.watched]:
+            self.close(name)
+
+    def watch(self, key: bytes, subscribed: bool) -> None:
+        """Somebody began or ceased to receive the frames of the session with these 16 bytes."""
+        if subscribed and len(self._subscriptions) < SUBSCRIPTIONS:  # maybe before the session is opened
+            self._subscriptions.add(key)
+        elif not subscribed:
+            self._subscriptions.discard(key)
+        live = self._painter.pictures.get(key.hex())
+        if live is None:
+            return
+        live.watched = subscribed
+        self._touched[live.session.name] = time.monotonic()
+        if subscribed:
+            self._painter.show_again(live)
+
+    def pace(self) -> dict[str, Any]:
+        """How far the simulations are behind real time, for the status."""
+        paces = [live.session.motion.pace for live in self]
+        moving = [live.session.motion.pace for live in self if live.watched and live.session.motion.moving]
+        return {
+            "simulated_seconds": self.simulated_seconds + sum(pace.seconds for pace in paces),
+            "simulated_seconds_dropped": self.dropped_seconds + sum(pace.dropped for pace in paces),
+            "sessions_slow": sum(pace.slow for pace in moving),
+            "slowest_pace": min((pace.lately for pace in moving), default=1.0),
+        }
+
+    def _make_room(self) -> None:
+        """For one more session; BusyError."""
+        with self._memory.reserved("sessions", SESSION_BYTES, "a session"):
+            pass
+        if len(self) < self._limits.max_sessions:
+            return
+        idle = [live.session.name for live in self if not live.watched]
+        oldest = min(idle, key=lambda name: self._touched[name], default=None)
+        if oldest is None or time.monotonic() - self._touched[oldest] < self._limits.engine_idle_seconds:
+            raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
+        self.close(oldest)
+
+    def _staged(self, scene: Scene, environment: Environment) -> tuple[Stage, Sky]:
+        """The stage of a new session, and its own sky, which is of another environment if the scene's is the light."""
+        return Stage.of(scene, self._library), events.own_sky(self._library.sky(environment))
+
+
+def history_length(limits: Limits, budget: int) -> int:
+    """Shown states that each session may keep, so that all sessions' take HISTORY_SHARE of the memory at most."""
+    return max(1, min(limits.max_shown_states, int(HISTORY_SHARE * budget) // (SHOWN_BYTES * limits.max_sessions)))
+
+
+def described(live: LivePicture) -> dict[str, Any]:
+    """A session as the gateway is told of it."""
+    session = live.session
+    return session.state(edited=False).model_dump(mode="json", exclude={"type", "edited"}) | {
+        "watched": live.watched,
+        "step": session.shown.step,
+        "simulation_time": session.shown.simulation_time,
+        "pose": session.pose(),
+        "width": live.size[0],
+        "height": live.size[1],
+        "findings": [finding for shape in session.stage.shapes for finding in shape.findings],
+    }

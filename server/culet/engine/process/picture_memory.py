@@ -1,0 +1,32 @@
+"""The memory of pictures, and the size that a live picture can have within it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from culet.engine.painting.live_picture import LivePicture
+from culet.engine.process.memory import Memory
+
+LEAST_LIVE_SIZE = (160, 90)
+"""Pixels that a live picture has in any case."""
+
+
+def picture_bytes(width: int, height: int) -> int:
+    """Of a picture while it is rendered: two sums of four float32, and three bytes that are shown, for each pixel."""
+    return 35 * width * height
+
+
+def size_within(memory: Memory, size: tuple[int, int], others: Iterable[LivePicture]) -> tuple[int, int]:
+    """The size, or one of that shape whose picture takes no more than half of the memory that is free beside other live
+    pictures."""
+    width, height = size
+    needed = picture_bytes(width, height)
+    held = memory.held()
+    taken = sum(held.values()) - held.get("pictures", 0) + sum(picture_bytes(*other.size) for other in others)
+    room = max(0, memory.budget - taken) // 2
+    if needed <= room:
+        return size
+    memory.make_room(2 * needed)
+    scale = math.sqrt(max(room, picture_bytes(*LEAST_LIVE_SIZE)) / needed)
+    return size if scale >= 1 else (max(1, int(width * scale)), max(1, int(height * scale)))
