@@ -11,7 +11,7 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from culet.gateway import sessions as gateway_sessions
+from culet.gateway import session_places
 from culet_protocol.close import CloseCode
 from gateway.running import PATIENCE, Endpoints, Gateway, Viewer, eventually, gateway_before
 
@@ -74,7 +74,7 @@ async def test_a_client_at_its_own_limit_gets_room_by_what_it_left_alone(
         refused = await open_session(gateway, {})
         assert refused.status_code == 429
         assert "2 sessions open, which is the limit for one client" in refused.json()["detail"]
-        monkeypatch.setattr(gateway_sessions, "UNUSED_SECONDS", 0.0)
+        monkeypatch.setattr(session_places, "UNUSED_SECONDS", 0.0)
         await open_sessions(gateway, {}, 1)
         assert [await exists(gateway, session) for session in held] == [False, True]
 

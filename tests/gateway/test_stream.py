@@ -15,7 +15,7 @@ from websockets.typing import Subprotocol
 
 from culet.gateway import stream as streaming
 from culet.gateway.credit import WINDOW
-from culet.gateway.sessions import EVENTS_UNDER_WAY
+from culet.gateway.session_record import EVENTS_UNDER_WAY
 from culet.gateway.stream import MAX_CONTROL_BYTES
 from culet.scene import Scene
 from culet_protocol.close import CloseCode

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from culet.errors import InputError
 from culet.optics.bands import FEWEST, MOST, SPAN_NANOMETRES, bands
+from culet.optics.materials_page import bias, largest_weight
 from culet.optics.observer import colour_matching_table, linear_srgb
-from culet.optics.report import bias, largest_weight
 
 OFFSETS = (0.0, 0.123, 0.5, 0.877, 1.0)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from culet.study.report import Figure, Front, Headline, Point, Report
+from culet.study.report import Figure, Frontier, Headline, Point, Report
 
 
 def report(seconds: float = 0.5, **changes: object) -> Report:
@@ -28,7 +28,7 @@ def report(seconds: float = 0.5, **changes: object) -> Report:
             "cut": Figure(unit="weight", about="Cut."),
         },
         "points": points,
-        "fronts": (Front(name="f", cost="frame_seconds", error="rmse_model", keys=("samples=1", "samples=4")),),
+        "frontiers": (Frontier(name="f", cost="frame_seconds", error="rmse_model", keys=("samples=1", "samples=4")),),
         "headlines": (Headline(name="a frame", value=1.2345, unit="ms"),),
     }
     return Report.model_validate(fields | changes)

@@ -32,7 +32,7 @@ def test_what_was_measured_under_other_conditions_is_said() -> None:
 
 def test_reports_of_different_studies_are_refused() -> None:
     with pytest.raises(InputError, match="rendering and streaming"):
-        compare_reports(report(), report(study="streaming", fronts=()))
+        compare_reports(report(), report(study="streaming", frontiers=()))
 
 
 def test_something_out_of_nothing_is_infinite_and_not_in_the_median() -> None:
@@ -47,5 +47,5 @@ def test_something_out_of_nothing_is_infinite_and_not_in_the_median() -> None:
 def test_a_mean_error_of_either_sign_has_no_ratio() -> None:
     signed = {"bias": Figure(unit="radiance", better="neither", about="Mean error.")}
     points = [report().points[0].model_copy(update={"figures": {"bias": value}}) for value in (0.1, -0.2)]
-    before, after = (report(points=(point,), figures=signed, fronts=()) for point in points)
+    before, after = (report(points=(point,), figures=signed, frontiers=()) for point in points)
     assert compare_reports(before, after).ratios == []

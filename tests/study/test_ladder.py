@@ -25,7 +25,7 @@ MEASURED = [
 ]
 
 
-def test_the_ladder_is_the_best_setting_and_the_front_of_the_cheaper_ones() -> None:
+def test_the_ladder_is_the_best_setting_and_the_frontier_of_the_cheaper_ones() -> None:
     best, *others = ladder_of(MEASURED)
     assert (best.scale, best.cutoff, best.max_bounces, best.cost) == (1.0, 0.01, 256, 1.0)
     assert best.error > others[0].error, "its noise"

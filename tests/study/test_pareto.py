@@ -1,8 +1,8 @@
-"""The Pareto front of a handful of points."""
+"""The Pareto frontier of a handful of points."""
 
 from __future__ import annotations
 
-from culet.study.pareto import front
+from culet.study.pareto import frontier
 from culet.study.report import Point
 
 
@@ -11,10 +11,10 @@ def point(key: str, seconds: float | None, error: float | None) -> Point:
 
 
 def keys(*points: Point) -> tuple[str, ...]:
-    return front("name", points, "seconds", "error").keys
+    return frontier("name", points, "seconds", "error").keys
 
 
-def test_the_front_goes_from_the_fastest_to_the_most_exact() -> None:
+def test_the_frontier_goes_from_the_fastest_to_the_most_exact() -> None:
     assert keys(point("exact", 9, 0.1), point("fast", 1, 3), point("between", 4, 1)) == ("fast", "between", "exact")
 
 

@@ -47,6 +47,6 @@ def test_one_point_has_a_frame_around_it() -> None:
     assert 14 < y < 418
 
 
-def test_the_front_is_numbered_from_left_to_right() -> None:
+def test_the_frontier_is_numbered_from_left_to_right() -> None:
     svg = log_log([Series("s", [])], "x", "y", [Mark(1, 3), Mark(2, 1)])
     assert re.findall(r'class="number">(\d)</text>', svg) == ["1", "2"]

@@ -15,7 +15,7 @@ from culet.rendering.device import Device
 from culet.study import race
 from culet.study.knobs import base_knobs
 from culet.study.mitsuba import find_llvm, gradient_sky
-from culet.study.race import mitsuba_missing, race_frame, results, run_mitsuba
+from culet.study.race import mitsuba_missing, race_shot, results, run_mitsuba
 from culet.study.reference import make_reference, reference_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Point
@@ -84,7 +84,7 @@ def test_a_package_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pyt
 @pytest.mark.skipif(mitsuba_missing(), reason="Mitsuba 3 is not installed: pip install -e '.[validation]'")
 def test_mitsuba_sees_the_same_stone(device: Device) -> None:
     """The race is fair only if both come to the same picture: what they are apart is the noise of 128 samples."""
-    frame = race_frame(64, 36)
+    frame = race_shot(64, 36)
     picture = Renderers(device).picture(base_knobs(frame.stage, device.lanes), frame)
     picture.refine(256)
     runs, words = run_mitsuba(frame, picture.linear().astype(np.float64), 128, 0.01)
@@ -102,7 +102,7 @@ SECOND = FIRST.replace("independent", "multijitter")
 @pytest.mark.parametrize("lines", [(FIRST, ENDED), (FIRST, ENDED, SECOND)])
 def test_a_sampler_that_did_not_come_to_its_end_takes_no_part_and_is_named(lines: tuple[str, ...]) -> None:
     program = f"import sys; print({chr(10).join(lines)!r}); sys.exit('the second one fell over')"
-    runs, words = run_mitsuba(race_frame(4, 4), np.zeros((4, 4, 3)), 16, 0.01, command=(sys.executable, "-c", program))
+    runs, words = run_mitsuba(race_shot(4, 4), np.zeros((4, 4, 3)), 16, 0.01, command=(sys.executable, "-c", program))
     assert [point.key for points in runs for point in points] == ["race Mitsuba 3, independent samples=16"]
     assert words.startswith("Mitsuba 3, multijitter: no whole run")
     assert words.endswith("the second one fell over")
@@ -111,14 +111,14 @@ def test_a_sampler_that_did_not_come_to_its_end_takes_no_part_and_is_named(lines
 def test_a_process_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(race, "PATIENCE", 0.0)
     program = f"import time; print({ENDED!r}, flush=True); time.sleep(600)"
-    runs, words = run_mitsuba(race_frame(4, 4), np.zeros((4, 4, 3)), 16, 0.05, command=(sys.executable, "-c", program))
+    runs, words = run_mitsuba(race_shot(4, 4), np.zeros((4, 4, 3)), 16, 0.05, command=(sys.executable, "-c", program))
     assert len(runs) <= 1
     assert words.endswith("not done after 1 s")
 
 
 def test_the_races_reference_shares_no_sample_with_culets(device: Device, tmp_path: Path) -> None:
     """Samples 2 and 3 are what is left of 0 to 3 without 0 and 1."""
-    frame = race_frame(16, 9)
+    frame = race_shot(16, 9)
     knobs = reference_knobs(base_knobs(frame.stage, device.lanes), "model", 1)
     renderers = Renderers(device)
     whole = make_reference(renderers, frame, knobs, 4, lambda _part: None, steps=True, cache=tmp_path)

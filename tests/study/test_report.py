@@ -24,6 +24,13 @@ def test_a_report_reads_back_as_it_was(tmp_path: Path) -> None:
     assert Report.read(tmp_path / "report.json") == report()
 
 
+def test_an_earlier_report_that_calls_frontiers_fronts_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "report.json"
+    path.write_text(report().json_text().replace('"frontiers"', '"fronts"'), encoding="utf-8")
+    assert '"fronts"' in path.read_text(encoding="utf-8")
+    assert Report.read(path) == report()
+
+
 def test_the_schema_that_is_documented_is_the_one_that_is_written() -> None:
     section = DOCUMENTED.read_text().split("\n## report.json\n")[1].split("\n## ")[0]
     assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == list(Report.model_fields)
@@ -53,11 +60,11 @@ def test_the_page_needs_nothing_from_elsewhere(tmp_path: Path) -> None:
     assert not re.search(r"""https?:|src="(?!data:)|<link|<script|@import|url\(""", text)
 
 
-def test_the_page_shows_the_front_and_escapes_what_it_was_given(tmp_path: Path) -> None:
+def test_the_page_shows_the_frontier_and_escapes_what_it_was_given(tmp_path: Path) -> None:
     text = page(report(), tmp_path)
     assert "<b> & so on" not in text
-    assert text.count("samples 4, &lt;b&gt; &amp; so on") >= 3  # in the plot, the front's table and the knobs' table
-    assert 'class="number">2</text>' in text  # the front's second point is numbered
+    assert text.count("samples 4, &lt;b&gt; &amp; so on") >= 3  # in the plot, the frontier's table and the knobs' table
+    assert 'class="number">2</text>' in text  # the frontier's second point is numbered
 
 
 def test_the_headlines_are_a_table_with_their_provenance() -> None:

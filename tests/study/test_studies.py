@@ -16,11 +16,11 @@ from culet.rendering.device import Device
 from culet.scene import Scene
 from culet.scene.legacy import legacy
 from culet.study import race, studies
-from culet.study.frame import Frame
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
+from culet.study.shot import Shot
 from culet.study.studies import Effort, study_rendering
 from shared.stages import staged
 
@@ -110,12 +110,12 @@ def test_what_is_cut_darkens(finished: Report) -> None:
 
 def test_the_fronts_first_point_is_the_fastest(finished: Report) -> None:
     swept = [point for point in finished.points if point.group != "race"]
-    for front in finished.fronts:
-        judged = [point for point in swept if point.figures[front.error] is not None]
-        if front.error == "rmse_paired":
+    for frontier in finished.frontiers:
+        judged = [point for point in swept if point.figures[frontier.error] is not None]
+        if frontier.error == "rmse_paired":
             judged = [point for point in judged if point.knobs["samples"] == 1]
-        fastest = min(judged, key=lambda point: point.figures[front.cost] or 0)
-        assert front.keys[0] == fastest.key
+        fastest = min(judged, key=lambda point: point.figures[frontier.cost] or 0)
+        assert frontier.keys[0] == fastest.key
 
 
 def test_no_picture_holds_a_number_that_is_not_finite(finished: Report) -> None:
@@ -147,7 +147,7 @@ def test_a_sky_from_a_file_is_what_is_rendered(device: Device) -> None:
     means = []
     for panorama in (grey, white):
         stage = staged(scene, panorama=panorama)
-        picture = Renderers(device).picture(base_knobs(stage, device.lanes), Frame(stage, 32, 18))
+        picture = Renderers(device).picture(base_knobs(stage, device.lanes), Shot(stage, 32, 18))
         picture.refine()
         means.append(picture.linear().mean())
     assert means[1] == pytest.approx(2 * means[0], rel=1e-5)

@@ -27,7 +27,7 @@ td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 thead th { border-bottom: 1.5px solid #555; }
 svg { width: 100%; height: auto; font: 12px system-ui, sans-serif; }
 svg .grid { stroke: #e2e2e2; stroke-width: 0.7; }
-svg .front { stroke: #111; stroke-width: 1.6; fill: none; stroke-dasharray: 5 3; }
+svg .frontier { stroke: #111; stroke-width: 1.6; fill: none; stroke-dasharray: 5 3; }
 svg .number { font-weight: 600; font-size: 11px; }
 svg .name { font-size: 11px; }
 code { font: 0.92em ui-monospace, monospace; }

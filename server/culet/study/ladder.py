@@ -61,7 +61,7 @@ def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> l
 
 
 def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
-    """The best setting first, then the front of those that are cheaper: each has the least error for its cost.
+    """The best setting first, then the frontier of those that are cheaper: each has the least error for its cost.
 
     The first is the scene's own, whatever its error: a single sample of every pixel is sharper than a smaller picture,
     and so has more of the error that more samples would take away.
@@ -85,11 +85,11 @@ def errors_of(measured: list[Measured]) -> dict[str, Any]:
 
 
 def _rungs(best: Setting, others: list[Setting]) -> list[Setting]:
-    rungs = [best, *_front([other for other in others if other.scale >= LEAST_SCALE], best.cost)]
-    return rungs + _front([other for other in others if other.error > rungs[-1].error], rungs[-1].cost)
+    rungs = [best, *_frontier([other for other in others if other.scale >= LEAST_SCALE], best.cost)]
+    return rungs + _frontier([other for other in others if other.error > rungs[-1].error], rungs[-1].cost)
 
 
-def _front(settings: list[Setting], cost: float) -> list[Setting]:
+def _frontier(settings: list[Setting], cost: float) -> list[Setting]:
     """Those than which none cheaper is better, from below that cost down, none close to the one before it."""
     rungs: list[Setting] = []
     for setting in sorted(settings, key=lambda setting: setting.cost, reverse=True):

@@ -1,4 +1,4 @@
-"""From measured points to a report: fronts, fits, races and the numbers that sum up; and its files."""
+"""From measured points to a report: frontiers, fits, races and the numbers that sum up; and its files."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from culet.errors import InputError
 from culet.rendering.device import Device
 from culet.study import race, rendering, simulation, streaming
 from culet.study.knobs import Knobs
-from culet.study.limits import Limits, counted_flops
 from culet.study.page import page
-from culet.study.pareto import front
+from culet.study.pareto import frontier
 from culet.study.provenance import provenance
-from culet.study.report import Front, Headline, Knob, Point, Race, Report, csv_text
+from culet.study.report import Frontier, Headline, Knob, Point, Race, Report, csv_text
+from culet.study.roofline import Roofline, counted_flops
 
 RACE_HEADLINE = "0.005"
 """RMSE of the race that is told first."""
@@ -31,7 +31,7 @@ def rendering_report(
     facts: dict[str, str | int],
     points: Sequence[Point],
     base: Knobs,
-    limits: Limits,
+    limits: Roofline,
     facets: int,
     notes: Sequence[str],
 ) -> Report:
@@ -47,10 +47,10 @@ def rendering_report(
         scene=dict(scene),
         figures={**rendering.FIGURES, **race.FIGURES},
         points=tuple(points),
-        fronts=(
-            front("Time against the scene's own idea of light", swept, "frame_seconds", "rmse_model"),
-            front("Time against the whole physics", swept, "frame_seconds", "rmse_physics"),
-            front("One sample a pixel: time against the knob's own error", single, "kernel_seconds", "rmse_paired"),
+        frontiers=(
+            frontier("Time against the scene's own idea of light", swept, "frame_seconds", "rmse_model"),
+            frontier("Time against the whole physics", swept, "frame_seconds", "rmse_physics"),
+            frontier("One sample a pixel: time against the knob's own error", single, "kernel_seconds", "rmse_paired"),
         ),
         races=tuple(races),
         limits=limits._asdict(),
@@ -62,7 +62,7 @@ def rendering_report(
     )
 
 
-def _rendering_headlines(points: Sequence[Point], base: Knobs, limits: Limits, facets: int) -> list[Headline]:
+def _rendering_headlines(points: Sequence[Point], base: Knobs, limits: Roofline, facets: int) -> list[Headline]:
     by_key = {point.key: point for point in points}
     own = by_key[base.key]
     kernel, segments = own.figures["kernel_seconds"] or 0.0, own.figures["segments"] or 0.0
@@ -121,11 +121,11 @@ def _race_headlines(points: Sequence[Point], races: Sequence[Race]) -> list[Head
 
 def simulation_report(scene: Mapping[str, object], settings: dict[str, Knob], points: Sequence[Point]) -> Report:
     """Of `culet study simulation`."""
-    fronts: list[Front] = []
+    frontiers: list[Frontier] = []
     for group in dict.fromkeys(point.group for point in points):
         own = [point for point in points if point.group == group]
-        fronts += [
-            front(f"{group}: {error}", own, "cpu_seconds", error)
+        frontiers += [
+            frontier(f"{group}: {error}", own, "cpu_seconds", error)
             for error in ("position_error", "attitude_error", "energy_error")
             if any(point.figures[error] is not None for point in own)
         ]
@@ -139,7 +139,7 @@ def simulation_report(scene: Mapping[str, object], settings: dict[str, Knob], po
         scene=dict(scene),
         figures=simulation.FIGURES,
         points=tuple(points),
-        fronts=tuple(fronts),
+        frontiers=tuple(frontiers),
         fits=tuple(fits),
         headlines=tuple(Headline(name=f"order of {fit.label}", value=fit.order, unit="") for fit in orders),
     )
@@ -149,8 +149,8 @@ def streaming_report(
     scene: Mapping[str, object], settings: dict[str, Knob], facts: dict[str, str | int], points: Sequence[Point]
 ) -> Report:
     """Of `culet study streaming`."""
-    fronts = [
-        front(f"{group.capitalize()} frames", [p for p in points if p.group == group], "bytes", "dissimilarity")
+    frontiers = [
+        frontier(f"{group.capitalize()} frames", [p for p in points if p.group == group], "bytes", "dissimilarity")
         for group in dict.fromkeys(point.group for point in points)
     ]
     return Report(
@@ -161,7 +161,7 @@ def streaming_report(
         scene=dict(scene),
         figures=streaming.FIGURES,
         points=tuple(points),
-        fronts=tuple(fronts),
+        frontiers=tuple(frontiers),
     )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from culet.study.document import document, figure, heading, paragraph, picture, table, text
 from culet.study.pictures import LEAST, MOST, inline, picture_paths, scale_bar
 from culet.study.plot import SHAPES, Mark, Series, log_log
-from culet.study.report import Front, Point, Report
+from culet.study.report import Frontier, Point, Report
 from culet.study.simulation import DEFAULTS
 
 TITLES = {
@@ -63,9 +63,9 @@ def _closing(report: Report) -> Iterator[str]:
 
 def _rendering(report: Report, pictures: Path) -> Iterator[str]:
     points = [point for point in report.points if point.group != "race"]
-    for front in report.fronts:
-        yield heading(front.name)
-        yield from _front(report, points, front)
+    for frontier in report.frontiers:
+        yield heading(frontier.name)
+        yield from _frontier(report, points, frontier)
     if report.races:
         yield heading("Against others: seconds to reach an error")
         targets = list(report.races[0].seconds)
@@ -113,26 +113,31 @@ def _rendering(report: Report, pictures: Path) -> Iterator[str]:
     yield '<div class="pictures">' + "".join(shown) + "</div>"
 
 
-def _front(report: Report, points: list[Point], front: Front) -> Iterator[str]:
-    if front.error == "rmse_paired":
+def _frontier(report: Report, points: list[Point], frontier: Frontier) -> Iterator[str]:
+    if frontier.error == "rmse_paired":
         points = [point for point in points if point.knobs["samples"] == 1]
-    drawn = Counter(point.group for point in points if point.figures.get(front.error))
-    drawn.update({report.point(key).group: len(points) for key in front.keys})  # those on the front before all others
+    drawn = Counter(point.group for point in points if point.figures.get(frontier.error))
+    drawn.update({report.point(key).group: len(points) for key in frontier.keys})  # the frontier's before all others
     marked = sorted({"base", *(group for group, _ in drawn.most_common(len(SHAPES) - 2))})
-    series = [Series(g, _marks([p for p in points if p.group == g], front.cost, front.error)) for g in marked]
+    series = [Series(g, _marks([p for p in points if p.group == g], frontier.cost, frontier.error)) for g in marked]
     others = [point for point in points if point.group not in marked]
-    series.append(Series("other knobs", _marks(others, front.cost, front.error)))
-    chosen = [report.point(key) for key in front.keys]
+    series.append(Series("other knobs", _marks(others, frontier.cost, frontier.error)))
+    chosen = [report.point(key) for key in frontier.keys]
     yield figure(
-        log_log(series, _axis(report, front.cost), _axis(report, front.error), _marks(chosen, front.cost, front.error)),
-        f"{report.figures[front.error].about} The numbers are the front's, in the table below.",
+        log_log(
+            series,
+            _axis(report, frontier.cost),
+            _axis(report, frontier.error),
+            _marks(chosen, frontier.cost, frontier.error),
+        ),
+        f"{report.figures[frontier.error].about} The numbers are the frontier's, in the table below.",
     )
-    yield _numbered(chosen, front.cost, front.error)
+    yield _numbered(chosen, frontier.cost, frontier.error)
 
 
 def _numbered(chosen: list[Point], cost: str, error: str) -> str:
     rows = [(n, point.label, point.figures[cost], point.figures[error]) for n, point in enumerate(chosen, 1)]
-    return table(["", "on the front", cost.replace("_", " "), error.replace("_", " ")], rows)
+    return table(["", "on the frontier", cost.replace("_", " "), error.replace("_", " ")], rows)
 
 
 def _axis(report: Report, figure_: str) -> str:
@@ -149,13 +154,13 @@ def _simulation(report: Report, pictures: Path) -> Iterator[str]:
     )
     for group, error in _SIMULATION_PLOTS:
         points = [point for point in report.points if point.group == group]
-        fronts = [front for front in report.fronts if front.name == f"{group}: {error}"]
+        frontiers = [frontier for frontier in report.frontiers if frontier.name == f"{group}: {error}"]
         yield heading(f"{group.capitalize()}: {error.replace('_', ' ')}")
         series = [
             Series(name, _marks([p for p in points if _method(p) == name], "cpu_seconds", error), line=True)
             for name in dict.fromkeys(map(_method, points))
         ]
-        chosen = [report.point(key) for front in fronts for key in front.keys]
+        chosen = [report.point(key) for frontier in frontiers for key in frontier.keys]
         about = report.figures[error]
         yield figure(
             log_log(
@@ -182,19 +187,19 @@ def _method(point: Point) -> str:
 
 def _streaming(report: Report, pictures: Path) -> Iterator[str]:
     del pictures
-    for front in report.fronts:
-        yield heading(front.name)
-        points = [point for point in report.points if point.group == front.name.split(" ", 1)[0].lower()]
+    for frontier in report.frontiers:
+        yield heading(frontier.name)
+        points = [point for point in report.points if point.group == frontier.name.split(" ", 1)[0].lower()]
         series = []
         for name in dict.fromkeys(map(_family, points)):
             own = [point for point in points if _family(point) == name]
-            series.append(Series(name, _marks(own, front.cost, front.error), line=name.startswith("JPEG")))
-        chosen = [report.point(key) for key in front.keys]
+            series.append(Series(name, _marks(own, frontier.cost, frontier.error), line=name.startswith("JPEG")))
+        chosen = [report.point(key) for key in frontier.keys]
         yield figure(
-            log_log(series, "bytes a frame", "1 - SSIM", _marks(chosen, front.cost, front.error)),
+            log_log(series, "bytes a frame", "1 - SSIM", _marks(chosen, frontier.cost, frontier.error)),
             "Lossless codecs have no error and are in the tables alone.",
         )
-        yield _numbered(chosen, front.cost, front.error)
+        yield _numbered(chosen, frontier.cost, frontier.error)
     yield from _groups(report, "codec")
 
 

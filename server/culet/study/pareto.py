@@ -1,13 +1,13 @@
-"""The Pareto front: what to choose from, if both time and error matter."""
+"""The Pareto frontier: what to choose from, if both time and error matter."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from culet.study.report import Front, Point
+from culet.study.report import Frontier, Point
 
 
-def front(name: str, points: Iterable[Point], cost: str, error: str) -> Front:
+def frontier(name: str, points: Iterable[Point], cost: str, error: str) -> Frontier:
     """The points that no other beats: at least as good in both figures and better in one. Fastest first.
 
     Points that lack one of the figures do not take part.
@@ -23,4 +23,4 @@ def front(name: str, points: Iterable[Point], cost: str, error: str) -> Front:
         if wrong < least:
             keys.append(key)
             least = wrong
-    return Front(name=name, cost=cost, error=error, keys=tuple(keys))
+    return Frontier(name=name, cost=cost, error=error, keys=tuple(keys))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 WIDTH, HEIGHT = 900, 470
 LEFT, RIGHT, TOP, BOTTOM = 74, 280, 14, 52
 LINE = 16
-"""Of the legend, and of the front's names below it."""
+"""Of the legend, and of the frontier's names below it."""
 COLOURS = ("#1b6ca8", "#c0392b", "#2e8540", "#8e44ad", "#b9770e", "#117a8b", "#7b4b2a", "#5d6d7e")
 SHAPES = ("circle", "square", "up", "diamond", "down", "plus", "cross", "bar")
 
@@ -27,7 +27,7 @@ class Mark(NamedTuple):
     title: str = ""
     """Shown by a screen when pointed at."""
     name: str = ""
-    """Told in the margin, if it is one of the front's."""
+    """Told in the margin, if it is one of the frontier's."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class Series:
     line: bool = False
 
 
-def log_log(series: Sequence[Series], x_label: str, y_label: str, front: Sequence[Mark] = ()) -> str:
-    """An inline SVG. `front` is drawn as a stair and numbered from 1, left to right; its names are in the margin."""
+def log_log(series: Sequence[Series], x_label: str, y_label: str, frontier: Sequence[Mark] = ()) -> str:
+    """An inline SVG. `frontier` is drawn as a stair and numbered from 1, left to right; its names are in the margin."""
     shown = [Series(each.name, [m for m in each.marks if m.x > 0 and m.y > 0], each.line) for each in series]
     shown = [each for each in shown if each.marks]
-    marks = [mark for each in shown for mark in each.marks] + [m for m in front if m.x > 0 and m.y > 0]
+    marks = [mark for each in shown for mark in each.marks] + [m for m in frontier if m.x > 0 and m.y > 0]
     if not marks:
         return "<p>Nothing to draw: no point has both figures above 0.</p>"
     frame = _Frame(_range([m.x for m in marks]), _range([m.y for m in marks]))
@@ -52,7 +52,7 @@ def log_log(series: Sequence[Series], x_label: str, y_label: str, front: Sequenc
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{about}">',
         *_axes(frame, x_label, y_label),
     ]
-    parts += _front(frame, [m for m in front if m.x > 0 and m.y > 0])
+    parts += _frontier(frame, [m for m in frontier if m.x > 0 and m.y > 0])
     for number, each in enumerate(shown):
         colour, shape = COLOURS[number % len(COLOURS)], SHAPES[number % len(SHAPES)]
         if each.line and len(each.marks) > 1:
@@ -62,8 +62,8 @@ def log_log(series: Sequence[Series], x_label: str, y_label: str, front: Sequenc
         y = TOP + 10 + LINE * number
         parts.append(_mark(WIDTH - RIGHT + 18, y, shape, colour, ""))
         parts.append(f'<text x="{WIDTH - RIGHT + 28}" y="{y + 4}">{html.escape(each.name)}</text>')
-    if front:
-        parts += _front_legend(front, TOP + 10 + LINE * len(shown))
+    if frontier:
+        parts += _frontier_legend(frontier, TOP + 10 + LINE * len(shown))
     return "".join([*parts, "</svg>"])
 
 
@@ -123,14 +123,14 @@ def _axes(frame: _Frame, x_label: str, y_label: str) -> list[str]:
     return parts
 
 
-def _front(frame: _Frame, front: Sequence[Mark]) -> list[str]:
-    if not front:
+def _frontier(frame: _Frame, frontier: Sequence[Mark]) -> list[str]:
+    if not frontier:
         return []
-    path = [f"M{frame.x(front[0].x):.1f} {frame.y(front[0].y):.1f}"]
-    path += [f"H{frame.x(m.x):.1f}V{frame.y(m.y):.1f}" for m in front[1:]]
-    parts = [f'<path d="{"".join(path)}" class="front"/>']
+    path = [f"M{frame.x(frontier[0].x):.1f} {frame.y(frontier[0].y):.1f}"]
+    path += [f"H{frame.x(m.x):.1f}V{frame.y(m.y):.1f}" for m in frontier[1:]]
+    parts = [f'<path d="{"".join(path)}" class="frontier"/>']
     before = (-math.inf, -math.inf)
-    for number, mark in enumerate(front, 1):
+    for number, mark in enumerate(frontier, 1):
         x, y = frame.x(mark.x), frame.y(mark.y)
         if math.hypot(x - before[0], y - before[1]) < CLOSE:  # below it there is another's number
             parts.append(f'<text x="{x + 5:.1f}" y="{y - 7:.1f}" class="number">{number}</text>')
@@ -140,13 +140,13 @@ def _front(frame: _Frame, front: Sequence[Mark]) -> list[str]:
     return parts
 
 
-def _front_legend(front: Sequence[Mark], top: float) -> list[str]:
+def _frontier_legend(frontier: Sequence[Mark], top: float) -> list[str]:
     left = WIDTH - RIGHT
     parts = [
-        f'<line x1="{left + 10}" x2="{left + 26}" y1="{top}" y2="{top}" class="front"/>',
-        f'<text x="{left + 28}" y="{top + 4}">Pareto front</text>',
+        f'<line x1="{left + 10}" x2="{left + 26}" y1="{top}" y2="{top}" class="frontier"/>',
+        f'<text x="{left + 28}" y="{top + 4}">Pareto frontier</text>',
     ]
-    for number, mark in enumerate(front, 1):
+    for number, mark in enumerate(frontier, 1):
         if mark.name:
             y = top + 6 + LINE * number
             parts.append(f'<text x="{left + 30}" y="{y}" text-anchor="end" class="number">{number}.</text>')

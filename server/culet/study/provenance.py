@@ -16,7 +16,7 @@ import culet_kernels
 
 IMAGE_CODE = ("geometry", "optics", "rendering", "scene", "stage.py")
 """Packages and modules whose code decides what a picture looks like, besides the kernels."""
-REFERENCE_CODE = (*IMAGE_CODE, "study/frame.py", "study/knobs.py", "study/reference.py", "study/renderers.py")
+REFERENCE_CODE = (*IMAGE_CODE, "study/shot.py", "study/knobs.py", "study/reference.py", "study/renderers.py")
 """What a kept reference depends on: not on how others are judged by it."""
 RENDERING_STUDY = (*IMAGE_CODE, "study")
 """What the points of each study depend on."""

@@ -21,12 +21,12 @@ from culet.scene.model import GradientEnvironment, Optics, Plane
 from culet.stage import Stage
 from culet.study.cases import CHECKER
 from culet.study.convergence import resting_error, time_to
-from culet.study.frame import Frame
 from culet.study.knobs import base_knobs
 from culet.study.mitsuba import LEAST_LLVM, SAMPLERS
 from culet.study.radiance_error import radiance_error
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point, Race
+from culet.study.shot import Shot
 
 TARGETS = (0.02, 0.01, 0.005, 0.002)
 """RMSE in radiance, under a sky from 0 to 1."""
@@ -61,23 +61,23 @@ NO_LLVM = (
 )
 
 
-def race_frame(width: int, height: int) -> Frame:
+def race_shot(width: int, height: int) -> Shot:
     """The race's picture."""
-    return Frame(Stage.of(RACE), width, height)
+    return Shot(Stage.of(RACE), width, height)
 
 
 def run_culet(
-    name: str, renderers: Renderers, frame: Frame, reference: NDArray[np.float64], most: int, seconds: float
+    name: str, renderers: Renderers, shot: Shot, reference: NDArray[np.float64], most: int, seconds: float
 ) -> Iterator[Point]:
     """At most `most` samples of each pixel, one after the other, judged at every power of two, for at most `seconds`.
 
     Several pictures take turns, and the median of their times counts: the whole run is so short that anything else on
     the machine would be seen in it.
     """
-    scene = frame.stage.scene.model_copy(update={"optics": ENTRANTS[name]})
-    knobs = base_knobs(frame.stage.showing(scene), renderers.device.lanes)
-    renderers.picture(knobs, frame).refine(1)  # compiles
-    pictures = [renderers.picture(knobs, frame) for _ in range(TURNS)]
+    scene = shot.stage.scene.model_copy(update={"optics": ENTRANTS[name]})
+    knobs = base_knobs(shot.stage.showing(scene), renderers.device.lanes)
+    renderers.picture(knobs, shot).refine(1)  # compiles
+    pictures = [renderers.picture(knobs, shot) for _ in range(TURNS)]
     taken = processor = 0.0
     while TURNS * taken < seconds and pictures[0].samples < most:
         before = time.process_time()
@@ -91,7 +91,7 @@ def run_culet(
 
 
 def run_mitsuba(
-    frame: Frame,
+    shot: Shot,
     reference: NDArray[np.float64],
     spp: int,
     seconds: float,
@@ -102,7 +102,7 @@ def run_mitsuba(
 
     Returns the points of each sampler that came to its end, and what went wrong with the others.
     """
-    scene, (shape,) = frame.stage.scene, frame.stage.shapes
+    scene, (shape,) = shot.stage.scene, shot.stage.shapes
     camera, material = scene.camera, scene.stones[0].material
     with tempfile.TemporaryDirectory() as folder:
         mesh, image = Path(folder) / "stone.ply", Path(folder) / "reference.npy"
@@ -110,7 +110,7 @@ def run_mitsuba(
         np.save(image, reference)
         order = {
             "stone": str(mesh), "reference": str(image), "ior": list(getattr(material, "ior")), "spp": spp,  # noqa: B009
-            "size": [frame.width, frame.height], "eye": camera.position, "target": camera.target,
+            "size": [shot.width, shot.height], "eye": camera.position, "target": camera.target,
             "fov": camera.fov_degrees, "seconds": seconds, "samplers": list(samplers),
         }  # fmt: skip
         output, problem = _told(command, json.dumps(order), PATIENCE + LENGTHENED * seconds)

@@ -25,10 +25,10 @@ from platformdirs import user_cache_path
 
 from culet.rendering.device import Device
 from culet.rendering.sums import RATE
-from culet.study.frame import Frame
 from culet.study.knobs import Knobs
 from culet.study.provenance import REFERENCE_CODE, code_digest
 from culet.study.renderers import Renderers
+from culet.study.shot import Shot
 
 CUTOFF = 1e-5
 """Weight that a reference drops; what it loses is some hundredth of the least error that a study looks for."""
@@ -82,7 +82,7 @@ def reference_knobs(base: Knobs, kind: str, lanes: int) -> Knobs:
 
 def make_reference(
     renderers: Renderers,
-    frame: Frame,
+    shot: Shot,
     knobs: Knobs,
     samples: int,
     progress: Progress,
@@ -92,13 +92,13 @@ def make_reference(
 ) -> Reference:
     """From the cache, or rendered. `steps` keeps the pictures on the way too. `cache`: a folder, the user's if None."""
     folder = cache or user_cache_path("culet") / "study"
-    path = folder / f"{_digest(renderers.device, frame, knobs, samples, steps=steps)}.npz"
+    path = folder / f"{_digest(renderers.device, shot, knobs, samples, steps=steps)}.npz"
     if path.exists():
         with np.load(path) as kept:
             images = {int(name): kept[name] for name in kept.files if name != "error"}
             return Reference(images, float(kept["error"]), 0.0)
     start = time.perf_counter()
-    picture = renderers.picture(knobs, frame)
+    picture = renderers.picture(knobs, shot)
     images = {}
     while picture.samples < samples:
         picture.refine(1)
@@ -111,12 +111,12 @@ def make_reference(
     return reference
 
 
-def _digest(device: Device, frame: Frame, knobs: Knobs, samples: int, *, steps: bool) -> str:
+def _digest(device: Device, shot: Shot, knobs: Knobs, samples: int, *, steps: bool) -> str:
     digest = hashlib.sha256()
-    stage = frame.stage
+    stage = shot.stage
     optics = knobs.applied_to(stage.scene).model_dump_json(exclude={"film", "simulation"})
     facts = (
-        optics, knobs.key, frame.width, frame.height, samples, steps, device.name, device.driver,
+        optics, knobs.key, shot.width, shot.height, samples, steps, device.name, device.driver,
         code_digest(REFERENCE_CODE),
     )  # fmt: skip
     digest.update(repr(facts).encode())

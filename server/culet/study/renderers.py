@@ -11,8 +11,8 @@ import numpy as np
 from culet.rendering import build
 from culet.rendering.device import Device
 from culet.rendering.renderer import Picture, Renderer
-from culet.study.frame import Frame
 from culet.study.knobs import Knobs
+from culet.study.shot import Shot
 
 PRECISE_FLAGS = ("-cl-std=CL1.2",)
 """Without permission to reorder, fuse or approximate."""
@@ -36,14 +36,14 @@ class Renderers:
         self.device = device
         self._made: dict[tuple[str, int, bool], Renderer] = {}
 
-    def picture(self, knobs: Knobs, frame: Frame) -> Picture:
+    def picture(self, knobs: Knobs, shot: Shot) -> Picture:
         """An empty picture with these knobs; compiles what it needs."""
-        stage = frame.stage.showing(knobs.applied_to(frame.stage.scene))
+        stage = shot.stage.showing(knobs.applied_to(shot.stage.scene))
         if knobs.geometry == "triangles":
             stage = replace(stage, shapes=tuple(replace(shape, convex=False) for shape in stage.shapes))
         with compiled_with(build.FLAGS if knobs.relaxed_maths else PRECISE_FLAGS):
             renderer = self._renderer(knobs)
-            columns, rows = (max(1, round(knobs.scale * length)) for length in (frame.width, frame.height))
+            columns, rows = (max(1, round(knobs.scale * length)) for length in (shot.width, shot.height))
             return renderer.picture(stage, columns, rows)
 
     def _renderer(self, knobs: Knobs) -> Renderer:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from culet.study.frame import Frame
 from culet.study.image_error import colour_difference
 from culet.study.journal import Journal
 from culet.study.knobs import Knobs, Setting
@@ -19,6 +18,7 @@ from culet.study.radiance_error import enlarged, non_finite, radiance_error
 from culet.study.reference import Reference
 from culet.study.renderers import Renderers
 from culet.study.report import Figure, Point
+from culet.study.shot import Shot
 
 FIGURES: dict[str, Figure] = {
     "kernel_seconds": Figure(unit="s", about="Median time in the kernel, for all samples of a frame."),
@@ -57,7 +57,7 @@ class Judges:
 
 def measure_all(
     renderers: Renderers,
-    frame: Frame,
+    shot: Shot,
     base: Knobs,
     settings: list[Setting],
     judges: Judges,
@@ -71,29 +71,29 @@ def measure_all(
         label = setting.knobs.differences(base)
         progress(label, done)
         if setting.knobs.key not in journal:
-            journal.add(measure(renderers, frame, setting, label, judges, repeats, pictures))
+            journal.add(measure(renderers, shot, setting, label, judges, repeats, pictures))
 
 
 def measure(
-    renderers: Renderers, frame: Frame, setting: Setting, label: str, judges: Judges, repeats: int, pictures: Path
+    renderers: Renderers, shot: Shot, setting: Setting, label: str, judges: Judges, repeats: int, pictures: Path
 ) -> Point:
     """One setting: a first time for the compiler, then `repeats` whole frames."""
     knobs = setting.knobs
     start = time.perf_counter()
-    picture = renderers.picture(knobs, frame)
+    picture = renderers.picture(knobs, shot)
     prepare = time.perf_counter() - start
     picture.refine(1)  # the first launch pays for pages and caches
     kernel: list[float] = []
     whole: list[float] = []
     while len(whole) < repeats and (not whole or sum(whole) < BUDGET):
         start = time.perf_counter()
-        picture = renderers.picture(knobs, frame)
+        picture = renderers.picture(knobs, shot)
         picture.refine(knobs.samples)
         picture.rgb()
         whole.append(time.perf_counter() - start)
         kernel.append(picture.seconds)
     made = picture.linear()
-    image = enlarged(made, frame.height, frame.width)
+    image = enlarged(made, shot.height, shot.width)
     figures: dict[str, float | None] = {
         "kernel_seconds": statistics.median(kernel),
         "frame_seconds": statistics.median(whole),
@@ -104,12 +104,12 @@ def measure(
     }
     for name, reference in (("model", judges.model), ("physics", judges.physics)):
         figures |= {f"{kind}_{name}": value for kind, value in radiance_error(image, reference.image).items()}
-        figures[f"delta_e_{name}"] = colour_difference(image, reference.image, frame.stage.scene.film)
+        figures[f"delta_e_{name}"] = colour_difference(image, reference.image, shot.stage.scene.film)
     same_samples = judges.model.images.get(knobs.samples) if knobs.scale == 1 else None
     paired = radiance_error(image, same_samples) if same_samples is not None else dict.fromkeys(("rmse", "max", "bias"))
     figures |= {f"{kind}_paired": value for kind, value in paired.items()}
     if setting.pictured:
-        write_pictures(pictures, knobs.key, np.nan_to_num(image), judges.model.image, frame.stage.scene.film)
+        write_pictures(pictures, knobs.key, np.nan_to_num(image), judges.model.image, shot.stage.scene.film)
     return Point(
         key=knobs.key,
         group=setting.group,

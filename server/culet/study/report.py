@@ -6,9 +6,9 @@ import csv
 import io
 import json
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from culet.errors import InputError
 from culet.scene.fields import Model
@@ -36,7 +36,7 @@ class Point(Model):
     figures: dict[str, float | None] = Field(description="By the names in the report's `figures`; null: has none here.")
 
 
-class Front(Model):
+class Frontier(Model):
     """The points of which no other is both faster and more exact."""
 
     name: str
@@ -83,12 +83,20 @@ class Report(Model):
     scene: dict[str, object] = Field(description="As culet reads it.")
     figures: dict[str, Figure]
     points: tuple[Point, ...]
-    fronts: tuple[Front, ...] = ()
+    frontiers: tuple[Frontier, ...] = ()
     fits: tuple[Fit, ...] = ()
     races: tuple[Race, ...] = ()
     limits: dict[str, float] = Field({}, description="Of the machine: flop/s and bytes/s by name.")
     headlines: tuple[Headline, ...] = ()
     notes: Annotated[tuple[str, ...], Field(description="What was left out or limits what the figures say.")] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named_as_before(cls, data: Any) -> Any:  # noqa: ANN401 - whatever JSON held
+        """Earlier reports call the frontiers `fronts`."""
+        if isinstance(data, dict) and "fronts" in data:
+            return {("frontiers" if name == "fronts" else name): value for name, value in data.items()}
+        return data
 
     @classmethod
     def read(cls, path: Path) -> Report:

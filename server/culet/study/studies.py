@@ -13,10 +13,8 @@ from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
 from culet.stage import Stage
 from culet.study import race, rendering, simulation, streaming
-from culet.study.frame import Frame
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
-from culet.study.limits import measure_limits
 from culet.study.mitsuba import SAMPLERS, find_llvm
 from culet.study.outcome import device_facts, rendering_report, simulation_report, streaming_report, write
 from culet.study.pictures import write_pictures
@@ -31,6 +29,8 @@ from culet.study.provenance import (
 from culet.study.reference import Reference, make_reference, reference_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
+from culet.study.roofline import measure_roofline
+from culet.study.shot import Shot
 
 JOURNAL = "journal.jsonl"
 
@@ -81,7 +81,7 @@ def study_rendering(
     device = open_device()
     renderers = Renderers(device)
     scene = stage.scene
-    frame = Frame(stage, effort.width, effort.height)
+    shot = Shot(stage, effort.width, effort.height)
     base = base_knobs(stage, device.lanes)
     settings = [
         setting
@@ -96,7 +96,7 @@ def study_rendering(
             with progress(f"{kind} reference", samples) as advance:
                 references.append(
                     make_reference(
-                        renderers, frame, knobs, samples,
+                        renderers, shot, knobs, samples,
                         lambda part, advance=advance, samples=samples: advance("", round(part * samples)),  # type: ignore[misc]
                         steps=kind == "model", cache=cache,
                     )
@@ -106,13 +106,13 @@ def study_rendering(
         for kind, judge in (("model", judges.model), ("physics", judges.physics)):
             write_pictures(pictures, kind, judge.image, judges.model.image, scene.film)
         with progress("settings", len(settings)) as advance:
-            rendering.measure_all(renderers, frame, base, settings, judges, journal, effort.repeats, advance, pictures)
+            rendering.measure_all(renderers, shot, base, settings, judges, journal, effort.repeats, advance, pictures)
         notes = [
             _references_note(effort, judges),
             *_run_race(renderers, effort, journal, progress, cache),
         ]
         with progress("limits of the machine", 1):
-            limits = measure_limits(device)
+            limits = measure_roofline(device)
         report = rendering_report(
             scene.model_dump(mode="json"),
             {"width": effort.width, "height": effort.height, "quick": quick, "repeats": effort.repeats},
@@ -145,12 +145,12 @@ def _run_race(
     """Against others, unless it may take no time; returns what there is to say about it."""
     if effort.race_seconds == 0:
         return []
-    frame = race.race_frame(effort.width, effort.height)
+    shot = race.race_shot(effort.width, effort.height)
     lanes = renderers.device.lanes
-    base = replace(base_knobs(frame.stage, lanes), cutoff=1e-6)
+    base = replace(base_knobs(shot.stage, lanes), cutoff=1e-6)
     with progress("reference of the race", effort.race_samples) as advance:
         reference = make_reference(
-            renderers, frame, reference_knobs(base, "model", lanes // 2 or 1), effort.race_samples,
+            renderers, shot, reference_knobs(base, "model", lanes // 2 or 1), effort.race_samples,
             lambda part: advance("", round(part * effort.race_samples)), steps=True, cache=cache,
         )  # fmt: skip
     most = effort.race_samples // 4
@@ -161,13 +161,13 @@ def _run_race(
         for number, name in enumerate(race.ENTRANTS):
             advance(name, number)
             if name not in ran:
-                journal.add(*race.run_culet(name, renderers, frame, judge.image, most, effort.race_seconds))
+                journal.add(*race.run_culet(name, renderers, shot, judge.image, most, effort.race_seconds))
         if race.mitsuba_missing():
             return [*notes, "Mitsuba 3 is not installed, and does not take part in the race (pip install mitsuba)."]
         advance("Mitsuba 3", len(race.ENTRANTS))
         samplers = [sampler for sampler in SAMPLERS if race.mitsuba_name(sampler) not in ran]
         if samplers:
-            runs, words = race.run_mitsuba(frame, judge.image, effort.race_pass, effort.race_seconds, samplers)
+            runs, words = race.run_mitsuba(shot, judge.image, effort.race_pass, effort.race_seconds, samplers)
             for points in runs:
                 journal.add(*points)
             notes += [words] if words else []

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from culet.stage import Stage
 
 
-class Frame(NamedTuple):
+class Shot(NamedTuple):
     """A picture of what a study is of."""
 
     stage: Stage

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from culet.optics.materials import MATERIALS
-from culet.optics.report import page
+from culet.optics.materials_page import page
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "materials.md"
 
 
 def test_the_document_is_up_to_date() -> None:
-    """If not: python -m culet.optics.report > docs/materials.md"""
+    """If not: python -m culet.optics.materials_page > docs/materials.md"""
     assert DOCUMENT.read_text(encoding="utf-8") == page()
 
 

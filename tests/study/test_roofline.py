@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from culet.study.limits import counted_flops
+from culet.study.roofline import counted_flops
 
 
 def test_a_segment_asks_every_facet_for_two_dot_products() -> None:

@@ -13,7 +13,7 @@ from culet.rendering.build import Variant, build
 from culet.rendering.device import Device, Real
 
 ACCUMULATORS = 12
-"""As in limits.cl."""
+"""As in roofline.cl."""
 FMA_PER_FACET = 6
 """Of a segment inside: a dot product with the direction, and one with the origin."""
 COPY_BYTES = 2**27
@@ -22,7 +22,7 @@ FACTOR, TERM = 0.5, 1.0
 """Every accumulator tends to TERM / (1 - FACTOR) = 2."""
 
 
-class Limits(NamedTuple):
+class Roofline(NamedTuple):
     """Of one device, all its units together."""
 
     single_flops: float
@@ -32,9 +32,11 @@ class Limits(NamedTuple):
     """Bytes read and written, of a copy."""
 
 
-def measure_limits(device: Device, repeats: int = 5) -> Limits:
+def measure_roofline(device: Device, repeats: int = 5) -> Roofline:
     """Takes the best of `repeats`: a limit is what nothing else has disturbed. Some second."""
-    return Limits(_flops(device, np.float32, repeats), _flops(device, np.float64, repeats), _bandwidth(device, repeats))
+    return Roofline(
+        _flops(device, np.float32, repeats), _flops(device, np.float64, repeats), _bandwidth(device, repeats)
+    )
 
 
 def counted_flops(segments: float, facets: int) -> float:
@@ -76,7 +78,7 @@ def _bandwidth(device: Device, repeats: int) -> float:
 
 
 def _kernel(device: Device, name: str, real: Real) -> Any:  # noqa: ANN401 - pyopencl has no types
-    return cl.Kernel(build(device, "limits.cl", Variant(lanes=device.lanes_for(real), real=real).options), name)
+    return cl.Kernel(build(device, "roofline.cl", Variant(lanes=device.lanes_for(real), real=real).options), name)
 
 
 def _fastest(run: Callable[[], None], repeats: int) -> float:
