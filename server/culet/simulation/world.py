@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any, TypeVar, assert_never
 
 from culet.errors import InputError
 from culet.scene.model import Simulation as Law
@@ -78,6 +78,8 @@ class World:
                 return (self._mover.state(),)
             case Together():
                 return self._mover.states()
+            case _:
+                assert_never(self._mover)
 
     @property
     def settled(self) -> bool:
@@ -131,6 +133,8 @@ class World:
                 self._mover.push(self.bodies[number], self.state.bodies[number], impulse, point)
             case None:
                 return
+            case _:
+                assert_never(self._mover)
         self._changed()
 
     def adjust(self, law: Law) -> None:
@@ -274,6 +278,8 @@ class World:
                     touch._replace(clearance=_clearance(body, state))
                     for body, state, touch in zip(self.bodies, self.state.bodies, self._mover.touches(), strict=True)
                 )
+            case _:
+                assert_never(self._mover)
 
     def separation(self, one: str, other: str) -> float:
         """Signed distance of two stones' hulls, R; negative: how deep they overlap. InputError for one and the same."""
@@ -297,6 +303,8 @@ class World:
                 self._mover.load(found.saved)
             case None:
                 pass
+            case _:
+                assert_never(self._mover)
         self.previous, self.at_start = found.previous, found.at_start
         self.state = WorldState(found.step, found.time, self._now())
 
@@ -315,6 +323,8 @@ class World:
                 self._mover.set_state(self.bodies[number], state)
             case None:
                 pass
+            case _:
+                assert_never(self._mover)
 
     def _changed(self) -> None:
         self.at_start = False

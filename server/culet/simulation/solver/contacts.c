@@ -118,17 +118,18 @@ static int pair_contacts(World *world, int one, int other, double time)
     double reach = a->hull.radius + b->hull.radius + margin;
     if (dot(apart, apart) > reach * reach)
         return 0;
-    PairPoint points[MAX_CORNERS + 1];
     Vec3 normal;
-    int count = pair_points(world, one, other, margin, points, &normal);
+    int count = pair_points(world, one, other, margin, &normal);
     if (count == 0)
         return 0;
     Manifold *manifold = new_manifold(world, other, one, NONE);
     if (!manifold)
         return -1;
-    for (int i = 0; i < count; i++)
-        if (new_contact(world, manifold, normal, points[i].point, points[i].gap, points[i].feature))
+    for (int i = 0; i < count; i++) {
+        const PairPoint *point = &world->room->points[i];
+        if (new_contact(world, manifold, normal, point->point, point->gap, point->feature))
             return -1;
+    }
     return 0;
 }
 

@@ -11,7 +11,7 @@
 
 #define CULET_INTERFACE 1 /* changes whenever a structure or a function of this file does */
 
-#define CULET_MAX_VERTICES 512 /* of a hull: bounds the work and the memory of one pair */
+#define CULET_MAX_VERTICES 1024 /* of a hull: bounds the work and the memory of one pair */
 #define CULET_MAX_SURFACES 16
 
 #define CULET_API __attribute__((visibility("default")))

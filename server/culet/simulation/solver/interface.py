@@ -7,7 +7,7 @@ from ctypes import POINTER, Structure, c_double, c_int32, c_size_t, c_void_p
 
 VERSION = 1
 """CULET_INTERFACE."""
-MAX_VERTICES = 512
+MAX_VERTICES = 1024
 MAX_SURFACES = 16
 NO_MEMORY = -1
 NO_ROOM = -2

@@ -129,13 +129,14 @@ static int chosen_points(PairPoint *points, int count)
     return PAIR_POINTS;
 }
 
-/* Of two stones nearer than `margin`: the points in the world, and the normal from the first to the second. `points` has
- * room for MAX_CORNERS + 1. */
-int pair_points(World *world, int one, int other, double margin, PairPoint *points, Vec3 *normal)
+/* Of two stones nearer than `margin`: how many points, which are in the room for a pair, in the world; and the normal
+ * from the first to the second. */
+int pair_points(World *world, int one, int other, double margin, Vec3 *normal)
 {
     const Body *a = &world->bodies[one], *b = &world->bodies[other];
     const Hull *first = &a->hull, *second = &b->hull;
     PairRoom *room = world->room;
+    PairPoint *points = room->points;
     Mat3 turn;
     Vec3 offset;
     pair_pose(a, b, &turn, &offset);

@@ -38,7 +38,6 @@ int bounces_of(World *world, double time)
         double velocity = dot(contact_velocity(world, contact), contact->normal);
         double acceleration = falling(world, contact);
         contact->bounces = 0;
-        contact->arrival = velocity;
         if (contact->restitution == 0 || velocity >= 0 ||
             contact->gap + velocity * time + acceleration * time * time / 2 > 0)
             continue;
@@ -60,18 +59,23 @@ int bounces_of(World *world, double time)
         } else
             contact->arm = add(contact->arm, scaled(cross(body->spin, contact->arm), when));
         note_touch(&world->courses[contact->body], when);
-        contact->arrival = dot(contact_velocity(world, contact), contact->normal) + acceleration * when;
     }
     return any;
 }
 
-/* Gravity: up to the touch of a body that bounces, else of the whole substep. */
+/* A body that bounces is moved up to its touch, with the velocity of before; gravity acts on it until then, and on all
+ * others for the whole substep. */
 static void kick_body(const World *world, Body *body, Course *course, double time)
 {
+    double g = world->law.gravity, touch = course->touch;
     course->velocity = body->velocity;
-    course->spin = body->spin;
+    if (body->inverse_mass > 0 && touch >= 0) {
+        body->position = add(body->position, scaled(body->velocity, touch));
+        body->position.y -= g * touch * touch / 2;
+        rotate_freely(body, touch);
+    }
     if (body->inverse_mass > 0)
-        body->velocity.y -= world->law.gravity * (course->touch >= 0 ? course->touch : time);
+        body->velocity.y -= g * (touch >= 0 ? touch : time);
     course->pushed_velocity = body->velocity;
     course->pushed_spin = body->spin;
     course->kinetic = body->inverse_mass > 0 ? kinetic_energy(body) : 0;
@@ -81,33 +85,26 @@ void kick(World *world, double time)
 {
     for (int i = 0; i < world->count; i++)
         kick_body(world, &world->bodies[i], &world->courses[i], time);
+    for (int i = 0; i < world->now.count; i++) {
+        Contact *contact = &world->now.contacts[i];
+        if (contact->bounces)
+            contact->arrival = dot(contact_velocity(world, contact), contact->normal);
+    }
 }
 
 static void move_body(const World *world, Body *body, const Course *course, double time)
 {
-    double g = world->law.gravity, touch = course->touch, rest = time - touch;
-    if (course->touched && touch >= 0) {
-        Vec3 velocity = body->velocity, spin = body->spin;
-        body->position = add(body->position, scaled(course->velocity, touch));
-        body->position.y -= g * touch * touch / 2;
-        rotate_freely(body, touch); /* with the angular momentum of before */
-        body->angular_momentum = angular_momentum_of(body, spin);
-        body->spin = spin;
-        body->position = add(body->position, scaled(velocity, rest));
-        body->position.y -= g * rest * rest / 2;
-        body->velocity.y -= g * rest;
-        rotate_freely(body, rest);
-    } else if (course->touched) {
+    double g = world->law.gravity, left = course->touch >= 0 ? time - course->touch : time;
+    if (course->touched)
         body->angular_momentum = angular_momentum_of(body, body->spin);
-        body->position = add(body->position, scaled(body->velocity, time));
-        rotate_freely(body, time);
-    } else {
+    if (!course->touched && course->touch < 0)
         body->velocity = course->velocity;
-        body->position = add(body->position, scaled(body->velocity, time));
-        body->position.y -= g * time * time / 2;
-        body->velocity.y -= g * time;
-        rotate_freely(body, time);
+    body->position = add(body->position, scaled(body->velocity, left));
+    if (!course->touched || course->touch >= 0) { /* on a parabola; what stays in contact has had its gravity */
+        body->position.y -= g * left * left / 2;
+        body->velocity.y -= g * left;
     }
+    rotate_freely(body, left);
 }
 
 void move(World *world, double time)

@@ -24,7 +24,7 @@ class Polyhedron:
     """Convex, about the stone's centre of mass, R = 1."""
 
     vertices: Points
-    """(V, 3), V at most 512."""
+    """(V, 3), V at most 1024."""
     planes: Points
     """(F, 4) outward unit normals, and offsets that leave no vertex outside."""
     first: NDArray[np.int32]

@@ -93,11 +93,11 @@ typedef struct {
 
 /* What one substep needs of each body. */
 typedef struct {
-    Vec3 velocity, spin;             /* at its start */
+    Vec3 velocity;                     /* at its start */
     Vec3 pushed_velocity, pushed_spin; /* with gravity, before the contacts */
-    Vec3 first_velocity, first_spin; /* with the first answer of two */
-    double kinetic;                  /* energy before the contacts */
-    double touch;                    /* s into the substep; below 0: it touches nothing that bounces */
+    Vec3 first_velocity, first_spin;   /* with the first answer of two */
+    double kinetic;                    /* energy before the contacts */
+    double touch;                      /* s into the substep; below 0: it touches nothing that bounces */
     int touched;
     Vec3 shift, turn; /* apart from what overlaps */
     int parent;       /* in its island's tree */
@@ -105,6 +105,13 @@ typedef struct {
     double still;
     int restless;
 } Course;
+
+/* One of the points of a pair. */
+typedef struct {
+    Vec3 point;
+    double gap;
+    uint64_t feature;
+} PairPoint;
 
 /* Room for what one pair needs. */
 typedef struct {
@@ -115,6 +122,7 @@ typedef struct {
     Vec3 face[MAX_EDGES], other_face[MAX_EDGES];
     Vec3 polygon[MAX_CORNERS], clipped[MAX_CORNERS];
     uint32_t names[MAX_CORNERS], clipped_names[MAX_CORNERS];
+    PairPoint points[MAX_CORNERS + 1];
 } PairRoom;
 
 struct CuletWorld {
@@ -131,13 +139,6 @@ struct CuletWorld {
 };
 
 typedef struct CuletWorld World;
-
-/* One of the points of a pair. */
-typedef struct {
-    Vec3 point;
-    double gap;
-    uint64_t feature;
-} PairPoint;
 
 /* The axis that separates a pair best. */
 typedef enum { FIRST_FACE, SECOND_FACE, TWO_EDGES } AxisKind;
@@ -160,7 +161,7 @@ static inline Vec3 hull_vertex(const Hull *hull, int i) { return vec(hull->x[i],
 Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, PairRoom *room);
 
 /* manifold.c */
-int pair_points(World *world, int one, int other, double margin, PairPoint *points, Vec3 *normal);
+int pair_points(World *world, int one, int other, double margin, Vec3 *normal);
 void pair_pose(const Body *first, const Body *second, Mat3 *turn, Vec3 *offset);
 
 /* contacts.c */

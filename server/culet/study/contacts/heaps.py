@@ -1,0 +1,98 @@
+"""Heaps of brilliants in a bowl of three walls: overlaps, energy, sleep, and what they cost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from time import thread_time
+
+import numpy as np
+
+from culet.geometry.shape import Shape
+from culet.simulation.bodies import Body
+from culet.simulation.rotation import IDENTITY
+from culet.simulation.world import World
+from culet.study.contacts.finding import Finding
+from culet.study.contacts.worlds import BOWL, G, advance, law, overlap, triple, turned
+from culet.study.extremes import brilliant
+
+SEEDS = (1, 2, 3, 4, 5)
+DEEPEST = {12: 1e-3, 32: 2e-3, 64: 5e-3}
+"""R, at any time; by the number of stones."""
+ASLEEP = {12: 14.0, 32: 15.0, 64: 20.0}
+"""s, the latest."""
+COST = {12: 2.0, 32: 6.0, 64: 14.0}
+"""Of the dearest quarter of the steps, in units of what one stone in contact costs by the solver of one."""
+
+
+def scattered(count: int, shape: Shape, seed: int) -> list[Body]:
+    """In layers of four above the bowl, turned and spinning at random."""
+    rng, bodies = np.random.default_rng(seed), []
+    for number in range(count):
+        layer, place = divmod(number, 4)
+        angle, way = place * math.pi / 2 + layer * 0.5, 1.15 * math.sqrt(2) * 1.05
+        x, z = way * math.cos(angle) + rng.uniform(-0.05, 0.05), way * math.sin(angle) + rng.uniform(-0.05, 0.05)
+        orientation, velocity = turned(rng), triple(0.2 * rng.normal(size=3))
+        spin = triple(2 * rng.normal(size=3))
+        bodies.append(Body(f"stone-{number}", shape, (x, 2.3 + 2.3 * layer, z), orientation, velocity, spin))
+    return bodies
+
+
+def heap(count: int, seed: int, shape: Shape | None = None) -> World:
+    """At its start, by the scene's default law."""
+    return World(scattered(count, shape or brilliant(), seed), BOWL, law(rolling_resistance=0.02))
+
+
+def heaps(count: int, seeds: tuple[int, ...] = SEEDS) -> Iterator[Finding]:
+    """The worst of some heaps of so many."""
+    ever = settled = rise = latest = drift = -math.inf
+    for seed in seeds:
+        moving = heap(count, seed)
+        lowest = moving.energy()
+        while not moving.settled and moving.state.time < ASLEEP[count] + 10:
+            moving.step()
+            energy = moving.energy()
+            rise, lowest = max(rise, energy - lowest), min(lowest, energy)
+            if moving.state.step % 10 == 0:
+                ever = max(ever, overlap(moving))
+        settled, latest = max(settled, overlap(moving)), max(latest, moving.state.time)
+        before = [state.position for state in moving.state.bodies]
+        advance(moving, 1)
+        drift = max(drift, *(math.dist(a, b.position) for a, b in zip(before, moving.state.bodies, strict=True)))
+    name = f"{len(seeds)} heaps of {count}" if len(seeds) > 1 else f"a heap of {count}"
+    yield Finding(f"{name}, overlap at any time", max(ever, settled), DEEPEST[count], "R")
+    yield Finding(f"{name}, overlap at rest", settled, 2e-5, "R")
+    yield Finding(f"{name}, rise of energy", rise / G, 1e-5, "m g R")
+    yield Finding(f"{name}, all asleep after", latest, ASLEEP[count], "s")
+    yield Finding(f"{name}, drift asleep", drift, 0, "R")
+
+
+def cost_of_one(steps: int = 240) -> float:
+    """s of the processor for a step of one brilliant in contact, by the solver of one: rocking, without sleep."""
+    body = Body("one", brilliant(), (0.0, -0.2, 0.0), IDENTITY)
+    moving = World([body], law=law(sleeping=False, restitution=0))
+    advance(moving, 0.25)  # down
+    begun = thread_time()
+    for _ in range(steps):
+        moving.step()
+    return (thread_time() - begun) / steps
+
+
+def dearest_quarter(moving: World, seconds: float) -> float:
+    """s of the processor for a step, in the mean of the dearest quarter."""
+    times = []
+    while moving.state.time < seconds and not moving.settled:
+        begun = thread_time()
+        moving.step()
+        times.append(thread_time() - begun)
+    times += [0.0] * (round(seconds / moving.law.time_step) - len(times))
+    dearest = sorted(times)[-len(times) // 4 :]
+    return sum(dearest) / len(dearest)
+
+
+def costs(count: int, seed: int = 1) -> Iterator[Finding]:
+    """Beside one stone of the solver of one, in the same run, before and after."""
+    before = cost_of_one()
+    several = dearest_quarter(heap(count, seed), 14.0)
+    one = min(before, cost_of_one())
+    yield Finding(f"a heap of {count}, its dearest quarter beside one stone", several / one, COST[count])
