@@ -8,6 +8,7 @@ DONE := .venv/done
 WEB := client/web
 WEB_PACKAGES := $(WEB)/node_modules/.package-lock.json
 WEB_BUILD := $(WEB)/dist/index.html
+SOLVER := server/culet/simulation/solver
 WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts)
 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
@@ -19,18 +20,18 @@ test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)
 .PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak reliability bench study compose-test opencl browser node
 .DELETE_ON_ERROR:
 
-setup: $(DONE)/dev opencl $(WEB_BUILD)
+setup: $(DONE)/dev opencl $(DONE)/solver $(WEB_BUILD)
 	@echo "Ready. make serve | wheel | test | check | validate | soak | bench | study | compose-test"
 
-serve: opencl $(WEB_BUILD)
+serve: opencl $(DONE)/solver $(WEB_BUILD)
 	@exec $(BIN)/culet serve $(ARGS)
 
 # One file that `pip install` makes a server with its page of.
-wheel: $(DONE)/base $(WEB_BUILD)
+wheel: $(DONE)/base $(DONE)/solver $(WEB_BUILD)
 	$(BIN)/pip wheel --quiet --no-deps --wheel-dir dist .
 	@ls -1 dist/culet-*.whl
 
-test: $(DONE)/dev opencl browser $(WEB_BUILD)
+test: $(DONE)/dev opencl $(DONE)/solver browser $(WEB_BUILD)
 	.ci/test $(ARGS)
 
 # Each in its own target, so that `make -k check` finds all there is to find.
@@ -42,7 +43,7 @@ check-python: $(DONE)/dev
 	$(BIN)/mypy
 
 check-kernels: $(DONE)/dev opencl
-	$(BIN)/clang-format --dry-run --Werror kernels/culet_kernels/*.cl
+	$(BIN)/clang-format --dry-run --Werror kernels/culet_kernels/*.cl $(SOLVER)/*.c $(SOLVER)/*.h
 	$(BIN)/python .ci/compile_kernels.py
 
 check-protocol: $(DONE)/dev
@@ -54,16 +55,16 @@ check-web: $(WEB_PACKAGES)
 format: $(DONE)/dev $(WEB_PACKAGES)
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
-	$(BIN)/clang-format -i kernels/culet_kernels/*.cl
+	$(BIN)/clang-format -i kernels/culet_kernels/*.cl $(SOLVER)/*.c $(SOLVER)/*.h
 	$(BIN)/python .ci/default_scene.py
 	cd $(WEB) && npm run format
 
 # pytest ends with 5 if it has found no test.
-validate: $(DONE)/validation opencl
+validate: $(DONE)/validation opencl $(DONE)/solver
 	$(BIN)/pytest -m "validation and not soak" $(ARGS) || [ $$? -eq 5 ]
 
 # What is long by nature, and bounded: load, chaos, whole searches. Not part of .ci/run.
-soak: $(DONE)/soak opencl
+soak: $(DONE)/soak opencl $(DONE)/solver
 	$(BIN)/pytest -m soak $(ARGS)
 
 # Writes what the hostile trials find into the documentation.
@@ -109,6 +110,12 @@ $(DONE)/validation: pyproject.toml | $(DONE)/dev
 	@if $(BIN)/pip install --quiet --editable '.[validation]'; then touch $@; \
 	else $(BIN)/python -c '$(VALIDATION)' | while read -r program; do $(BIN)/pip install --quiet "$$program" || \
 	echo "validate: $$program could not be installed; comparisons with it are skipped" >&2; done; fi
+
+# Compiles what moves several stones, beside its sources.
+$(DONE)/solver: $(wildcard $(SOLVER)/*.c $(SOLVER)/*.h) $(SOLVER)/build.py | $(DONE)/base
+	@.ci/need compiler
+	$(BIN)/python $(SOLVER)/build.py
+	@touch $@
 
 opencl: $(DONE)/base
 	@.ci/need opencl

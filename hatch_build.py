@@ -1,22 +1,47 @@
-"""Puts the built page into the wheel, as `culet/page`."""
+"""Puts into the wheel what is built: the page, as `culet/page`, and the solver of several stones, by its sources."""
 
 from __future__ import annotations
 
+import importlib.util
+import sysconfig
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
+SOLVER = "culet/simulation/solver"
 
-class PageInWheel(BuildHookInterface):
-    """A wheel without the page is built as well, for a server that is told where the page lies; it says so."""
+
+class BuiltParts(BuildHookInterface):
+    """A wheel is built without one of them as well, and says so: a server is told where its page lies, and the solver
+    is compiled when several stones first move."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Before the files are gathered. An editable installation finds the page in the checkout."""
-        page = Path(self.root) / "client" / "web" / "dist"
-        if version == "editable":
+        """Before the files are gathered. An editable installation finds page and solver in the checkout."""
+        if version == "editable" or self.target_name != "wheel":
             return
+        page = Path(self.root) / "client" / "web" / "dist"
         if (page / "index.html").is_file():
             build_data["force_include"][str(page)] = "culet/page"
         else:
             self.app.display_warning(f"This wheel holds no page: there is none in {page}. `make wheel` builds both.")
+        self._add_solver(build_data)
+
+    def _add_solver(self, build_data: dict[str, Any]) -> None:
+        """With it the wheel is of this kind of machine alone; Python's version does not matter to the library."""
+        folder = Path(self.root) / "server" / SOLVER
+        spec = importlib.util.spec_from_file_location("culet_solver_build", folder / "build.py")
+        assert spec is not None  # noqa: S101 - of a file
+        assert spec.loader is not None  # noqa: S101
+        build = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(build)
+        library = folder / build.library_name()
+        if not library.is_file():
+            try:
+                library = build.build(Path(self.root) / "build" / "solver")
+            except build.BuildError as error:
+                self.app.display_warning(f"This wheel holds no solver of several stones: {error}")
+                return
+        build_data["force_include"][str(library)] = f"{SOLVER}/{library.name}"
+        build_data["pure_python"] = False
+        build_data["tag"] = f"py3-none-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"

@@ -18,8 +18,10 @@ from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
 from culet.simulation.surfaces import FLOOR, WALLS
 from culet.simulation.world import World
+from culet.study.contacts.heaps import scattered
+from culet.study.contacts.worlds import BOWL, advance, corners, law, overlap, standing
 from simulation.solids import TILTED
-from simulation.worlds import BOWL, advance, corners, deepest, law, scattered, standing, world
+from simulation.worlds import world
 
 ROOM = (FLOOR, *WALLS)
 
@@ -274,7 +276,7 @@ def test_a_stone_that_is_not_convex_touches_by_its_hull(ring: Shape) -> None:
     height = float(np.ptp(ring.vertices[:, 2]))
     low, high = moving.state.bodies
     assert high.position[1] - low.position[1] == pytest.approx(height, abs=1e-4)
-    assert deepest(moving) < 1e-4
+    assert overlap(moving) < 1e-4
     assert corners(moving.bodies[0], low)[:, 1].min() == pytest.approx(-1, abs=1e-4)
 
 

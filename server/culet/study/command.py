@@ -130,6 +130,33 @@ def gallery(
 
 
 @study_app.command()
+def contacts(
+    out: Out = Path("report/contacts"),
+    quick: Quick = False,
+    fresh: Fresh = False,
+    into: Annotated[
+        Path | None, typer.Option(metavar="simulation.md", help="Write the table between the marks of this file too.")
+    ] = None,
+) -> None:
+    """Hold several stones to what is known: one by itself, pairs, heaps, extremes, and what they cost.
+
+    Fails if they do not keep to a limit. Stopped with Ctrl-C it goes on where it was when it is started again.
+    """
+    from culet.study.contacts.table import MARKS, measured, written
+    from culet.study.headline import write_into
+
+    with _errors(), _interruptible(out):
+        found = measured(out, typer.echo, quick=quick, fresh=fresh)
+        text = written(found)
+        (out / "contacts.md").write_text(text, encoding="utf-8")
+        if into is not None:
+            write_into(into, text, MARKS)
+        typer.echo(out / "contacts.md")
+    if not all(finding.held for finding in found):
+        raise typer.Exit(1)
+
+
+@study_app.command()
 def governor(
     scene: SceneFile = None,
     preset: Preset = None,

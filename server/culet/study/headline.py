@@ -24,17 +24,18 @@ def _size(report: Report) -> str:
     return f"{width} x {height}" if width else "default stone"
 
 
-def write_into(path: Path, text: str) -> None:
+def write_into(path: Path, text: str, marks: tuple[str, str] = (BEGIN, END)) -> None:
     """Put the text between the file's marks, in place of what is there; InputError if it has not just one pair."""
+    first, last = marks
     try:
         before = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"cannot read {path}: {error}") from error
-    head, begin, rest = before.partition(BEGIN)
-    _, end, tail = rest.partition(END)
-    if not begin or not end or BEGIN in rest or END in tail:
-        raise InputError(f"{path}: expected one line {BEGIN!r} and after it one line {END!r}")
+    head, begin, rest = before.partition(first)
+    _, end, tail = rest.partition(last)
+    if not begin or not end or first in rest or last in tail:
+        raise InputError(f"{path}: expected one line {first!r} and after it one line {last!r}")
     try:
-        path.write_text(f"{head}{BEGIN}\n\n{text}\n{END}{tail}", encoding="utf-8")
+        path.write_text(f"{head}{first}\n\n{text}\n{last}{tail}", encoding="utf-8")
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror}") from error

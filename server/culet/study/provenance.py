@@ -23,6 +23,8 @@ RENDERING_STUDY = (*IMAGE_CODE, "study")
 SIMULATION_STUDY = ("geometry", "scene", "simulation", "stage.py", "study")
 STREAMING_STUDY = (*RENDERING_STUDY, "simulation")
 
+SOURCES = (".py", ".c", ".h")
+
 PEERS = ("mitsuba", "numpy", "pillow", "pyopencl", "scikit-image", "scipy", "simplejpeg")
 """Packages of others that are measured, or measure."""
 
@@ -58,7 +60,7 @@ def code_digest(names: tuple[str, ...]) -> str:
     root = Path(culet.__file__).parent
     for name in names:
         place = root / name
-        for path in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
+        for path in sorted(p for p in place.rglob("*") if p.suffix in SOURCES) if place.is_dir() else [place]:
             digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CULET_INTERFACE 1 /* changes whenever a structure or a function of this file does */
+#define CULET_INTERFACE 1       /* changes whenever a structure or a function of this file does */
 
 #define CULET_MAX_VERTICES 1024 /* of a hull: bounds the work and the memory of one pair */
 #define CULET_MAX_SURFACES 16
@@ -19,41 +19,41 @@
 typedef struct CuletWorld CuletWorld;
 
 typedef struct {
-    double gravity;            /* downward, R/s^2 */
-    double bounce_speed;       /* a slower touch does not bounce; in sqrt(g size of the smaller stone) */
-    double contact_step;       /* longest substep, in sqrt(size of the smallest stone / g) */
-    double rolling_resistance; /* lever arm, in sizes of the stone */
-    int32_t sleeping;          /* whether what is at rest is left out */
-    int32_t substeps;          /* of a step, at least */
-    int32_t sweeps;            /* over all contacts in a substep, at most */
+  double gravity;            /* downward, R/s^2 */
+  double bounce_speed;       /* a slower touch does not bounce; in sqrt(g size of the smaller stone) */
+  double contact_step;       /* longest substep, in sqrt(size of the smallest stone / g) */
+  double rolling_resistance; /* lever arm, in sizes of the stone */
+  int32_t sleeping;          /* whether what is at rest is left out */
+  int32_t substeps;          /* of a step, at least */
+  int32_t sweeps;            /* over all contacts in a substep, at most */
 } CuletLaw;
 
 /* A convex polyhedron about its centre of mass, in the body's axes. */
 typedef struct {
-    int32_t vertex_count, face_count, edge_count;
-    const double *vertices;  /* (vertex_count, 3) */
-    const double *planes;    /* (face_count, 4) outward unit normal and offset */
-    const int32_t *first;    /* (face_count + 1,) where each face's corners begin in `corners` */
-    const int32_t *corners;  /* vertices about each face, counter-clockwise seen from outside */
-    const int32_t *edges;    /* (edge_count, 4) both ends and the two faces */
+  int32_t vertex_count, face_count, edge_count;
+  const double *vertices; /* (vertex_count, 3) */
+  const double *planes;   /* (face_count, 4) outward unit normal and offset */
+  const int32_t *first;   /* (face_count + 1,) where each face's corners begin in `corners` */
+  const int32_t *corners; /* vertices about each face, counter-clockwise seen from outside */
+  const int32_t *edges;   /* (edge_count, 4) both ends and the two faces */
 } CuletHull;
 
 typedef struct {
-    double mass;
-    double inertia[9], inverse_inertia[9]; /* about the centre of mass, in the body's axes */
-    double axes[9];                        /* principal axes by rows, the smallest moment first */
-    double moments[3];
-    double restitution, friction;
+  double mass;
+  double inertia[9], inverse_inertia[9]; /* about the centre of mass, in the body's axes */
+  double axes[9];                        /* principal axes by rows, the smallest moment first */
+  double moments[3];
+  double restitution, friction;
 } CuletBody;
 
 typedef struct {
-    double position[3], orientation[4], velocity[3], angular_momentum[3], spin[3];
-    int32_t asleep, held;
+  double position[3], orientation[4], velocity[3], angular_momentum[3], spin[3];
+  int32_t asleep, held;
 } CuletState;
 
 typedef struct {
-    int32_t contacts;   /* points that touch, or are nearer than 1e-6 R */
-    double penetration; /* of the deepest of them, R */
+  int32_t contacts;   /* points that touch, or are nearer than 1e-6 R */
+  double penetration; /* of the deepest of them, R */
 } CuletTouch;
 
 CULET_API int32_t culet_interface(void);
@@ -67,7 +67,8 @@ CULET_API void culet_world_set_law(CuletWorld *world, const CuletLaw *law);
 CULET_API void culet_world_set_surfaces(CuletWorld *world, int32_t count, const double *planes); /* (count, 4) */
 
 /* The new body's number; -1 if there is no memory, -2 if the world is full or the hull too large. */
-CULET_API int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, const CuletBody *body, const CuletState *state);
+CULET_API int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, const CuletBody *body,
+                                  const CuletState *state);
 CULET_API void culet_world_remove(CuletWorld *world, int32_t number);
 /* Another mass, inertia, restitution or friction; velocity and spin stay. */
 CULET_API void culet_world_set_body(CuletWorld *world, int32_t number, const CuletBody *body);

@@ -12,178 +12,142 @@
 #define LEVEL 0.999      /* cosine: contacts more slanted than this do not make a level base */
 #define MAX_FEET 256
 
-void separate_islands(World *world)
-{
-    for (int i = 0; i < world->count; i++)
-        world->courses[i].parent = i;
+void separate_islands(World *world) {
+  for (int i = 0; i < world->count; i++) world->courses[i].parent = i;
 }
 
-int island(World *world, int number)
-{
-    Course *courses = world->courses;
-    while (courses[number].parent != number)
-        number = courses[number].parent = courses[courses[number].parent].parent;
-    return number;
+int island(World *world, int number) {
+  Course *courses = world->courses;
+  while (courses[number].parent != number) number = courses[number].parent = courses[courses[number].parent].parent;
+  return number;
 }
 
-void join(World *world, int one, int other)
-{
-    world->courses[island(world, one)].parent = island(world, other);
-}
+void join(World *world, int one, int other) { world->courses[island(world, one)].parent = island(world, other); }
 
-static void wake(Body *body)
-{
-    body->asleep = 0;
-    body->still = body->fixed = 0;
+static void wake(Body *body) {
+  body->asleep = 0;
+  body->still = body->fixed = 0;
 }
 
 /* With all that it fell asleep with, or that fell asleep on it. */
-void wake_body(World *world, int number)
-{
-    int32_t bed = world->bodies[number].bed;
-    int slept = world->bodies[number].asleep;
-    wake(&world->bodies[number]);
-    for (int i = 0; slept && i < world->count; i++)
-        if (world->bodies[i].asleep && world->bodies[i].bed == bed)
-            wake(&world->bodies[i]);
+void wake_body(World *world, int number) {
+  int32_t bed = world->bodies[number].bed;
+  int slept = world->bodies[number].asleep;
+  wake(&world->bodies[number]);
+  for (int i = 0; slept && i < world->count; i++)
+    if (world->bodies[i].asleep && world->bodies[i].bed == bed) wake(&world->bodies[i]);
 }
 
 static double speed(const Body *body) { return length(body->velocity) + length(body->spin) * body->size; }
 
 /* Wakes sleepers that something moving has reached; whether there were any. */
-int wake_touched(World *world)
-{
-    int any = 0;
-    for (int i = 0; i < world->now.manifold_count; i++) {
-        const Manifold *manifold = &world->now.manifolds[i];
-        if (manifold->other == NONE)
-            continue;
-        int sleeper = manifold->body, mover = manifold->other;
-        if (!world->bodies[sleeper].asleep) {
-            sleeper = manifold->other;
-            mover = manifold->body;
-        }
-        const Body *body = &world->bodies[sleeper], *other = &world->bodies[mover];
-        if (!body->asleep || other->asleep || other->held)
-            continue;
-        double gap = INFINITY, size = smaller(body->size, other->size);
-        for (int k = 0; k < manifold->count; k++)
-            gap = smaller(gap, world->now.contacts[manifold->first + k].gap);
-        if (gap < WAKING_GAP * size && speed(other) > WAKING * sqrt(world->law.gravity * size))
-            wake_body(world, sleeper), any = 1;
+int wake_touched(World *world) {
+  int any = 0;
+  for (int i = 0; i < world->now.manifold_count; i++) {
+    const Manifold *manifold = &world->now.manifolds[i];
+    if (manifold->other == NONE) continue;
+    int sleeper = manifold->body, mover = manifold->other;
+    if (!world->bodies[sleeper].asleep) {
+      sleeper = manifold->other;
+      mover = manifold->body;
     }
-    return any;
+    const Body *body = &world->bodies[sleeper], *other = &world->bodies[mover];
+    if (!body->asleep || other->asleep || other->held) continue;
+    double gap = INFINITY, size = smaller(body->size, other->size);
+    for (int k = 0; k < manifold->count; k++) gap = smaller(gap, world->now.contacts[manifold->first + k].gap);
+    if (gap < WAKING_GAP * size && speed(other) > WAKING * sqrt(world->law.gravity * size))
+      wake_body(world, sleeper), any = 1;
+  }
+  return any;
 }
 
 typedef enum { FALLS, LEANS, STANDS } Support;
 
 /* STANDS if the centre of mass is above the polygon of the points that carry it, by SUPPORT: then no small push makes it
  * fall. LEANS if slanted contacts hold it, or walls and floor together. */
-static Support support_of(const World *world, int number)
-{
-    const Body *body = &world->bodies[number];
-    double x[MAX_FEET], z[MAX_FEET];
-    int feet = 0, slanted = 0;
-    for (int i = 0; i < world->now.count && feet < MAX_FEET; i++) {
-        const Contact *contact = &world->now.contacts[i];
-        int given = contact->other == number;
-        if ((contact->body != number && !given) || contact->gap > SUPPORT_GAP * body->size)
-            continue;
-        double up = given ? -contact->normal.y : contact->normal.y;
-        int level = up >= LEVEL;
-        if (!level && contact->normal_impulse <= 0)
-            continue;
-        slanted |= !level;
-        Vec3 arm = given ? contact->other_arm : contact->arm;
-        x[feet] = arm.x;
-        z[feet++] = arm.z;
+static Support support_of(const World *world, int number) {
+  const Body *body = &world->bodies[number];
+  double x[MAX_FEET], z[MAX_FEET];
+  int feet = 0, slanted = 0;
+  for (int i = 0; i < world->now.count && feet < MAX_FEET; i++) {
+    const Contact *contact = &world->now.contacts[i];
+    int given = contact->other == number;
+    if ((contact->body != number && !given) || contact->gap > SUPPORT_GAP * body->size) continue;
+    double up = given ? -contact->normal.y : contact->normal.y;
+    int level = up >= LEVEL;
+    if (!level && contact->normal_impulse <= 0) continue;
+    slanted |= !level;
+    Vec3 arm = given ? contact->other_arm : contact->arm;
+    x[feet] = arm.x;
+    z[feet++] = arm.z;
+  }
+  /* each pair of feet with all others on one side is an edge of their polygon */
+  int inside = feet >= 3;
+  for (int p = 0; inside && p < feet; p++)
+    for (int q = 0; inside && q < feet; q++) {
+      double ex = x[q] - x[p], ez = z[q] - z[p], size = sqrt(ex * ex + ez * ez);
+      if (size < 1e-9 * body->size) continue;
+      int edge = 1;
+      for (int r = 0; edge && r < feet; r++)
+        edge = ex * (z[r] - z[p]) - ez * (x[r] - x[p]) >= -1e-9 * size * body->size;
+      if (edge && (ez * x[p] - ex * z[p]) / size < SUPPORT * body->size) inside = 0;
     }
-    /* each pair of feet with all others on one side is an edge of their polygon */
-    int inside = feet >= 3;
-    for (int p = 0; inside && p < feet; p++)
-        for (int q = 0; inside && q < feet; q++) {
-            double ex = x[q] - x[p], ez = z[q] - z[p], size = sqrt(ex * ex + ez * ez);
-            if (size < 1e-9 * body->size)
-                continue;
-            int edge = 1;
-            for (int r = 0; edge && r < feet; r++)
-                edge = ex * (z[r] - z[p]) - ez * (x[r] - x[p]) >= -1e-9 * size * body->size;
-            if (edge && (ez * x[p] - ex * z[p]) / size < SUPPORT * body->size)
-                inside = 0;
-        }
-    if (inside)
-        return STANDS;
-    return slanted && feet >= 2 ? LEANS : FALLS;
+  if (inside) return STANDS;
+  return slanted && feet >= 2 ? LEANS : FALLS;
 }
 
-static double pressing(const World *world, const Manifold *manifold)
-{
-    double sum = 0;
-    for (int k = 0; k < manifold->count; k++)
-        sum += world->now.contacts[manifold->first + k].normal_impulse;
-    return sum;
+static double pressing(const World *world, const Manifold *manifold) {
+  double sum = 0;
+  for (int k = 0; k < manifold->count; k++) sum += world->now.contacts[manifold->first + k].normal_impulse;
+  return sum;
 }
 
-void fall_asleep(World *world, double time)
-{
-    Course *courses = world->courses;
-    int any = 0;
-    for (int i = 0; i < world->count; i++) {
-        Body *body = &world->bodies[i];
-        if (body->asleep || body->held)
-            continue;
-        double unit = sqrt(world->law.gravity * body->size), now = speed(body);
-        body->still = now < STILL * unit ? body->still + time : 0;
-        body->fixed = now < FIXED * unit ? body->fixed + time : 0;
-        any |= body->still >= STILL_SECONDS;
-    }
-    if (!any || !world->law.sleeping)
-        return;
-    separate_islands(world);
-    for (int i = 0; i < world->now.manifold_count; i++) {
-        const Manifold *manifold = &world->now.manifolds[i];
-        if (manifold->other == NONE || world->bodies[manifold->body].held || world->bodies[manifold->other].held)
-            continue;
-        if (pressing(world, manifold) > 0)
-            join(world, manifold->body, manifold->other);
-    }
-    for (int i = 0; i < world->count; i++)
-        courses[i].restless = 0;
-    for (int i = 0; i < world->count; i++) {
-        const Body *body = &world->bodies[i];
-        if (!body->asleep && !body->held && body->still < STILL_SECONDS)
-            courses[island(world, i)].restless = 1;
-    }
-    for (int i = 0; i < world->count; i++) {
-        const Body *body = &world->bodies[i];
-        Course *whole = &courses[island(world, i)];
-        if (body->asleep || body->held || whole->restless)
-            continue;
-        Support support = support_of(world, i);
-        if (support == FALLS || (support == LEANS && body->fixed < FIXED_SECONDS))
-            whole->restless = 1;
-    }
-    for (int i = 0; i < world->count; i++)
-        courses[i].still = -1; /* bed of the island */
-    for (int i = 0; i < world->count; i++) {
-        Body *body = &world->bodies[i];
-        int whole = island(world, i);
-        if (body->asleep || body->held || courses[whole].restless)
-            continue;
-        if (courses[whole].still < 0)
-            courses[whole].still = world->beds++;
-        body->asleep = 1;
-        body->bed = (int32_t)courses[whole].still;
-        body->velocity = body->angular_momentum = body->spin = ZERO;
-    }
-    /* sleepers on which others have fallen asleep: from now on one bed */
-    for (int i = 0; i < world->count; i++) {
-        int whole = island(world, i);
-        int32_t old = world->bodies[i].bed, bed = (int32_t)courses[whole].still;
-        if (!world->bodies[i].asleep || bed < 0 || old == bed)
-            continue;
-        for (int k = 0; k < world->count; k++)
-            if (world->bodies[k].asleep && world->bodies[k].bed == old)
-                world->bodies[k].bed = bed;
-    }
+void fall_asleep(World *world, double time) {
+  Course *courses = world->courses;
+  int any = 0;
+  for (int i = 0; i < world->count; i++) {
+    Body *body = &world->bodies[i];
+    if (body->asleep || body->held) continue;
+    double unit = sqrt(world->law.gravity * body->size), now = speed(body);
+    body->still = now < STILL * unit ? body->still + time : 0;
+    body->fixed = now < FIXED * unit ? body->fixed + time : 0;
+    any |= body->still >= STILL_SECONDS;
+  }
+  if (!any || !world->law.sleeping) return;
+  separate_islands(world);
+  for (int i = 0; i < world->now.manifold_count; i++) {
+    const Manifold *manifold = &world->now.manifolds[i];
+    if (manifold->other == NONE || world->bodies[manifold->body].held || world->bodies[manifold->other].held) continue;
+    if (pressing(world, manifold) > 0) join(world, manifold->body, manifold->other);
+  }
+  for (int i = 0; i < world->count; i++) courses[i].restless = 0;
+  for (int i = 0; i < world->count; i++) {
+    const Body *body = &world->bodies[i];
+    if (!body->asleep && !body->held && body->still < STILL_SECONDS) courses[island(world, i)].restless = 1;
+  }
+  for (int i = 0; i < world->count; i++) {
+    const Body *body = &world->bodies[i];
+    Course *whole = &courses[island(world, i)];
+    if (body->asleep || body->held || whole->restless) continue;
+    Support support = support_of(world, i);
+    if (support == FALLS || (support == LEANS && body->fixed < FIXED_SECONDS)) whole->restless = 1;
+  }
+  for (int i = 0; i < world->count; i++) courses[i].still = -1; /* bed of the island */
+  for (int i = 0; i < world->count; i++) {
+    Body *body = &world->bodies[i];
+    int whole = island(world, i);
+    if (body->asleep || body->held || courses[whole].restless) continue;
+    if (courses[whole].still < 0) courses[whole].still = world->beds++;
+    body->asleep = 1;
+    body->bed = (int32_t)courses[whole].still;
+    body->velocity = body->angular_momentum = body->spin = ZERO;
+  }
+  /* sleepers on which others have fallen asleep: from now on one bed */
+  for (int i = 0; i < world->count; i++) {
+    int whole = island(world, i);
+    int32_t old = world->bodies[i].bed, bed = (int32_t)courses[whole].still;
+    if (!world->bodies[i].asleep || bed < 0 || old == bed) continue;
+    for (int k = 0; k < world->count; k++)
+      if (world->bodies[k].asleep && world->bodies[k].bed == old) world->bodies[k].bed = bed;
+  }
 }

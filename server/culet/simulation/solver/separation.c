@@ -13,100 +13,84 @@
 
 /* The best face of `first`; of the second at `offset`, turned by `turn`, all in the first one's axes. */
 static double best_face(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double at_least,
-                        double enough, int backwards, PairRoom *room, int *face)
-{
-    int highest = 0;
-    for (int i = 0; i < first->face_count; i++) {
-        room->heights[i] = dot(first->normal[i], offset) - first->offset[i];
-        if (room->heights[i] > room->heights[highest])
-            highest = i;
+                        double enough, int backwards, PairRoom *room, int *face) {
+  int highest = 0;
+  for (int i = 0; i < first->face_count; i++) {
+    room->heights[i] = dot(first->normal[i], offset) - first->offset[i];
+    if (room->heights[i] > room->heights[highest]) highest = i;
+  }
+  double best = -INFINITY;
+  for (int n = -1; n < first->face_count; n++) {
+    int i = n < 0 ? highest : n; /* the most likely before all others */
+    double height = room->heights[i], bound = height - second->inradius;
+    if (n == highest || bound <= best || bound <= at_least) continue;
+    Vec3 normal = first->normal[i];
+    Vec3 there = backwards ? times(turn, normal) : transposed_times(turn, normal);
+    double distance = height + hull_lowest(second, there, room->reaches);
+    if (distance > best) {
+      best = distance;
+      *face = i;
+      if (best > enough) break;
     }
-    double best = -INFINITY;
-    for (int n = -1; n < first->face_count; n++) {
-        int i = n < 0 ? highest : n; /* the most likely before all others */
-        double height = room->heights[i], bound = height - second->inradius;
-        if (n == highest || bound <= best || bound <= at_least)
-            continue;
-        Vec3 normal = first->normal[i];
-        Vec3 there = backwards ? times(turn, normal) : transposed_times(turn, normal);
-        double distance = height + hull_lowest(second, there, room->reaches);
-        if (distance > best) {
-            best = distance;
-            *face = i;
-            if (best > enough)
-                break;
-        }
-    }
-    return best;
+  }
+  return best;
 }
 
 /* The edges whose lower end is below a plane by more than -band. */
-static int edges_below(const Hull *hull, const Vec3 *vertices, Vec3 normal, double offset, double band, int *edges)
-{
-    int count = 0;
-    for (int i = 0; i < hull->edge_count; i++) {
-        const int32_t *edge = hull->edges[i];
-        double p = dot(normal, vertices ? vertices[edge[0]] : hull_vertex(hull, edge[0]));
-        double q = dot(normal, vertices ? vertices[edge[1]] : hull_vertex(hull, edge[1]));
-        if (smaller(p, q) - offset <= band)
-            edges[count++] = i;
-    }
-    return count;
+static int edges_below(const Hull *hull, const Vec3 *vertices, Vec3 normal, double offset, double band, int *edges) {
+  int count = 0;
+  for (int i = 0; i < hull->edge_count; i++) {
+    const int32_t *edge = hull->edges[i];
+    double p = dot(normal, vertices ? vertices[edge[0]] : hull_vertex(hull, edge[0]));
+    double q = dot(normal, vertices ? vertices[edge[1]] : hull_vertex(hull, edge[1]));
+    if (smaller(p, q) - offset <= band) edges[count++] = i;
+  }
+  return count;
 }
 
-Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, PairRoom *room)
-{
-    int face = 0, other_face = 0;
-    double best = best_face(first, second, turn, offset, -INFINITY, enough, 0, room, &face);
-    if (best > enough)
-        return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
-    Vec3 back = negated(transposed_times(turn, offset));
-    double other_best = best_face(second, first, turn, back, best - TIE, enough, 1, room, &other_face);
-    Vec3 other_normal = times(turn, second->normal[other_face]);
-    if (other_best > enough)
-        return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
+Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, PairRoom *room) {
+  int face = 0, other_face = 0;
+  double best = best_face(first, second, turn, offset, -INFINITY, enough, 0, room, &face);
+  if (best > enough) return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
+  Vec3 back = negated(transposed_times(turn, offset));
+  double other_best = best_face(second, first, turn, back, best - TIE, enough, 1, room, &other_face);
+  Vec3 other_normal = times(turn, second->normal[other_face]);
+  if (other_best > enough) return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
 
-    for (int i = 0; i < second->vertex_count; i++)
-        room->vertices[i] = add(times(turn, hull_vertex(second, i)), offset);
-    int count = edges_below(first, 0, other_normal, dot(other_normal, offset) + second->offset[other_face], enough,
-                            room->edges);
-    int other_count =
-        edges_below(second, room->vertices, first->normal[face], first->offset[face], enough, room->other_edges);
+  for (int i = 0; i < second->vertex_count; i++) room->vertices[i] = add(times(turn, hull_vertex(second, i)), offset);
+  int count =
+      edges_below(first, 0, other_normal, dot(other_normal, offset) + second->offset[other_face], enough, room->edges);
+  int other_count =
+      edges_below(second, room->vertices, first->normal[face], first->offset[face], enough, room->other_edges);
+  for (int j = 0; j < other_count; j++) {
+    const int32_t *edge = second->edges[room->other_edges[j]];
+    room->face[j] = negated(times(turn, second->normal[edge[2]]));
+    room->other_face[j] = negated(times(turn, second->normal[edge[3]]));
+  }
+  Axis edges = {-INFINITY, TWO_EDGES, 0, 0, {0, 1, 0}};
+  for (int i = 0; i < count; i++) {
+    const int32_t *edge = first->edges[room->edges[i]];
+    Vec3 a = first->normal[edge[2]], b = first->normal[edge[3]];
+    Vec3 p = hull_vertex(first, edge[0]), along = sub(hull_vertex(first, edge[1]), p);
+    Vec3 b_a = cross(b, a);
     for (int j = 0; j < other_count; j++) {
-        const int32_t *edge = second->edges[room->other_edges[j]];
-        room->face[j] = negated(times(turn, second->normal[edge[2]]));
-        room->other_face[j] = negated(times(turn, second->normal[edge[3]]));
+      Vec3 c = room->face[j], d = room->other_face[j];
+      double cba = dot(c, b_a), dba = dot(d, b_a);
+      if (cba * dba >= 0) continue;
+      Vec3 d_c = cross(d, c);
+      double adc = dot(a, d_c), bdc = dot(b, d_c);
+      if (adc * bdc >= 0 || cba * bdc <= 0) continue;
+      const int32_t *other_edge = second->edges[room->other_edges[j]];
+      Vec3 q = room->vertices[other_edge[0]], other_along = sub(room->vertices[other_edge[1]], q);
+      Vec3 normal = cross(along, other_along);
+      double size = length(normal);
+      if (size <= PARALLEL * sqrt(dot(along, along) * dot(other_along, other_along))) continue;
+      normal = scaled(normal, dot(normal, p) < 0 ? -1 / size : 1 / size); /* away from the centre of mass */
+      double distance = dot(normal, sub(q, p));
+      if (distance > edges.distance) edges = (Axis){distance, TWO_EDGES, room->edges[i], room->other_edges[j], normal};
     }
-    Axis edges = {-INFINITY, TWO_EDGES, 0, 0, {0, 1, 0}};
-    for (int i = 0; i < count; i++) {
-        const int32_t *edge = first->edges[room->edges[i]];
-        Vec3 a = first->normal[edge[2]], b = first->normal[edge[3]];
-        Vec3 p = hull_vertex(first, edge[0]), along = sub(hull_vertex(first, edge[1]), p);
-        Vec3 b_a = cross(b, a);
-        for (int j = 0; j < other_count; j++) {
-            Vec3 c = room->face[j], d = room->other_face[j];
-            double cba = dot(c, b_a), dba = dot(d, b_a);
-            if (cba * dba >= 0)
-                continue;
-            Vec3 d_c = cross(d, c);
-            double adc = dot(a, d_c), bdc = dot(b, d_c);
-            if (adc * bdc >= 0 || cba * bdc <= 0)
-                continue;
-            const int32_t *other_edge = second->edges[room->other_edges[j]];
-            Vec3 q = room->vertices[other_edge[0]], other_along = sub(room->vertices[other_edge[1]], q);
-            Vec3 normal = cross(along, other_along);
-            double size = length(normal);
-            if (size <= PARALLEL * sqrt(dot(along, along) * dot(other_along, other_along)))
-                continue;
-            normal = scaled(normal, dot(normal, p) < 0 ? -1 / size : 1 / size); /* away from the centre of mass */
-            double distance = dot(normal, sub(q, p));
-            if (distance > edges.distance)
-                edges = (Axis){distance, TWO_EDGES, room->edges[i], room->other_edges[j], normal};
-        }
-    }
-    if (edges.distance > larger(best, other_best) + BETTER)
-        return edges;
-    if (best >= other_best - TIE)
-        return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
-    return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
+  }
+  if (edges.distance > larger(best, other_best) + BETTER) return edges;
+  if (best >= other_best - TIE) return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
+  return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
 }

@@ -5,196 +5,171 @@
 #include <string.h>
 
 typedef struct {
-    int32_t version, bodies, surfaces, beds, manifolds, contacts;
+  int32_t version, bodies, surfaces, beds, manifolds, contacts;
 } Header;
 
 typedef struct {
-    double position[3], orientation[4], velocity[3], angular_momentum[3], still, fixed;
-    int32_t asleep, held, bed, unused;
+  double position[3], orientation[4], velocity[3], angular_momentum[3], still, fixed;
+  int32_t asleep, held, bed, unused;
 } SavedBody;
 
 typedef struct {
-    int32_t body, other, surface, count;
-    double rolling_impulse[3];
+  int32_t body, other, surface, count;
+  double rolling_impulse[3];
 } SavedManifold;
 
 typedef struct {
-    uint64_t feature;
-    double normal_impulse, slip_impulse[3];
+  uint64_t feature;
+  double normal_impulse, slip_impulse[3];
 } SavedContact;
 
-static int contact_count(const World *world)
-{
-    int count = 0;
-    for (int i = 0; i < world->now.manifold_count; i++)
-        count += world->now.manifolds[i].count;
-    return count;
+static int contact_count(const World *world) {
+  int count = 0;
+  for (int i = 0; i < world->now.manifold_count; i++) count += world->now.manifolds[i].count;
+  return count;
 }
 
-static size_t size_of(int bodies, int manifolds, int contacts)
-{
-    return sizeof(Header) + sizeof(SavedBody) * (size_t)bodies + sizeof(SavedManifold) * (size_t)manifolds +
-           sizeof(SavedContact) * (size_t)contacts;
+static size_t size_of(int bodies, int manifolds, int contacts) {
+  return sizeof(Header) + sizeof(SavedBody) * (size_t)bodies + sizeof(SavedManifold) * (size_t)manifolds +
+         sizeof(SavedContact) * (size_t)contacts;
 }
 
-size_t culet_world_size(const CuletWorld *world)
-{
-    return size_of(world->count, world->now.manifold_count, contact_count(world));
+size_t culet_world_size(const CuletWorld *world) {
+  return size_of(world->count, world->now.manifold_count, contact_count(world));
 }
 
-static char *put(char *at, const void *record, size_t size)
-{
-    memcpy(at, record, size);
-    return at + size;
+static char *put(char *at, const void *record, size_t size) {
+  memcpy(at, record, size);
+  return at + size;
 }
 
-static const char *take(const char *at, void *record, size_t size)
-{
-    memcpy(record, at, size);
-    return at + size;
+static const char *take(const char *at, void *record, size_t size) {
+  memcpy(record, at, size);
+  return at + size;
 }
 
-void culet_world_save(const CuletWorld *world, void *bytes)
-{
-    char *at = bytes;
-    Header header = {CULET_INTERFACE, world->count,  world->surface_count, world->beds, world->now.manifold_count,
-                     contact_count(world)};
-    at = put(at, &header, sizeof header);
-    for (int i = 0; i < world->count; i++) {
-        const Body *body = &world->bodies[i];
-        Vec3 p = body->position, v = body->velocity, momentum = body->angular_momentum;
-        Quat q = body->orientation;
-        SavedBody saved = {{p.x, p.y, p.z},
-                           {q.w, q.x, q.y, q.z},
-                           {v.x, v.y, v.z},
-                           {momentum.x, momentum.y, momentum.z},
-                           body->still,
-                           body->fixed,
-                           body->asleep,
-                           body->held,
-                           body->bed,
-                           0};
-        at = put(at, &saved, sizeof saved);
+void culet_world_save(const CuletWorld *world, void *bytes) {
+  char *at = bytes;
+  Header header = {CULET_INTERFACE,           world->count,        world->surface_count, world->beds,
+                   world->now.manifold_count, contact_count(world)};
+  at = put(at, &header, sizeof header);
+  for (int i = 0; i < world->count; i++) {
+    const Body *body = &world->bodies[i];
+    Vec3 p = body->position, v = body->velocity, momentum = body->angular_momentum;
+    Quat q = body->orientation;
+    SavedBody saved = {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z},
+                       {v.x, v.y, v.z}, {momentum.x, momentum.y, momentum.z},
+                       body->still,     body->fixed,
+                       body->asleep,    body->held,
+                       body->bed,       0};
+    at = put(at, &saved, sizeof saved);
+  }
+  for (int i = 0; i < world->now.manifold_count; i++) {
+    const Manifold *manifold = &world->now.manifolds[i];
+    Vec3 r = manifold->rolling_impulse;
+    SavedManifold saved = {manifold->body, manifold->other, manifold->surface, manifold->count, {r.x, r.y, r.z}};
+    at = put(at, &saved, sizeof saved);
+    for (int k = 0; k < manifold->count; k++) {
+      const Contact *contact = &world->now.contacts[manifold->first + k];
+      Vec3 s = contact->slip_impulse;
+      SavedContact point = {contact->feature, contact->normal_impulse, {s.x, s.y, s.z}};
+      at = put(at, &point, sizeof point);
     }
-    for (int i = 0; i < world->now.manifold_count; i++) {
-        const Manifold *manifold = &world->now.manifolds[i];
-        Vec3 r = manifold->rolling_impulse;
-        SavedManifold saved = {
-            manifold->body, manifold->other, manifold->surface, manifold->count, {r.x, r.y, r.z}};
-        at = put(at, &saved, sizeof saved);
-        for (int k = 0; k < manifold->count; k++) {
-            const Contact *contact = &world->now.contacts[manifold->first + k];
-            Vec3 s = contact->slip_impulse;
-            SavedContact point = {contact->feature, contact->normal_impulse, {s.x, s.y, s.z}};
-            at = put(at, &point, sizeof point);
-        }
-    }
+  }
 }
 
-static int all_finite(const double *numbers, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (!isfinite(numbers[i]))
-            return 0;
-    return 1;
+static int all_finite(const double *numbers, int count) {
+  for (int i = 0; i < count; i++)
+    if (!isfinite(numbers[i])) return 0;
+  return 1;
 }
 
-static int sound_body(const SavedBody *body)
-{
-    const double *q = body->orientation;
-    double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    return all_finite(body->position, 15) && fabs(norm - 1) < 1e-9 && body->still >= 0 && body->fixed >= 0 &&
-           (body->asleep & ~1) == 0 && (body->held & ~1) == 0;
+static int sound_body(const SavedBody *body) {
+  const double *q = body->orientation;
+  double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  return all_finite(body->position, 15) && fabs(norm - 1) < 1e-9 && body->still >= 0 && body->fixed >= 0 &&
+         (body->asleep & ~1) == 0 && (body->held & ~1) == 0;
 }
 
-static int sound_manifold(const SavedManifold *manifold, const Header *header)
-{
-    int of_surface = manifold->other == NONE && manifold->surface >= 0 && manifold->surface < header->surfaces;
-    int of_pair = manifold->other >= 0 && manifold->other < manifold->body && manifold->surface == NONE;
-    return manifold->body >= 0 && manifold->body < header->bodies && manifold->count > 0 &&
-           (of_surface || of_pair) && all_finite(manifold->rolling_impulse, 3);
+static int sound_manifold(const SavedManifold *manifold, const Header *header) {
+  int of_surface = manifold->other == NONE && manifold->surface >= 0 && manifold->surface < header->surfaces;
+  int of_pair = manifold->other >= 0 && manifold->other < manifold->body && manifold->surface == NONE;
+  return manifold->body >= 0 && manifold->body < header->bodies && manifold->count > 0 && (of_surface || of_pair) &&
+         all_finite(manifold->rolling_impulse, 3);
 }
 
 /* Whether the bytes are a snapshot of a world with so many bodies and surfaces. */
-static int sound(const World *world, const Header *header, const char *bytes, size_t size)
-{
-    if (header->version != CULET_INTERFACE || header->bodies != world->count ||
-        header->surfaces != world->surface_count || header->beds < 0 || header->manifolds < 0 || header->contacts < 0 ||
-        size != size_of(header->bodies, header->manifolds, header->contacts))
-        return 0;
-    const char *at = bytes + sizeof *header;
-    for (int i = 0; i < header->bodies; i++) {
-        SavedBody body;
-        at = take(at, &body, sizeof body);
-        if (!sound_body(&body))
-            return 0;
+static int sound(const World *world, const Header *header, const char *bytes, size_t size) {
+  if (header->version != CULET_INTERFACE || header->bodies != world->count ||
+      header->surfaces != world->surface_count || header->beds < 0 || header->manifolds < 0 || header->contacts < 0 ||
+      size != size_of(header->bodies, header->manifolds, header->contacts))
+    return 0;
+  const char *at = bytes + sizeof *header;
+  for (int i = 0; i < header->bodies; i++) {
+    SavedBody body;
+    at = take(at, &body, sizeof body);
+    if (!sound_body(&body)) return 0;
+  }
+  int left = header->contacts;
+  for (int i = 0; i < header->manifolds; i++) {
+    SavedManifold manifold;
+    at = take(at, &manifold, sizeof manifold);
+    if (!sound_manifold(&manifold, header) || manifold.count > left) return 0;
+    left -= manifold.count;
+    for (int k = 0; k < manifold.count; k++) {
+      SavedContact contact;
+      at = take(at, &contact, sizeof contact);
+      if (!all_finite(&contact.normal_impulse, 4) || contact.normal_impulse < 0) return 0;
     }
-    int left = header->contacts;
-    for (int i = 0; i < header->manifolds; i++) {
-        SavedManifold manifold;
-        at = take(at, &manifold, sizeof manifold);
-        if (!sound_manifold(&manifold, header) || manifold.count > left)
-            return 0;
-        left -= manifold.count;
-        for (int k = 0; k < manifold.count; k++) {
-            SavedContact contact;
-            at = take(at, &contact, sizeof contact);
-            if (!all_finite(&contact.normal_impulse, 4) || contact.normal_impulse < 0)
-                return 0;
-        }
-    }
-    return left == 0;
+  }
+  return left == 0;
 }
 
-int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t size)
-{
-    Header header;
-    if (size < sizeof header)
-        return -1;
-    const char *at = take(bytes, &header, sizeof header);
-    if (!sound(world, &header, bytes, size))
-        return -1;
-    if (reserve_contacts(&world->now, header.contacts, header.manifolds))
-        return -2;
-    world->beds = header.beds;
-    for (int i = 0; i < header.bodies; i++) {
-        SavedBody saved;
-        at = take(at, &saved, sizeof saved);
-        Body *body = &world->bodies[i];
-        const double *p = saved.position, *q = saved.orientation, *v = saved.velocity, *l = saved.angular_momentum;
-        body->position = vec(p[0], p[1], p[2]);
-        body->orientation = (Quat){q[0], q[1], q[2], q[3]};
-        body->velocity = vec(v[0], v[1], v[2]);
-        body->angular_momentum = vec(l[0], l[1], l[2]);
-        body->still = saved.still;
-        body->fixed = saved.fixed;
-        body->asleep = saved.asleep;
-        body->held = saved.held;
-        body->bed = saved.bed;
-        refresh(body);
+int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t size) {
+  Header header;
+  if (size < sizeof header) return -1;
+  const char *at = take(bytes, &header, sizeof header);
+  if (!sound(world, &header, bytes, size)) return -1;
+  if (reserve_contacts(&world->now, header.contacts, header.manifolds)) return -2;
+  world->beds = header.beds;
+  for (int i = 0; i < header.bodies; i++) {
+    SavedBody saved;
+    at = take(at, &saved, sizeof saved);
+    Body *body = &world->bodies[i];
+    const double *p = saved.position, *q = saved.orientation, *v = saved.velocity, *l = saved.angular_momentum;
+    body->position = vec(p[0], p[1], p[2]);
+    body->orientation = (Quat){q[0], q[1], q[2], q[3]};
+    body->velocity = vec(v[0], v[1], v[2]);
+    body->angular_momentum = vec(l[0], l[1], l[2]);
+    body->still = saved.still;
+    body->fixed = saved.fixed;
+    body->asleep = saved.asleep;
+    body->held = saved.held;
+    body->bed = saved.bed;
+    refresh(body);
+  }
+  Contacts *now = &world->now;
+  now->count = now->manifold_count = 0;
+  for (int i = 0; i < header.manifolds; i++) {
+    SavedManifold saved;
+    at = take(at, &saved, sizeof saved);
+    const double *r = saved.rolling_impulse;
+    Manifold *manifold = &now->manifolds[now->manifold_count++];
+    *manifold =
+        (Manifold){saved.body, saved.other, saved.surface, now->count, saved.count, 0, 0, 0, {r[0], r[1], r[2]}};
+    for (int k = 0; k < saved.count; k++) {
+      SavedContact point;
+      at = take(at, &point, sizeof point);
+      Contact *contact = &now->contacts[now->count++];
+      memset(contact, 0, sizeof *contact);
+      const double *s = point.slip_impulse;
+      contact->feature = point.feature;
+      contact->normal_impulse = point.normal_impulse;
+      contact->slip_impulse = vec(s[0], s[1], s[2]);
+      contact->body = saved.body;
+      contact->other = saved.other;
+      contact->gap = INFINITY; /* until the next substep finds it */
     }
-    Contacts *now = &world->now;
-    now->count = now->manifold_count = 0;
-    for (int i = 0; i < header.manifolds; i++) {
-        SavedManifold saved;
-        at = take(at, &saved, sizeof saved);
-        const double *r = saved.rolling_impulse;
-        Manifold *manifold = &now->manifolds[now->manifold_count++];
-        *manifold = (Manifold){saved.body, saved.other, saved.surface, now->count, saved.count, 0, 0, 0,
-                               {r[0], r[1], r[2]}};
-        for (int k = 0; k < saved.count; k++) {
-            SavedContact point;
-            at = take(at, &point, sizeof point);
-            Contact *contact = &now->contacts[now->count++];
-            memset(contact, 0, sizeof *contact);
-            const double *s = point.slip_impulse;
-            contact->feature = point.feature;
-            contact->normal_impulse = point.normal_impulse;
-            contact->slip_impulse = vec(s[0], s[1], s[2]);
-            contact->body = saved.body;
-            contact->other = saved.other;
-            contact->gap = INFINITY; /* until the next substep finds it */
-        }
-    }
-    return 0;
+  }
+  return 0;
 }

@@ -17,125 +17,125 @@
 #define SLOP 1e-5
 
 typedef struct {
-    int vertex_count, face_count, edge_count;
-    double radius;   /* of the sphere about the centre of mass that holds the hull */
-    double inradius; /* of the sphere about it that the hull holds */
-    double *x, *y, *z;
-    Vec3 *normal;
-    double *offset;
-    int32_t *first, *corners;
-    int32_t (*edges)[4]; /* both ends, both faces */
+  int vertex_count, face_count, edge_count;
+  double radius;   /* of the sphere about the centre of mass that holds the hull */
+  double inradius; /* of the sphere about it that the hull holds */
+  double *x, *y, *z;
+  Vec3 *normal;
+  double *offset;
+  int32_t *first, *corners;
+  int32_t (*edges)[4]; /* both ends, both faces */
 } Hull;
 
 typedef struct {
-    Vec3 position, velocity, angular_momentum;
-    Quat orientation;
-    /* of the orientation and the angular momentum */
-    Vec3 spin;
-    Mat3 axes;
-    /* what a substep takes for the mass: 0 where the body cannot move */
-    double inverse_mass;
-    Mat3 world_inverse_inertia;
+  Vec3 position, velocity, angular_momentum;
+  Quat orientation;
+  /* of the orientation and the angular momentum */
+  Vec3 spin;
+  Mat3 axes;
+  /* what a substep takes for the mass: 0 where the body cannot move */
+  double inverse_mass;
+  Mat3 world_inverse_inertia;
 
-    Hull hull;
-    double size; /* the hull's radius, the unit of this body's small lengths */
-    double mass, restitution, friction;
-    Mat3 inertia, inverse_inertia, principal;
-    double moments[3];
+  Hull hull;
+  double size; /* the hull's radius, the unit of this body's small lengths */
+  double mass, restitution, friction;
+  Mat3 inertia, inverse_inertia, principal;
+  double moments[3];
 
-    int asleep, held;
-    int32_t bed;  /* what fell asleep together, or onto what slept, wakes together */
-    double still; /* s, since when it hardly moves */
-    double fixed; /* s, since when it does not move at all */
+  int asleep, held;
+  int32_t bed;  /* what fell asleep together, or onto what slept, wakes together */
+  double still; /* s, since when it hardly moves */
+  double fixed; /* s, since when it does not move at all */
 } Body;
 
 /* One point where a body touches, or is about to touch, a surface or another body. Impulses are on `body`; `other` gets
  * the opposite. */
 typedef struct {
-    int body, other;
-    Vec3 normal; /* towards `body` */
-    Vec3 arm, other_arm;
-    double gap;
-    uint64_t feature; /* by which the contact is found again */
-    double normal_impulse;
-    Vec3 slip_impulse;
-    Vec3 turning, other_turning; /* change of spin by a unit impulse along the normal */
-    double normal_mass, slip_mass;
-    double restitution, friction;
-    int bounces;
-    double arrival; /* velocity along the normal at the moment of touch */
-    double target;  /* velocity along the normal that the impulse sees to */
-    double push;    /* that moves an overlap apart */
-    double kept_normal;
-    Vec3 kept_slip;
+  int body, other;
+  Vec3 normal; /* towards `body` */
+  Vec3 arm, other_arm;
+  double gap;
+  uint64_t feature; /* by which the contact is found again */
+  double normal_impulse;
+  Vec3 slip_impulse;
+  Vec3 turning, other_turning; /* change of spin by a unit impulse along the normal */
+  double normal_mass, slip_mass;
+  double restitution, friction;
+  int bounces;
+  double arrival; /* velocity along the normal at the moment of touch */
+  double target;  /* velocity along the normal that the impulse sees to */
+  double push;    /* that moves an overlap apart */
+  double kept_normal;
+  Vec3 kept_slip;
 } Contact;
 
 /* All contacts of a body with one surface or one other body. */
 typedef struct {
-    int body, other, surface;
-    int first, count;
-    double rolling; /* lever arm, R */
-    double rolling_mass;
-    double rolling_part; /* of the lever arm that acts at this speed */
-    Vec3 rolling_impulse;
+  int body, other, surface;
+  int first, count;
+  double rolling;      /* lever arm, R */
+  double rolling_mass;
+  double rolling_part; /* of the lever arm that acts at this speed */
+  Vec3 rolling_impulse;
 } Manifold;
 
 typedef struct {
-    Contact *contacts;
-    Manifold *manifolds;
-    int count, capacity, manifold_count, manifold_capacity;
+  Contact *contacts;
+  Manifold *manifolds;
+  int count, capacity, manifold_count, manifold_capacity;
 } Contacts;
 
 typedef struct {
-    Vec3 normal;
-    double offset;
+  Vec3 normal;
+  double offset;
 } Surface;
 
 /* What one substep needs of each body. */
 typedef struct {
-    Vec3 velocity;                     /* at its start */
-    Vec3 pushed_velocity, pushed_spin; /* with gravity, before the contacts */
-    Vec3 first_velocity, first_spin;   /* with the first answer of two */
-    double kinetic;                    /* energy before the contacts */
-    double touch;                      /* s into the substep; below 0: it touches nothing that bounces */
-    int touched;
-    Vec3 shift, turn; /* apart from what overlaps */
-    int parent;       /* in its island's tree */
-    double gain, scale, square, linear, constant, part;
-    double still;
-    int restless;
+  Vec3 velocity;                     /* at its start */
+  Vec3 pushed_velocity, pushed_spin; /* with gravity, before the contacts */
+  Vec3 first_velocity, first_spin;   /* with the first answer of two */
+  double kinetic;                    /* energy before the contacts */
+  double touch;                      /* s into the substep; below 0: it touches nothing that bounces */
+  int touched;
+  Vec3 shift, turn;                  /* apart from what overlaps */
+  int parent;                        /* in its island's tree */
+  double gain, scale, square, linear, constant, part;
+  double still;
+  int restless;
 } Course;
 
 /* One of the points of a pair. */
 typedef struct {
-    Vec3 point;
-    double gap;
-    uint64_t feature;
+  Vec3 point;
+  double gap;
+  uint64_t feature;
 } PairPoint;
 
 /* Room for what one pair needs. */
 typedef struct {
-    double heights[MAX_FACES];
-    double reaches[CULET_MAX_VERTICES];
-    int edges[MAX_EDGES], other_edges[MAX_EDGES];
-    Vec3 vertices[CULET_MAX_VERTICES];
-    Vec3 face[MAX_EDGES], other_face[MAX_EDGES];
-    Vec3 polygon[MAX_CORNERS], clipped[MAX_CORNERS];
-    uint32_t names[MAX_CORNERS], clipped_names[MAX_CORNERS];
-    PairPoint points[MAX_CORNERS + 1];
+  double heights[MAX_FACES];
+  double reaches[CULET_MAX_VERTICES];
+  int edges[MAX_EDGES], other_edges[MAX_EDGES];
+  Vec3 vertices[CULET_MAX_VERTICES];
+  Vec3 face[MAX_EDGES], other_face[MAX_EDGES];
+  Vec3 polygon[MAX_CORNERS], clipped[MAX_CORNERS];
+  uint32_t names[MAX_CORNERS], clipped_names[MAX_CORNERS];
+  PairPoint points[MAX_CORNERS + 1];
 } PairRoom;
 
 struct CuletWorld {
-    CuletLaw law;
-    Surface surfaces[CULET_MAX_SURFACES];
-    int surface_count;
-    Body *bodies;
-    int count, capacity;
-    Course *courses;
-    Contacts now, before;
-    Vec3 *separating; /* (capacity, capacity): an axis that separated the pair lately, in the first one's axes */
-    PairRoom *room;
-    int32_t beds;
+  CuletLaw law;
+  Surface surfaces[CULET_MAX_SURFACES];
+  int surface_count;
+  Body *bodies;
+  int count, capacity;
+  Course *courses;
+  Contacts now, before;
+  Vec3 *separating; /* (capacity, capacity): an axis that separated the pair lately, in the first one's axes */
+  PairRoom *room;
+  int32_t beds;
 };
 
 typedef struct CuletWorld World;
@@ -144,10 +144,10 @@ typedef struct CuletWorld World;
 typedef enum { FIRST_FACE, SECOND_FACE, TWO_EDGES } AxisKind;
 
 typedef struct {
-    double distance;
-    AxisKind kind;
-    int first, second; /* face, or edges */
-    Vec3 normal;       /* in the first one's axes, from the first to the second */
+  double distance;
+  AxisKind kind;
+  int first, second; /* face, or edges */
+  Vec3 normal;       /* in the first one's axes, from the first to the second */
 } Axis;
 
 /* hull.c */

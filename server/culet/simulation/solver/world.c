@@ -7,285 +7,237 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REACH 0.05       /* of the inradius: how far a body may move in a substep */
-#define MAX_SUBSTEPS 64  /* of a step: contacts ahead see to it that nothing is passed through even so */
-#define TOUCHING 1e-6    /* size: what is nearer counts as touching */
+#define REACH 0.05      /* of the inradius: how far a body may move in a substep */
+#define MAX_SUBSTEPS 64 /* of a step: contacts ahead see to it that nothing is passed through even so */
+#define TOUCHING 1e-6   /* size: what is nearer counts as touching */
 #define FIRST_CONTACTS 256
 
 int32_t culet_interface(void) { return CULET_INTERFACE; }
 
-CuletWorld *culet_world_new(int32_t capacity)
-{
-    World *world = calloc(1, sizeof *world);
-    if (!world)
-        return NULL;
-    size_t n = (size_t)capacity;
-    world->capacity = capacity;
-    world->bodies = calloc(n, sizeof(Body));
-    world->courses = calloc(n, sizeof(Course));
-    world->separating = calloc(n * n, sizeof(Vec3));
-    world->room = calloc(1, sizeof(PairRoom));
-    if (!world->bodies || !world->courses || !world->separating || !world->room ||
-        reserve_contacts(&world->now, FIRST_CONTACTS, FIRST_CONTACTS) ||
-        reserve_contacts(&world->before, FIRST_CONTACTS, FIRST_CONTACTS)) {
-        culet_world_free(world);
-        return NULL;
-    }
-    return world;
+CuletWorld *culet_world_new(int32_t capacity) {
+  World *world = calloc(1, sizeof *world);
+  if (!world) return NULL;
+  size_t n = (size_t)capacity;
+  world->capacity = capacity;
+  world->bodies = calloc(n, sizeof(Body));
+  world->courses = calloc(n, sizeof(Course));
+  world->separating = calloc(n * n, sizeof(Vec3));
+  world->room = calloc(1, sizeof(PairRoom));
+  if (!world->bodies || !world->courses || !world->separating || !world->room ||
+      reserve_contacts(&world->now, FIRST_CONTACTS, FIRST_CONTACTS) ||
+      reserve_contacts(&world->before, FIRST_CONTACTS, FIRST_CONTACTS)) {
+    culet_world_free(world);
+    return NULL;
+  }
+  return world;
 }
 
-void culet_world_free(CuletWorld *world)
-{
-    if (!world)
-        return;
-    for (int i = 0; i < world->count; i++)
-        hull_free(&world->bodies[i].hull);
-    free(world->bodies);
-    free(world->courses);
-    free(world->separating);
-    free(world->room);
-    free(world->now.contacts);
-    free(world->now.manifolds);
-    free(world->before.contacts);
-    free(world->before.manifolds);
-    free(world);
+void culet_world_free(CuletWorld *world) {
+  if (!world) return;
+  for (int i = 0; i < world->count; i++) hull_free(&world->bodies[i].hull);
+  free(world->bodies);
+  free(world->courses);
+  free(world->separating);
+  free(world->room);
+  free(world->now.contacts);
+  free(world->now.manifolds);
+  free(world->before.contacts);
+  free(world->before.manifolds);
+  free(world);
 }
 
-void culet_world_wake(CuletWorld *world)
-{
-    for (int i = 0; i < world->count; i++)
-        wake_body(world, i);
+void culet_world_wake(CuletWorld *world) {
+  for (int i = 0; i < world->count; i++) wake_body(world, i);
 }
 
-void culet_world_set_law(CuletWorld *world, const CuletLaw *law)
-{
-    world->law = *law;
-    culet_world_wake(world);
+void culet_world_set_law(CuletWorld *world, const CuletLaw *law) {
+  world->law = *law;
+  culet_world_wake(world);
 }
 
 /* Forget impulses of contacts that are no more, or are other ones. */
-static void forget_surfaces(Contacts *contacts)
-{
-    int left = 0;
-    for (int i = 0; i < contacts->manifold_count; i++)
-        if (contacts->manifolds[i].other != NONE)
-            contacts->manifolds[left++] = contacts->manifolds[i];
-    contacts->manifold_count = left;
+static void forget_surfaces(Contacts *contacts) {
+  int left = 0;
+  for (int i = 0; i < contacts->manifold_count; i++)
+    if (contacts->manifolds[i].other != NONE) contacts->manifolds[left++] = contacts->manifolds[i];
+  contacts->manifold_count = left;
 }
 
-void culet_world_set_surfaces(CuletWorld *world, int32_t count, const double *planes)
-{
-    world->surface_count = count < CULET_MAX_SURFACES ? count : CULET_MAX_SURFACES;
-    for (int i = 0; i < world->surface_count; i++)
-        world->surfaces[i] = (Surface){vec(planes[4 * i], planes[4 * i + 1], planes[4 * i + 2]), planes[4 * i + 3]};
-    forget_surfaces(&world->now);
-    culet_world_wake(world);
+void culet_world_set_surfaces(CuletWorld *world, int32_t count, const double *planes) {
+  world->surface_count = count < CULET_MAX_SURFACES ? count : CULET_MAX_SURFACES;
+  for (int i = 0; i < world->surface_count; i++)
+    world->surfaces[i] = (Surface){vec(planes[4 * i], planes[4 * i + 1], planes[4 * i + 2]), planes[4 * i + 3]};
+  forget_surfaces(&world->now);
+  culet_world_wake(world);
 }
 
-static Mat3 matrix(const double m[9])
-{
-    return (Mat3){{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
+static Mat3 matrix(const double m[9]) { return (Mat3){{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}}; }
+
+static void take_properties(Body *body, const CuletBody *given) {
+  body->mass = given->mass;
+  body->inertia = matrix(given->inertia);
+  body->inverse_inertia = matrix(given->inverse_inertia);
+  body->principal = matrix(given->axes);
+  memcpy(body->moments, given->moments, sizeof body->moments);
+  body->restitution = given->restitution;
+  body->friction = given->friction;
 }
 
-static void take_properties(Body *body, const CuletBody *given)
-{
-    body->mass = given->mass;
-    body->inertia = matrix(given->inertia);
-    body->inverse_inertia = matrix(given->inverse_inertia);
-    body->principal = matrix(given->axes);
-    memcpy(body->moments, given->moments, sizeof body->moments);
-    body->restitution = given->restitution;
-    body->friction = given->friction;
+static void take_state(Body *body, const CuletState *state) {
+  body->position = vec(state->position[0], state->position[1], state->position[2]);
+  body->orientation =
+      (Quat){state->orientation[0], state->orientation[1], state->orientation[2], state->orientation[3]};
+  body->velocity = vec(state->velocity[0], state->velocity[1], state->velocity[2]);
+  body->angular_momentum = vec(state->angular_momentum[0], state->angular_momentum[1], state->angular_momentum[2]);
+  refresh(body);
 }
 
-static void take_state(Body *body, const CuletState *state)
-{
-    body->position = vec(state->position[0], state->position[1], state->position[2]);
-    body->orientation =
-        (Quat){state->orientation[0], state->orientation[1], state->orientation[2], state->orientation[3]};
-    body->velocity = vec(state->velocity[0], state->velocity[1], state->velocity[2]);
-    body->angular_momentum =
-        vec(state->angular_momentum[0], state->angular_momentum[1], state->angular_momentum[2]);
-    refresh(body);
+static void forget_separating_axes(World *world) {
+  memset(world->separating, 0, sizeof(Vec3) * (size_t)world->capacity * (size_t)world->capacity);
 }
 
-static void forget_separating_axes(World *world)
-{
-    memset(world->separating, 0, sizeof(Vec3) * (size_t)world->capacity * (size_t)world->capacity);
+int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, const CuletBody *given, const CuletState *state) {
+  if (world->count == world->capacity) return -2;
+  Body *body = &world->bodies[world->count];
+  memset(body, 0, sizeof *body);
+  int fault = hull_copy(&body->hull, hull);
+  if (fault) return fault;
+  body->size = body->hull.radius;
+  body->asleep = state->asleep;
+  body->held = state->held;
+  body->bed = world->beds++;
+  take_properties(body, given);
+  take_state(body, state);
+  forget_separating_axes(world);
+  return world->count++;
 }
 
-int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, const CuletBody *given, const CuletState *state)
-{
-    if (world->count == world->capacity)
-        return -2;
-    Body *body = &world->bodies[world->count];
-    memset(body, 0, sizeof *body);
-    int fault = hull_copy(&body->hull, hull);
-    if (fault)
-        return fault;
-    body->size = body->hull.radius;
-    body->asleep = state->asleep;
-    body->held = state->held;
-    body->bed = world->beds++;
-    take_properties(body, given);
-    take_state(body, state);
-    forget_separating_axes(world);
-    return world->count++;
+void culet_world_remove(CuletWorld *world, int32_t number) {
+  wake_body(world, number);
+  for (int i = 0; i < world->now.manifold_count; i++) { /* what it carried */
+    const Manifold *manifold = &world->now.manifolds[i];
+    if (manifold->body == number && manifold->other != NONE) wake_body(world, manifold->other);
+    if (manifold->other == number) wake_body(world, manifold->body);
+  }
+  hull_free(&world->bodies[number].hull);
+  memmove(&world->bodies[number], &world->bodies[number + 1], sizeof(Body) * (size_t)(world->count - number - 1));
+  world->count--;
+  int left = 0;
+  for (int i = 0; i < world->now.manifold_count; i++) {
+    Manifold manifold = world->now.manifolds[i];
+    if (manifold.body == number || manifold.other == number) continue;
+    manifold.body -= manifold.body > number;
+    manifold.other -= manifold.other > number;
+    world->now.manifolds[left++] = manifold;
+  }
+  world->now.manifold_count = left;
+  forget_separating_axes(world);
 }
 
-void culet_world_remove(CuletWorld *world, int32_t number)
-{
-    wake_body(world, number);
-    for (int i = 0; i < world->now.manifold_count; i++) { /* what it carried */
-        const Manifold *manifold = &world->now.manifolds[i];
-        if (manifold->body == number && manifold->other != NONE)
-            wake_body(world, manifold->other);
-        if (manifold->other == number)
-            wake_body(world, manifold->body);
-    }
-    hull_free(&world->bodies[number].hull);
-    memmove(&world->bodies[number], &world->bodies[number + 1],
-            sizeof(Body) * (size_t)(world->count - number - 1));
-    world->count--;
-    int left = 0;
-    for (int i = 0; i < world->now.manifold_count; i++) {
-        Manifold manifold = world->now.manifolds[i];
-        if (manifold.body == number || manifold.other == number)
-            continue;
-        manifold.body -= manifold.body > number;
-        manifold.other -= manifold.other > number;
-        world->now.manifolds[left++] = manifold;
-    }
-    world->now.manifold_count = left;
-    forget_separating_axes(world);
+void culet_world_set_body(CuletWorld *world, int32_t number, const CuletBody *given) {
+  Body *body = &world->bodies[number];
+  Vec3 spin = body->spin;
+  take_properties(body, given);
+  body->angular_momentum = angular_momentum_of(body, spin);
+  refresh(body);
+  wake_body(world, number);
 }
 
-void culet_world_set_body(CuletWorld *world, int32_t number, const CuletBody *given)
-{
-    Body *body = &world->bodies[number];
-    Vec3 spin = body->spin;
-    take_properties(body, given);
-    body->angular_momentum = angular_momentum_of(body, spin);
-    refresh(body);
-    wake_body(world, number);
+void culet_world_set_state(CuletWorld *world, int32_t number, const CuletState *state) {
+  take_state(&world->bodies[number], state);
+  wake_body(world, number);
 }
 
-void culet_world_set_state(CuletWorld *world, int32_t number, const CuletState *state)
-{
-    take_state(&world->bodies[number], state);
-    wake_body(world, number);
+void culet_world_hold(CuletWorld *world, int32_t number, int32_t held) {
+  Body *body = &world->bodies[number];
+  wake_body(world, number);
+  body->held = held;
+  if (held) body->velocity = body->angular_momentum = body->spin = ZERO;
 }
 
-void culet_world_hold(CuletWorld *world, int32_t number, int32_t held)
-{
-    Body *body = &world->bodies[number];
-    wake_body(world, number);
-    body->held = held;
-    if (held)
-        body->velocity = body->angular_momentum = body->spin = ZERO;
-}
-
-void culet_world_push(CuletWorld *world, int32_t number, const double impulse[3], const double point[3])
-{
-    Body *body = &world->bodies[number];
-    Vec3 blow = vec(impulse[0], impulse[1], impulse[2]);
-    Vec3 arm = sub(vec(point[0], point[1], point[2]), body->position);
-    wake_body(world, number);
-    body->velocity = add(body->velocity, scaled(blow, 1 / body->mass));
-    body->angular_momentum = add(body->angular_momentum, cross(arm, blow));
-    refresh(body);
+void culet_world_push(CuletWorld *world, int32_t number, const double impulse[3], const double point[3]) {
+  Body *body = &world->bodies[number];
+  Vec3 blow = vec(impulse[0], impulse[1], impulse[2]);
+  Vec3 arm = sub(vec(point[0], point[1], point[2]), body->position);
+  wake_body(world, number);
+  body->velocity = add(body->velocity, scaled(blow, 1 / body->mass));
+  body->angular_momentum = add(body->angular_momentum, cross(arm, blow));
+  refresh(body);
 }
 
 /* Bodies that cannot move have no inverse mass in this substep. */
-static void weigh(World *world)
-{
-    for (int i = 0; i < world->count; i++) {
-        Body *body = &world->bodies[i];
-        int moves = !body->asleep && !body->held;
-        body->inverse_mass = moves ? 1 / body->mass : 0;
-        body->world_inverse_inertia =
-            moves ? turned_tensor(&body->axes, &body->inverse_inertia) : (Mat3){ZERO, ZERO, ZERO};
-    }
+static void weigh(World *world) {
+  for (int i = 0; i < world->count; i++) {
+    Body *body = &world->bodies[i];
+    int moves = !body->asleep && !body->held;
+    body->inverse_mass = moves ? 1 / body->mass : 0;
+    body->world_inverse_inertia = moves ? turned_tensor(&body->axes, &body->inverse_inertia) : (Mat3){ZERO, ZERO, ZERO};
+  }
 }
 
-static int substeps_of(const World *world, double time)
-{
-    double g = world->law.gravity, needed = world->law.substeps;
-    for (int i = 0; i < world->count; i++) {
-        const Body *body = &world->bodies[i];
-        if (body->asleep || body->held)
-            continue;
-        double speed = length(body->velocity) + length(body->spin) * body->size + g * time;
-        needed = larger(needed, speed * time / (REACH * body->hull.inradius));
-        needed = larger(needed, time * sqrt(g / body->size) / world->law.contact_step);
-    }
-    return needed < MAX_SUBSTEPS ? (int)ceil(needed) : MAX_SUBSTEPS;
+static int substeps_of(const World *world, double time) {
+  double g = world->law.gravity, needed = world->law.substeps;
+  for (int i = 0; i < world->count; i++) {
+    const Body *body = &world->bodies[i];
+    if (body->asleep || body->held) continue;
+    double speed = length(body->velocity) + length(body->spin) * body->size + g * time;
+    needed = larger(needed, speed * time / (REACH * body->hull.inradius));
+    needed = larger(needed, time * sqrt(g / body->size) / world->law.contact_step);
+  }
+  return needed < MAX_SUBSTEPS ? (int)ceil(needed) : MAX_SUBSTEPS;
 }
 
-int32_t culet_world_step(CuletWorld *world, double time)
-{
-    int awake = 0;
-    for (int i = 0; i < world->count; i++)
-        awake |= !world->bodies[i].asleep && !world->bodies[i].held;
-    if (!awake)
-        return 0;
-    int count = substeps_of(world, time);
-    double part = time / count;
-    for (int i = 0; i < count; i++) {
-        if (find_contacts(world, part))
-            return -1;
-        weigh(world);
-        int bounces = bounces_of(world, part);
-        kick(world, part);
-        solve_impulses(world, part, 1, 1);
-        if (bounces)
-            limit_energy(world, part);
-        move(world, part);
-        push_apart(world);
-        fall_asleep(world, part);
-    }
-    return 0;
+int32_t culet_world_step(CuletWorld *world, double time) {
+  int awake = 0;
+  for (int i = 0; i < world->count; i++) awake |= !world->bodies[i].asleep && !world->bodies[i].held;
+  if (!awake) return 0;
+  int count = substeps_of(world, time);
+  double part = time / count;
+  for (int i = 0; i < count; i++) {
+    if (find_contacts(world, part)) return -1;
+    weigh(world);
+    int bounces = bounces_of(world, part);
+    kick(world, part);
+    solve_impulses(world, part, 1, 1);
+    if (bounces) limit_energy(world, part);
+    move(world, part);
+    push_apart(world);
+    fall_asleep(world, part);
+  }
+  return 0;
 }
 
-void culet_world_states(const CuletWorld *world, CuletState *states)
-{
-    for (int i = 0; i < world->count; i++) {
-        const Body *body = &world->bodies[i];
-        Vec3 p = body->position, v = body->velocity, momentum = body->angular_momentum, spin = body->spin;
-        Quat q = body->orientation;
-        states[i] = (CuletState){{p.x, p.y, p.z},
-                                 {q.w, q.x, q.y, q.z},
-                                 {v.x, v.y, v.z},
-                                 {momentum.x, momentum.y, momentum.z},
-                                 {spin.x, spin.y, spin.z},
-                                 body->asleep,
-                                 body->held};
-    }
+void culet_world_states(const CuletWorld *world, CuletState *states) {
+  for (int i = 0; i < world->count; i++) {
+    const Body *body = &world->bodies[i];
+    Vec3 p = body->position, v = body->velocity, momentum = body->angular_momentum, spin = body->spin;
+    Quat q = body->orientation;
+    states[i] = (CuletState){
+        {p.x, p.y, p.z},          {q.w, q.x, q.y, q.z}, {v.x, v.y, v.z}, {momentum.x, momentum.y, momentum.z},
+        {spin.x, spin.y, spin.z}, body->asleep,         body->held};
+  }
 }
 
-void culet_world_touches(const CuletWorld *world, CuletTouch *touches)
-{
-    memset(touches, 0, sizeof(CuletTouch) * (size_t)world->count);
-    for (int i = 0; i < world->now.manifold_count; i++) {
-        const Manifold *manifold = &world->now.manifolds[i];
-        for (int k = 0; k < manifold->count; k++) {
-            double gap = world->now.contacts[manifold->first + k].gap;
-            for (int side = 0; side < 2; side++) {
-                int number = side ? manifold->other : manifold->body;
-                if (number == NONE || gap > TOUCHING * world->bodies[number].size)
-                    continue;
-                touches[number].contacts++;
-                touches[number].penetration = larger(touches[number].penetration, -gap);
-            }
-        }
+void culet_world_touches(const CuletWorld *world, CuletTouch *touches) {
+  memset(touches, 0, sizeof(CuletTouch) * (size_t)world->count);
+  for (int i = 0; i < world->now.manifold_count; i++) {
+    const Manifold *manifold = &world->now.manifolds[i];
+    for (int k = 0; k < manifold->count; k++) {
+      double gap = world->now.contacts[manifold->first + k].gap;
+      for (int side = 0; side < 2; side++) {
+        int number = side ? manifold->other : manifold->body;
+        if (number == NONE || gap > TOUCHING * world->bodies[number].size) continue;
+        touches[number].contacts++;
+        touches[number].penetration = larger(touches[number].penetration, -gap);
+      }
     }
+  }
 }
 
-double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough)
-{
-    const Body *a = &world->bodies[one], *b = &world->bodies[other];
-    Mat3 turn;
-    Vec3 offset;
-    pair_pose(a, b, &turn, &offset);
-    return separation(&a->hull, &b->hull, &turn, offset, enough, world->room).distance;
+double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough) {
+  const Body *a = &world->bodies[one], *b = &world->bodies[other];
+  Mat3 turn;
+  Vec3 offset;
+  pair_pose(a, b, &turn, &offset);
+  return separation(&a->hull, &b->hull, &turn, offset, enough, world->room).distance;
 }

@@ -1,4 +1,4 @@
-"""Several stones at the ends of what is allowed: all stays finite, nothing passes through, no energy comes from nowhere."""
+"""Several stones at the ends of what is allowed: all stay finite, none passes through another, none gains energy."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def heaps(count: int, seeds: tuple[int, ...] = SEEDS) -> Iterator[Finding]:
         before = [state.position for state in moving.state.bodies]
         advance(moving, 1)
         drift = max(drift, *(math.dist(a, b.position) for a, b in zip(before, moving.state.bodies, strict=True)))
-    name = f"{len(seeds)} heaps of {count}" if len(seeds) > 1 else f"a heap of {count}"
+    name = f"heaps of {count}"
     yield Finding(f"{name}, overlap at any time", max(ever, settled), DEEPEST[count], "R")
     yield Finding(f"{name}, overlap at rest", settled, 2e-5, "R")
     yield Finding(f"{name}, rise of energy", rise / G, 1e-5, "m g R")

@@ -67,7 +67,8 @@ def bounces() -> Iterator[Finding]:
     """Flat on the table from 2 R: apexes at e^2n of the height, without turning."""
     body = standing("one", brilliant(), level(brilliant(), table_facet()), gap=2.0)
     moving, ground = beside_another(body, law()), body.position[1] - 2
-    apexes, rising = [], False
+    apexes: list[float] = []
+    rising = False
     while len(apexes) < 3:
         moving.step()
         state = moving.state.bodies[0]

@@ -39,7 +39,7 @@ def impacts() -> Iterator[Finding]:
         advance(moving, 3)
         after, after_angular = momenta(moving)
         lost = max(lost, float(np.linalg.norm(after - linear) / np.linalg.norm(linear)))
-        turned = max(turned, float(np.linalg.norm(after_angular - angular) / max(np.linalg.norm(angular), 1)))
+        turned = max(turned, float(np.linalg.norm(after_angular - angular)) / max(float(np.linalg.norm(angular)), 1.0))
         if restitution == 1:
             gained = max(gained, abs(moving.energy() / energy - 1))
         if not aside:

@@ -1,0 +1,63 @@
+"""The compiled solver: found, made by whatever compiler there is, and said to be missing in plain words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from culet.errors import SolverUnavailableError
+from culet.simulation.solver import build, library
+from culet.simulation.solver.build import BuildError, compilers, library_name
+
+
+def executable(folder: Path, name: str, script: str = "exit 1") -> Path:
+    file = folder / name
+    file.write_text(f"#!/bin/sh\n{script}\n")
+    file.chmod(0o755)
+    return file
+
+
+def test_compilers_are_tried_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("clang-9", "clang-15", "clang-format-15", "clang", "gcc", "cc"):
+        executable(tmp_path, name)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert [Path(found).name for found in compilers()] == ["cc", "gcc", "clang", "clang-15", "clang-9"]
+
+
+def test_without_a_compiler_several_stones_have_a_named_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(library, "SOURCES", tmp_path)
+    with pytest.raises(SolverUnavailableError, match=r"found no C compiler \(looked for cc, gcc, clang and clang-N"):
+        library.library.__wrapped__()
+
+
+def test_a_compiler_that_fails_is_told_with_its_own_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    executable(tmp_path, "cc", "echo 'fatal error: math.h: No such file' >&2; exit 1")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BuildError, match=r"cc: fatal error: math\.h: No such file"):
+        build.build(tmp_path / "made")
+    assert list((tmp_path / "made").iterdir()) == []
+
+
+def test_a_cache_that_cannot_be_written_to_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "culet").write_text("a file where the folder should be")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(library, "SOURCES", tmp_path)
+    with pytest.raises(SolverUnavailableError, match="name another folder by XDG_CACHE_HOME"):
+        library.library.__wrapped__()
+
+
+def test_a_broken_library_is_told(tmp_path: Path) -> None:
+    broken = tmp_path / library_name()
+    broken.write_bytes(b"not a library")
+    with pytest.raises(SolverUnavailableError, match="cannot be loaded"):
+        library.loaded(broken)
+
+
+def test_another_source_is_another_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = library_name()
+    (tmp_path / "world.c").write_text("int culet;")
+    monkeypatch.setattr(build, "SOURCES", tmp_path)
+    assert library_name() != before
