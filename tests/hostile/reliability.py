@@ -93,7 +93,12 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
         Trial("files", lambda s: inputs.mutated_files(s, some(2000), SEED), Group.INPUTS),
         Trial("bombs", lambda s: inputs.bombs(s, (8192, 4096)), Group.INPUTS),
         Trial("skies", lambda s: inputs.ever_other_skies(s, 26, MEMORY / 2 + 400), Group.INPUTS),
-        Trial("interface", lambda s: inputs.whole_interface(s, some(50), SEED), Group.INPUTS),
+        Trial(
+            "interface",
+            lambda s: inputs.whole_interface(s, some(50), SEED),
+            Group.INPUTS,
+            ("--max-still-work", "1e8"),  # stills that take a second or two, not minutes
+        ),
     )
 
 
