@@ -26,6 +26,7 @@ from culet.gateway.client_address import Network, client_at
 from culet.gateway.paced_stream import PacedStream
 from culet.gateway.problems import RETRY_AFTER_SECONDS, problem
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.turns import TurnedConnection, Turns
 
 log = logging.getLogger(__name__)
 
@@ -101,6 +102,7 @@ class Guard:
         self.limit_of_address = settings.max_connections_per_address
         self.ended = 0
         """Connections that were ended for others or for owing too long."""
+        self.turns = Turns()
         self._proxies = proxies
         self._connections: dict[asyncio.BaseTransport, Connection] = {}
         self._of_address: Counter[str | None] = Counter()
@@ -227,8 +229,15 @@ class GuardedHttp(H11Protocol):
     """uvicorn's HTTP/1.1, which tells the guard what it waits for."""
 
     config: GuardedConfig
+    conn: TurnedConnection
     cycle: RequestResponseCycle | None  # type: ignore[assignment]  # there is none before the first request
     connection: Connection | None = None
+    _waits = False
+    """For its next turn."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:  # noqa: ANN401 - as uvicorn's
+        super().__init__(*arguments, **options)
+        self.conn = TurnedConnection(self.config.guard.turns)
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn's
         """Let it in, or close it at once."""
@@ -247,6 +256,24 @@ class GuardedHttp(H11Protocol):
         super().data_received(data)
         self.tell()
 
+    def handle_events(self) -> None:
+        """As many as it may have in this turn of the loop; meanwhile no more is read."""
+        if self._waits:
+            return
+        self.conn.begin()
+        super().handle_events()
+        if self.conn.has_more and not self.transport.is_closing():
+            self._waits = True
+            self.config.guard.turns.wait(self)
+        self._lingering().hold(self._waits)
+
+    def go_on(self) -> None:
+        """It is its turn again."""
+        self._waits = False
+        if not self.transport.is_closing():
+            self.handle_events()
+            self.tell()
+
     def on_response_complete(self) -> None:
         """The answer is with the transport."""
         super().on_response_complete()
@@ -255,6 +282,7 @@ class GuardedHttp(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """It is gone."""
         self.config.guard.forget(self.transport)
+        self.config.guard.turns.forget(self)
         super().connection_lost(exc)
 
     def _should_upgrade(self) -> bool:
@@ -298,8 +326,11 @@ class GuardedHttp(H11Protocol):
 
     def written(self) -> int:
         """Bytes of answers that the transport was given."""
+        return self._lingering().written
+
+    def _lingering(self) -> _LingeringTransport:
         assert isinstance(self.transport, _LingeringTransport)  # noqa: S101 - by `connection_made`
-        return self.transport.written
+        return self.transport
 
     def is_sending(self) -> bool:
         """Whether the client is in the middle of a body."""
@@ -333,6 +364,7 @@ class _LingeringTransport(asyncio.Transport):
         self._transport = transport
         self._protocol = protocol
         self._lingering = False
+        self._paused = self._held = False
         self.written = 0
 
     def close(self) -> None:
@@ -340,7 +372,8 @@ class _LingeringTransport(asyncio.Transport):
             self._transport.close()
             return
         self._lingering = True
-        self._transport.resume_reading()
+        self._held = False
+        self.resume_reading()
         self._transport.write_eof()
         asyncio.get_running_loop().call_later(LINGER_SECONDS, self._transport.abort)
 
@@ -362,10 +395,21 @@ class _LingeringTransport(asyncio.Transport):
         return self._transport.can_write_eof()
 
     def pause_reading(self) -> None:
+        self._paused = True
         self._transport.pause_reading()
 
     def resume_reading(self) -> None:
-        self._transport.resume_reading()
+        self._paused = False
+        if not self._held:
+            self._transport.resume_reading()
+
+    def hold(self, held: bool) -> None:
+        """Read nothing for now, whoever wants to."""
+        self._held = held
+        if held:
+            self._transport.pause_reading()
+        elif not self._paused:
+            self._transport.resume_reading()
 
     def is_reading(self) -> bool:
         return self._transport.is_reading()

@@ -12,7 +12,7 @@ from culet.service.supervisor import START_SECONDS, Part
 
 ENGINE_SILENCE_SECONDS = 22.0
 """An engine whose loop or render thread stands ends itself before (engine/watchdog.py); this is for one that cannot."""
-GATEWAY_SILENCE_SECONDS = 60.0
+GATEWAY_SILENCE_SECONDS = 35.0
 """The gateway's loop may be held up for up to 30 s, and goes on."""
 
 
