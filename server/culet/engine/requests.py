@@ -19,6 +19,7 @@ from culet.engine.painter import Painter
 from culet.engine.session import Session, Sky
 from culet.engine.snapshot import Snapshot
 from culet.engine.still import SESSION_STILL_SAMPLES, Still, StillQueue
+from culet.engine.upload_process import Buffer
 from culet.engine.uploads import MESH, SKY, UploadStore
 from culet.errors import BusyError, InputError, NotFoundError
 from culet.geometry.stone import Stone
@@ -93,7 +94,7 @@ class Requests:
         self._closed_pace = 0.0, 0.0
         """Of sessions that are closed: seconds that were to be simulated, and of these those that were dropped."""
 
-    async def answer(self, request: protocol.Request, data: bytes | None) -> Answer:
+    async def answer(self, request: protocol.Request, data: Buffer | None) -> Answer:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
@@ -397,7 +398,7 @@ def _numbers(session: Session) -> tuple[int, int]:
     return session.shown.step, session.sequence
 
 
-def _file(data: bytes | None) -> bytes:
+def _file(data: Buffer | None) -> Buffer:
     if data is None:
         raise InputError("expected the file's bytes as the third part of the message, got none")
     return data

@@ -207,17 +207,19 @@ class Engine:
 
     async def _take_requests(self) -> None:
         while True:
-            peer, *parts = await self._control.recv_multipart()
-            greeting = parts in ([], [b""])  # ZMQ_PROBE_ROUTER: somebody connected
+            # Copying an upload of 64 MiB would hold this loop up for longer than a frame takes.
+            sender, *parts = await self._control.recv_multipart(copy=False)
+            peer = sender.bytes
+            greeting = [len(part) for part in parts] in ([], [0])  # ZMQ_PROBE_ROUTER: somebody connected
             self._peers.heard_from(peer, asks=not greeting)
             if greeting:
                 await self._peers.send(peer, [protocol.REQUEST_NUMBER.pack(0), self._heartbeat()])
                 continue
             self._answer(peer, parts)
 
-    def _answer(self, peer: bytes, parts: list[bytes]) -> None:
+    def _answer(self, peer: bytes, parts: list[zmq.Frame]) -> None:
         task = self._spawn(self._reply(peer, parts))
-        request = (peer, parts[0])
+        request = (peer, parts[0].bytes)
         self._under_way[request] = task
 
         def forget(_: asyncio.Task[None]) -> None:
@@ -237,7 +239,7 @@ class Engine:
             if request in self._under_way:
                 self._under_way[request].cancel()
 
-    async def _reply(self, peer: bytes, parts: list[bytes]) -> None:
+    async def _reply(self, peer: bytes, parts: list[zmq.Frame]) -> None:
         number, data = protocol.REQUEST_NUMBER.pack(0), None
         try:
             if len(parts) not in (2, 3) or len(parts[0]) != protocol.REQUEST_NUMBER.size:
@@ -245,13 +247,13 @@ class Engine:
                     f"expected a request number of 8 bytes, JSON, and bytes or nothing; got parts of "
                     f"{', '.join(str(len(part)) for part in parts)} bytes"
                 )
-            number = parts[0]
-            request = read_request(parts[1])
+            number = parts[0].bytes
+            request = read_request(parts[1].bytes)
             if isinstance(request, protocol.Cancel):
                 self._cancel(peer, request.request)
             elif isinstance(request, WAITED_FOR):
                 self._waited_for.add((peer, number))
-            result, data = await self._requests.answer(request, parts[2] if len(parts) == 3 else None)
+            result, data = await self._requests.answer(request, parts[2].buffer if len(parts) == 3 else None)
             reply = protocol.Reply(result=result)
         except CuletError as error:
             reply = refusal(error)

@@ -79,7 +79,7 @@ class Peers:
     async def send(self, peer: bytes, parts: list[bytes]) -> None:
         """Send to one; one that left is forgotten, one that takes nothing any more (1000 messages wait) misses this."""
         try:
-            await self._socket.send_multipart([peer, *parts], flags=zmq.NOBLOCK)
+            await self._socket.send_multipart([peer, *parts], flags=zmq.NOBLOCK, copy=False)  # of large stills
         except zmq.Again:
             log.warning("a peer takes no messages: dropped one of %d bytes", sum(map(len, parts)))
         except zmq.ZMQError:
