@@ -22,11 +22,12 @@ import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
+from culet.gateway.bucket import Bucket
 from culet.gateway.client_address import Network, client_at
 from culet.gateway.paced_stream import PacedStream
 from culet.gateway.problems import RETRY_AFTER_SECONDS, problem
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.turns import TurnedConnection, Turns
+from culet.gateway.turns import EVENTS_PER_SECOND, TurnedConnection, Turns
 
 log = logging.getLogger(__name__)
 
@@ -238,6 +239,7 @@ class GuardedHttp(H11Protocol):
     def __init__(self, *arguments: Any, **options: Any) -> None:  # noqa: ANN401 - as uvicorn's
         super().__init__(*arguments, **options)
         self.conn = TurnedConnection(self.config.guard.turns)
+        self._events = Bucket(EVENTS_PER_SECOND)
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn's
         """Let it in, or close it at once."""
@@ -262,9 +264,11 @@ class GuardedHttp(H11Protocol):
             return
         self.conn.begin()
         super().handle_events()
+        now = self.loop.time()
+        self._events.spend(self.conn.given, now)
         if self.conn.has_more and not self.transport.is_closing():
             self._waits = True
-            self.config.guard.turns.wait(self)
+            self.loop.call_later(self._events.overdrawn_for(now), self.config.guard.turns.wait, self)
         self._lingering().hold(self._waits)
 
     def go_on(self) -> None:
