@@ -43,11 +43,21 @@ def read_subject(file: Path | None, preset: str | None, mesh: Path | None, sky: 
         scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
     if mesh is not None:
         meshes["file"] = _mesh(mesh)
-        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": "file"})
-        scene = scene.model_copy(update={"stones": (stone,)})
-    scene, panorama = _with_sky(scene, sky)
+        scene = _with_mesh(scene, meshes["file"])
+    scene, panorama = _with_sky(scene, sky, seen=file is None)
     with _naming(file):
         return Subject(scene, stone_of(scene.stones[0], meshes) if scene.stones else None, panorama)
+
+
+def _with_mesh(scene: Scene, shape: Stone) -> Scene:
+    """The scene with that shape in place of its stone's, on the floor if the stone was."""
+    from culet.geometry.load import stone_of
+    from culet.scene import Scene
+    from culet.simulation.lying import on_the_floor
+
+    placed = scene.stones[0] if scene.stones else Scene().stones[0]
+    named = scene.model_copy(update={"stones": (placed.model_copy(update={"mesh": "file"}),)})
+    return named if placed.mesh is not None else on_the_floor(named, shape, stone_of(placed, {}))
 
 
 def _mesh(file: Path) -> Stone:
@@ -64,10 +74,14 @@ def _mesh(file: Path) -> Stone:
     return stone
 
 
-def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
-    """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another."""
+def _with_sky(scene: Scene, file: Path | None, *, seen: bool) -> tuple[Scene, Panorama | None]:
+    """The scene under a panorama from a file, which keeps the scale and turn that it may have given to another.
+
+    `seen`: nothing hides it; else the scene says whether a backdrop does.
+    """
     from culet.rendering.sky_files.reading import read_sky
     from culet.scene.model import ImageEnvironment
+    from culet.scene.sky_seen import under
 
     if file is None:
         return scene, None
@@ -79,7 +93,9 @@ def _with_sky(scene: Scene, file: Path | None) -> tuple[Scene, Panorama | None]:
         picture = read_sky(data, file.suffix.lower().lstrip("."))
     _report(file, picture.findings)
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
-    return scene.model_copy(update={"environment": image.model_copy(update={"image": "file"})}), picture.pixels
+    image = image.model_copy(update={"image": "file"})
+    scene = under(scene, image) if seen else scene.model_copy(update={"environment": image})
+    return scene, picture.pixels
 
 
 def _report(file: Path, findings: Iterable[str]) -> None:

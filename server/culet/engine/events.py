@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal, assert_never
 
 from pydantic import ValidationError
@@ -15,6 +16,8 @@ from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment
+from culet.scene.sky_seen import Surroundings, back_under, under
+from culet.simulation.lying import on_the_floor
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent, Target
 
@@ -37,7 +40,7 @@ def apply(session: Session, event: SessionEvent, assets: Assets) -> None:
         case messages.ToggleMirror():
             session.change(_with_mirror_toggled(session.scene))
         case messages.ToggleEnvironment():
-            session.change(_with_environment_toggled(session))
+            _toggle_environment(session)
         case messages.ToggleWalls():
             session.change(_with_walls_toggled(session.scene))
         case messages.PatchScene():
@@ -146,10 +149,14 @@ def _with_mirror_toggled(scene: Scene) -> Scene:
     return scene.model_copy(update={"floor": Plane(kind=kind), "walls": walls})
 
 
-def _with_environment_toggled(session: Session) -> Scene:
-    light = session.scene.environment.kind == "light"
-    environment: Environment = session.sky.environment if light else LightEnvironment(kind="light")
-    return session.scene.model_copy(update={"environment": environment})
+def _toggle_environment(session: Session) -> None:
+    """To the light sky, which is seen then, or back to the scene's own as that was seen."""
+    scene, sky = session.scene, session.sky
+    if scene.environment.kind == "light":
+        session.change(back_under(scene, sky.environment, sky.surroundings))
+    else:
+        light = under(scene, LightEnvironment(kind="light"))
+        session.change(light, sky=replace(sky, surroundings=Surroundings.of(scene)))
 
 
 def _with_walls_toggled(scene: Scene) -> Scene:
@@ -171,7 +178,10 @@ def _patch(session: Session, patch: dict[str, Any], assets: Assets) -> None:
         home = Scene.read(merge_patch(at_home, patch)).camera
     sky = None if after.environment == before.environment else sky_for(after, session, assets)
     if _shape(after) != _shape(before):
-        session.replace_stone(after, stone_for(after, session, assets), home=home, sky=sky)
+        stone = stone_for(after, session, assets)
+        if stone is not None and session.stone is not None and _pose(after) == _pose(before):
+            after = on_the_floor(after, stone, session.stone)
+        session.replace_stone(after, stone, home=home, sky=sky)
     elif _start(after) != _start(before):
         session.start_anew(after, home=home, sky=sky)
     else:
@@ -185,5 +195,9 @@ def _shape(scene: Scene) -> object:
 
 def _start(scene: Scene) -> object:
     """Where and how the stone starts: a patch of anything else leaves it where it is."""
-    poses = [(stone.position, stone.orientation) for stone in scene.stones]
-    return poses, scene.simulation.velocity, scene.simulation.spin
+    return _pose(scene), scene.simulation.velocity, scene.simulation.spin
+
+
+def _pose(scene: Scene) -> object:
+    """Of the stone at the start."""
+    return [(stone.position, stone.orientation) for stone in scene.stones]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import thread_time
 from typing import Any
 
@@ -20,6 +20,7 @@ from culet.errors import InputError, NotFoundError
 from culet.geometry.stone import Stone
 from culet.rendering.panoramas import Panorama
 from culet.scene import Camera, Environment, Scene
+from culet.scene.sky_seen import Surroundings
 from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
 from culet_protocol.engine import SessionState
 from culet_protocol.messages import BALANCED, Balance
@@ -32,6 +33,8 @@ class Sky:
     environment: Environment
     panorama: Panorama | None = None
     """Of an environment that is an image."""
+    surroundings: Surroundings | None = None
+    """Those that it was seen with, before the scene was put under the light one."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +112,7 @@ class Session:
         history: int = 600,
     ) -> Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
+        sky = replace(sky or Sky(scene.environment), surroundings=snapshot.surroundings)
         session = cls(name, scene, stone, sky=sky, history=history)
         session._authored = scene.model_copy(update={"camera": snapshot.home})
         session._clock = _clock(scene, snapshot.fraction)
@@ -307,6 +311,7 @@ class Session:
             falling=self.falling,
             home=self.home,
             environment=self.sky.environment,
+            surroundings=self.sky.surroundings,
             exactness=self.balance.exactness,
             pinned=self.balance.pinned,
             step=self.shown.step,
