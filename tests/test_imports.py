@@ -4,8 +4,11 @@ that what a part needs never needs that part."""
 from __future__ import annotations
 
 import ast
+import importlib.metadata
+import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from importlib.util import find_spec
@@ -111,3 +114,24 @@ def test_a_circle_is_found_wherever_it_is_closed() -> None:
     assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": set()})) == {"a", "b", "c"}
     inside = "def late():\n    from culet.rendering import program\n"
     assert list(imported(inside)) == [("culet.rendering", "program")]
+
+
+def declared(requirements: list[str]) -> set[str]:
+    """Names of distributions, as the index writes them."""
+    return {re.sub(r"[-_.]+", "-", re.split(r"[^\w.-]", each, maxsplit=1)[0]).lower() for each in requirements}
+
+
+def test_whatever_is_imported_is_declared() -> None:
+    """Another package may need it today, and not tomorrow."""
+    project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
+    always = declared(project["dependencies"])
+    for_studies = always | declared(project["optional-dependencies"]["study"] + ["mitsuba"])
+    own = {*PACKAGES, *sys.stdlib_module_names}
+    distributions = importlib.metadata.packages_distributions()
+    missing = set()
+    for module, file in [item for package in PACKAGES for item in sources(package).items()]:
+        allowed = for_studies if room(module) == "culet.study" else always
+        for name in {of.partition(".")[0] for of, _ in imported(file.read_text(encoding="utf-8"))} - own:
+            if not declared(distributions.get(name, [name])) & allowed:
+                missing.add((name, module))
+    assert missing == set()

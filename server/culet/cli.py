@@ -43,6 +43,13 @@ SessionId = Annotated[
     str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
 ]
 Folder = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder for the frames; made if missing.")]
+Spare = Annotated[
+    bool,
+    typer.Option(
+        envvar="CULET_SPARE",
+        help="Keep another one ready to take over when it dies or hangs; a small process of their own watches both.",
+    ),
+]
 Patience = Annotated[float, typer.Option(min=0.1, help="Seconds to wait for a frame before giving up.")]
 
 
@@ -223,14 +230,19 @@ def serve(
 
 @app.command(cls=ListedHelp)
 @options_of(Gateway=GatewaySettings)
-def gateway(control: Control, frames: Frames, *, given: dict[str, Any]) -> None:
+def gateway(control: Control, frames: Frames, spare: Spare = False, *, given: dict[str, Any]) -> None:
     """Run the web process alone, for an engine that runs elsewhere."""
-    from culet.gateway.serve import run_gateway
-
     with errors_in_one_line():
         settings = Settings.read(given)
         configure(settings.log_level, settings.log_format)
-        run_gateway(given, control, frames)
+        if spare:
+            from culet.service.serve import serve_gateway
+
+            serve_gateway(given, control, frames)
+        else:
+            from culet.gateway.serve import run_gateway
+
+            run_gateway(given, control, frames)
 
 
 @app.command(cls=ListedHelp)
@@ -243,18 +255,24 @@ def engine(
     stand_by: Annotated[
         bool, typer.Option("--stand-by", help="Get ready, and begin with a line on the standard input.")
     ] = False,
+    spare: Spare = False,
     *,
     given: dict[str, Any],
 ) -> None:
     """Run the render process alone: sessions, simulation and frames over ZeroMQ."""
-    from culet.engine.process.serve import run
-
     with errors_in_one_line():
         limits = Limits.read(given)
         configure(limits.log_level, limits.log_format)
         for option, endpoint in (("control", control), *(("frames", endpoint) for endpoint in frames)):
             check_trusted(endpoint, option, trusted=limits.trust_network)
-        run(control, frames, limits, stand_by=stand_by)
+        if spare and not stand_by:  # one that stands by has the same environment
+            from culet.service.serve import serve_engine
+
+            serve_engine(control, frames, [*Limits.words(given)])
+        else:
+            from culet.engine.process.serve import run
+
+            run(control, frames, limits, stand_by=stand_by)
 
 
 @app.command()

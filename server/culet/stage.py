@@ -12,6 +12,7 @@ from culet.geometry.shape import Shape
 from culet.optics.panoramas import STUDIO, Panorama, panorama_of
 from culet.optics.sky_files.picture import SkyPicture
 from culet.scene.model import Environment, ImageEnvironment, Pose, Scene, StoneSettings
+from culet.scene.sky_seen import Surroundings
 
 
 class Sky(NamedTuple):
@@ -20,6 +21,8 @@ class Sky(NamedTuple):
     environment: Environment
     panorama: Panorama | None = None
     """Of an environment that is an image; None of another."""
+    surroundings: Surroundings | None = None
+    """Those that it was seen with, before the scene was put under the light one."""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import argparse
 import asyncio
 import io
 import json
+import signal
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
@@ -154,21 +155,21 @@ async def uploaded_scene(stack: Stack) -> dict[str, Any]:
 
 @asynccontextmanager
 async def fault(stack: Stack, watcher: Watcher, service: str, what: str) -> AsyncIterator[None]:
-    """Something that is done to a service: Docker must start it again, and frames must come."""
+    """Something that is done to a service: another process must take over, and frames must come."""
     print(what, flush=True)
     await stack.containers.quiet(service)
-    restarts = await stack.containers.restarts(service)
+    before = (await stack.containers.workers(service))[0]
     watcher.frames.clear()
     yield
     began = stack.containers.fault_at
 
     async def replaced() -> bool:
-        return await stack.containers.restarts(service) > restarts
+        return (await stack.containers.workers(service))[:1] not in ([], [before])
 
     async def frames_come() -> bool:
         return len(watcher.frames_since(moment)) >= 5
 
-    await until(f"Docker has started the {service} again", replaced, HANG_PATIENCE)
+    await until(f"another {service} is at work", replaced, HANG_PATIENCE)
     await until("gateway and engine are ready", stack.ready)
     moment = time.monotonic()
     await until("frames come", frames_come)
@@ -208,10 +209,10 @@ async def check_faults(stack: Stack) -> None:
         before = await stack.described(session), await pose(stack, session)
         check(not before[0]["falling"] and before[1] is not None, "the stone is held, and has a pose")
 
-        engines = await containers.restarts("engine")
+        engine = (await containers.workers("engine"))[0]
         async with fault(stack, watcher, "gateway", "the gateway is killed"):
             await containers.kill("gateway")
-        check(await containers.restarts("engine") == engines, "the engine is the one from before")
+        check((await containers.workers("engine"))[0] == engine, "the engine is the one from before")
         await check_same(stack, session, scene, before)
 
         async with fault(stack, watcher, "engine", "the engine's event loop stands still"), containers.held("loop"):
@@ -220,6 +221,15 @@ async def check_faults(stack: Stack) -> None:
         async with fault(stack, watcher, "engine", "the engine's rendering stands still"), containers.held("rendering"):
             pass
         await check_same(stack, session, scene, before)
+        async with fault(stack, watcher, "engine", "the engine is stopped as a whole"):
+            await containers.kill("engine", signal.SIGSTOP)
+        await check_same(stack, session, scene, before)
+        for service in ("engine", "gateway"):
+            restarts = await containers.restarts(service)
+            async with fault(stack, watcher, service, f"all that runs in the {service}'s container is killed"):
+                await containers.kill_all(service)
+            check(await containers.restarts(service) > restarts, f"Docker has started the {service} again")
+            await check_same(stack, session, scene, before)
     (await stack.http.delete(f"/api/sessions/{session}")).raise_for_status()
     warnings = (await containers.log("gateway")).count(" WARNING ")
     check(warnings <= MOST_WARNINGS, f"the gateway's log has {warnings} warnings of all that")

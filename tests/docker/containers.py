@@ -6,21 +6,34 @@ import asyncio
 import contextlib
 import datetime as dt
 import json
+import signal
 import time
 from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
 from typing import Any
 
 HOLD_THREADS = Path(__file__).with_name("hold_threads.py")
-KILL = """
+WORKERS = """
+import json, pathlib
+found = []
+for folder in pathlib.Path("/proc").glob("[0-9]*"):
+    words = (folder / "cmdline").read_bytes().split(b"\\0")
+    if b"--stand-by" in words or b"culet.gateway.inherited" in words:
+        found.append((int((folder / "stat").read_text().rpartition(") ")[2].split()[19]), int(folder.name)))
+print(json.dumps(sorted(found)))
+"""
+"""Processes that do, or will do, what a container is for: when each was started (ticks; proc(5)), and its id."""
+KILL = "import os, sys; os.kill(int(sys.argv[1]), int(sys.argv[2]))"
+KILL_ALL = """
 import os, pathlib, signal, sys
 for folder in pathlib.Path("/proc").glob("[0-9]*"):
     words = (folder / "cmdline").read_bytes().split(b"\\0")
     if int(folder.name) not in (1, os.getpid()) and sys.argv[1].encode() in words:
         os.kill(int(folder.name), signal.SIGKILL)
 """
-QUIET_SECONDS = 11.0
-"""Docker waits longer before each restart of a container that ran for less than 10 s."""
+QUIET_SECONDS = 21.0
+"""Of several deaths in a row, each within 20 s of the start before, the second and further ones wait for the next
+process; so does Docker, within 10 s."""
 HANG_SECONDS = 240.0
 """An engine that hangs ends itself after 20 s, or 150 s if a compiler was at work."""
 
@@ -54,20 +67,36 @@ class Containers:
         """All that it has said."""
         return await _said(*self._compose, "logs", "--no-log-prefix", service)
 
+    async def workers(self, service: str) -> list[tuple[int, int]]:
+        """The processes that do what a service's container is for, the one that works first; another stands by."""
+        try:
+            found: list[list[int]] = json.loads(await self.python(service, WORKERS))
+        except CommandError:  # the container is being started again
+            return []
+        return [(since, process) for since, process in found]
+
     async def quiet(self, service: str) -> None:
-        """Wait until its container has run long enough for the next restart to be the first in a row."""
+        """Wait until its container has run long enough for the next death to be the first in a row, and until another
+        process stands by."""
         while True:
             started = str((await self.inspect(service))["State"]["StartedAt"])[:19]  # to the second, UTC
             since = dt.datetime.now(dt.UTC) - dt.datetime.fromisoformat(f"{started}+00:00")
-            if since.total_seconds() > QUIET_SECONDS:
+            settled = since.total_seconds() > QUIET_SECONDS
+            if settled and time.monotonic() - self.fault_at > QUIET_SECONDS and len(await self.workers(service)) > 1:
                 return
             await asyncio.sleep(0.5)
 
-    async def kill(self, service: str) -> None:
-        """SIGKILL to what a service's container is for, by its own user: nothing there may do more."""
+    async def kill(self, service: str, number: signal.Signals = signal.SIGKILL) -> None:
+        """Send a signal to the process that does what a service's container is for."""
+        _, process = (await self.workers(service))[0]
+        self.fault_at = time.monotonic()
+        await self.python(service, KILL, str(process), str(number.value))
+
+    async def kill_all(self, service: str) -> None:
+        """SIGKILL to all that a service's container runs, by its own user: nothing there may do more."""
         self.fault_at = time.monotonic()
         with contextlib.suppress(CommandError):  # which may be killed with the container
-            await self.python(service, KILL, service)
+            await self.python(service, KILL_ALL, service)
 
     @contextlib.asynccontextmanager
     async def held(self, which: str) -> AsyncIterator[None]:

@@ -23,16 +23,19 @@ LIMIT_SECONDS = 400
 
 
 def engine() -> int:
-    """The engine's process."""
+    """The engine's process: of those that began by standing by the eldest, as another one stands by now."""
+    found = []
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         words = (folder / "cmdline").read_bytes().split(b"\0")
-        if b"engine" in words and b"python" in words[0]:
-            return int(folder.name)
-    raise SystemExit("there is no engine")
+        if b"engine" in words and b"--stand-by" in words:
+            found.append((-age(folder), int(folder.name)))
+    if not found:
+        raise SystemExit("there is no engine")
+    return min(found)[1]
 
 
 def age(task: pathlib.Path) -> float:
-    """Seconds since a thread's start."""
+    """Seconds since a process's or thread's start."""
     after_name = (task / "stat").read_text().rpartition(") ")[2].split()
     started = int(after_name[START_TIME - 3]) / os.sysconf("SC_CLK_TCK")
     return time.clock_gettime(time.CLOCK_BOOTTIME) - started

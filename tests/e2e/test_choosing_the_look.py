@@ -61,6 +61,17 @@ def test_the_sky_is_one_of_the_studios_or_ones_own(wide_view: View, server: Serv
     assert view.problems == []
 
 
+def test_a_sky_is_seen_in_the_atelier_and_its_own_comes_back(view_of: ViewOf, server: Server) -> None:
+    view = view_of(viewport=WITH_PANEL).open("")
+    own = view.scene
+    before, after = view.change(lambda: choose(view, "Sky", "light"))
+    assert before.pixels[-1, 300].max() < 100 < 150 < after.pixels[-1, 300].min()  # beside the stone
+    view.change(lambda: choose(view, "Sky", "light-box"))
+    assert (view.scene["backdrop"]["kind"], view.scene["floor"]["kind"]) == ("none", "none")
+    view.change(lambda: choose(view, "Sky", "studio lamps"))
+    assert server.session(view.session)["scene"] == own
+
+
 def test_light_is_followed_as_one_chooses(wide_view: View, server: Server) -> None:
     view = wide_view
     view.page.get_by_role("button", name="Optics").click()

@@ -86,6 +86,12 @@ async def test_the_documentation_has_no_code_within_it(alone: Gateway) -> None:
         assert (answer.status_code, answer.headers["content-type"].split(";")[0]) == (200, kind)
 
 
+async def test_the_documentation_is_found_with_a_slash_too_wherever_a_proxy_has_it(alone: Gateway) -> None:
+    answer = await alone.http.get("/docs/")
+    assert (answer.status_code, answer.headers["location"]) == (308, "../docs")
+    assert (await alone.http.get("/docs/", follow_redirects=True)).text == (await alone.http.get("/docs")).text
+
+
 async def test_an_allowed_page_uses_the_rest_interface_and_others_do_not() -> None:
     async with gateway_alone(allow_origin=(SHOP,)) as gateway:
         asked = {"Access-Control-Request-Method": "PATCH", "Access-Control-Request-Headers": "content-type"}
@@ -108,6 +114,7 @@ async def test_an_allowed_page_uses_the_rest_interface_and_others_do_not() -> No
 TAKEN = {
     "/healthz": "GET, HEAD, OPTIONS",
     "/docs": "GET, HEAD, OPTIONS",
+    "/docs/": "GET, HEAD, OPTIONS",
     "/openapi.json": "GET, HEAD, OPTIONS",
     "/api/render": "OPTIONS, POST",
     "/api/sessions": "OPTIONS, POST",

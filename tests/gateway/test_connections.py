@@ -10,6 +10,9 @@ from collections.abc import AsyncIterator, Iterator
 
 import httpx
 import pytest
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from culet.errors import NotFoundError
 from culet.gateway import connection_guard, guarded_http, lingering_transport
@@ -254,3 +257,22 @@ async def test_who_reads_an_answer_slowly_gets_all_of_it_and_who_does_not_read_i
 
         await eventually(given_up)
         assert len(await asleep.rest()) < len(picture)
+
+
+OVERRIDDEN = {
+    "H11Protocol": (
+        H11Protocol, "_should_upgrade", "_unsupported_upgrade_warning", "handle_websocket_upgrade", "send_400_response",
+        "on_response_complete",
+    ),
+    "WebSocketsSansIOProtocol": (
+        WebSocketsSansIOProtocol, "receive", "resume_writing", "handle_ping", "handle_pong", "handle_cont",
+    ),
+    "Server": (uvicorn.Server, "startup", "capture_signals"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("base", OVERRIDDEN)
+def test_what_is_overridden_of_the_web_server_is_there(base: str) -> None:
+    """One that was given another name would be overridden no more, and nothing would say so."""
+    of, *names = OVERRIDDEN[base]
+    assert [name for name in names if not callable(getattr(of, str(name), None))] == []

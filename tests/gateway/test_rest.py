@@ -92,6 +92,33 @@ async def test_an_address_ends_as_the_picture_that_it_answers_with(
     assert frame.headers["content-disposition"] == f'{kind}; filename="culet-1.{ending}"'  # a new session is at step 1
 
 
+async def test_another_sky_of_a_preset_is_seen(gateway: Gateway) -> None:
+    """Behind the atelier's backdrop it would not be: with it the corners are nearly black."""
+    query: dict[str, str | int] = {**SMALL, "environment": "light"}
+    picture = Image.open(io.BytesIO((await gateway.http.get("/api/render.png", params=query)).content))
+    assert np.asarray(picture)[0, 0].min() > 150  # measured 198
+
+
+async def test_a_picture_that_the_asker_has_is_not_sent_again(gateway: Gateway) -> None:
+    query: dict[str, str | int] = {**SMALL, "preset": "matte", "samples": 1}
+    answer = await gateway.http.get("/api/render.png", params=query)
+    tag = answer.headers["etag"]
+    assert answer.headers["cache-control"] == "max-age=3600"
+    for known in (tag, f'"another", {tag}', tag.removeprefix("W/"), "*"):
+        again = await gateway.http.get("/api/render.png", params=query, headers={"If-None-Match": known})
+        assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", tag), known
+    others: list[dict[str, str | int]] = [
+        {"width": 65}, {"preset": "mirror"}, {"samples": 2}, {"material": "ruby"}, {"floor": "none"}
+    ]  # fmt: skip
+    for other in others:
+        changed = await gateway.http.get("/api/render.png", params=query | other, headers={"If-None-Match": tag})
+        assert (changed.status_code, changed.headers["content-type"]) == (200, "image/png"), other
+        assert changed.headers["etag"] != tag, other
+    assert (await gateway.http.get("/api/render.webp", params=query)).headers["etag"] != tag
+    refused = await gateway.http.get("/api/render.png", params=query | {"width": 0}, headers={"If-None-Match": "*"})
+    assert_problem(refused, 422, "width")
+
+
 async def test_an_address_of_another_ending_is_not_found(gateway: Gateway) -> None:
     assert_problem(await gateway.http.get("/api/render.bmp"), 404)
 

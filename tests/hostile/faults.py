@@ -19,8 +19,8 @@ from hostile.watching import watching
 
 QUIET = 3.0
 """s between two deaths in a row."""
-HUNG = 25.0
-"""s after which a process that does nothing must have been replaced."""
+HUNG = {"engine": 25.0, "gateway": 40.0}
+"""s after which one that does nothing must have been replaced; a gateway may be held up for 30, and goes on."""
 
 
 def described(serving: Serving, session: str) -> Any:  # noqa: ANN401 - JSON
@@ -71,8 +71,8 @@ async def hung(serving: Serving, part: str) -> Finding:
         Group.FAULTS,
         f"the {part} hangs (SIGSTOP)",
         f"replaced; frames again after {took:.1f} s",
-        f"within {HUNG:g} s",
-        took <= HUNG,
+        f"within {HUNG[part]:g} s",
+        took <= HUNG[part],
     )
 
 

@@ -19,6 +19,7 @@ import traceback
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import psutil
@@ -27,11 +28,14 @@ from culet.rendering import kernel_cache
 from culet.rendering.device import open_device
 from hostile import faults, inputs, shares
 from hostile.finding import Finding, Group
+from hostile.forms import SHAPES
 from hostile.serving import MIB, Serving
 
 BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
 SEED = 1
 PAGE = 640, 360
+FORMS = dict.fromkeys(SHAPES, 63) | {"chunks of one byte": 1}
+"""MiB of each shape. Of chunks, of which there are 175 000 in each, a connection may send 10 000 a second."""
 MEMORY = psutil.virtual_memory().total / MIB
 
 
@@ -81,7 +85,10 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
         Trial("resizes", _beside("a flood of `resize`", shares.resizes, 0.8), Group.SHARES),
         Trial("orbits", _beside("a flood of `orbit`", shares.orbits, 0.4), Group.SHARES),
         Trial("half-sent", lambda s: shares.half_sent_requests(s, 1300, within=2), Group.SHARES, files=1024),
-        Trial("form", lambda s: shares.form_of_many_parts(s, 60, within=0.5), Group.SHARES),
+        *(
+            Trial(f"form: {shape}", partial(shares.form, shape=shape, mebibytes=size, within=0.1), Group.SHARES)
+            for shape, size in FORMS.items()
+        ),
         Trial("engine killed", lambda s: faults.killed(s, "engine", 5, within=3), Group.FAULTS),
         Trial("gateway killed", lambda s: faults.killed(s, "gateway", 5, within=5), Group.FAULTS),
         Trial("engine hung", lambda s: faults.hung(s, "engine"), Group.FAULTS),
@@ -93,7 +100,12 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
         Trial("files", lambda s: inputs.mutated_files(s, some(2000), SEED), Group.INPUTS),
         Trial("bombs", lambda s: inputs.bombs(s, (8192, 4096)), Group.INPUTS),
         Trial("skies", lambda s: inputs.ever_other_skies(s, 26, MEMORY / 2 + 400), Group.INPUTS),
-        Trial("interface", lambda s: inputs.whole_interface(s, some(50), SEED), Group.INPUTS),
+        Trial(
+            "interface",
+            lambda s: inputs.whole_interface(s, some(50), SEED),
+            Group.INPUTS,
+            ("--max-still-work", "1e8"),  # stills that take a second or two, not minutes
+        ),
     )
 
 
@@ -150,10 +162,11 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m hostile.reliability")
     parser.add_argument("--into", type=Path, metavar="FILE", help="a document, between whose marks the table goes")
     parser.add_argument("--part", type=float, default=1, help="of the inputs and of the chaos, 0 to 1")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="of trials; without any, all")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="of trials, or what they begin with; without any, all")
     given = parser.parse_args(arguments)
     found: list[Finding] = []
-    for found in run([trial for trial in trials(given.part) if not given.names or trial.name in given.names]):
+    names = tuple(given.names) or ("",)
+    for found in run([trial for trial in trials(given.part) if trial.name.startswith(names)]):
         text = f"{provenance()}\n{table(found)}"
         if given.into:
             write(text, given.into)

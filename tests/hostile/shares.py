@@ -26,6 +26,8 @@ from hostile.watching import watching
 TESTS = str(Path(__file__).parents[1])
 SETTLING = 1.0
 """s in which a governor finds its size."""
+PAUSE = 0.002
+"""s between two small requests."""
 OTHER_ADDRESS = "127.0.0.2"
 """Of loopback too: the next visitor, whose connections are counted apart."""
 
@@ -189,24 +191,27 @@ async def half_sent_requests(serving: Serving, connections: int, within: float) 
     )
 
 
-async def form_of_many_parts(serving: Serving, mebibytes: int, within: float) -> Finding:
-    """An upload form that is nothing but delimiters."""
-    body = b"\r\n--a" * (mebibytes * 2**20 // 5) + b"--"
-    headers = {"content-type": "multipart/form-data; boundary=a"}
+async def form(serving: Serving, shape: str, mebibytes: int, within: float) -> Finding:
+    """An upload form of that shape, while others ask for something small again and again."""
     pauses: list[float] = []
+    sender = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "hostile.forms", str(serving.port), shape, str(mebibytes),
+        env=os.environ | {"PYTHONPATH": TESTS}, stdout=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    answered = asyncio.create_task(sender.communicate())
     async with httpx.AsyncClient(base_url=serving.url, timeout=PATIENCE) as http:
-        sending = asyncio.create_task(http.post("/api/meshes", content=body, headers=headers))
-        while not sending.done() or len(pauses) < 5:
+        while not answered.done() or len(pauses) < 5:
             began = time.monotonic()
             (await http.get("/healthz")).raise_for_status()
             pauses.append(time.monotonic() - began)
-        status = (await sending).status_code
+            await asyncio.sleep(PAUSE)
+    status = int((await answered)[0])
     return Finding(
         Group.SHARES,
-        f"an upload form of {mebibytes} MiB of empty parts",
-        f"refused with {status}; others wait {1000 * max(pauses):.0f} ms at most",
-        f"refused, and nobody waits over {1000 * within:g} ms",
-        400 <= status < 500 and max(pauses) < within,
+        f"an upload form of {mebibytes} MiB: {shape}",
+        f"answered {status}; others wait {1000 * max(pauses):.0f} ms at most",
+        f"read or refused, and nobody waits over {1000 * within:g} ms",
+        (status == 201 or 400 <= status < 500) and max(pauses) < within,
     )
 
 

@@ -25,7 +25,7 @@ async def test_half_sent_requests_keep_no_visitor_out(serving: Serving) -> None:
 
 @pytest.mark.timed
 async def test_a_form_of_nothing_but_delimiters_keeps_nobody_waiting(serving: Serving) -> None:
-    found = await shares.form_of_many_parts(serving, 4, within=PARSED_AT_ONCE / 10)
+    found = await shares.form(serving, "empty parts", 4, within=PARSED_AT_ONCE / 10)
     assert found.holds, found.row
 
 

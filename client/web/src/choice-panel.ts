@@ -12,13 +12,13 @@ import {
   ENDS,
   ENDS_SAID,
   hasStone,
-  imageSky,
   patchOf,
   SKIES,
   TONE_MAPS,
   TONE_MAPS_SAID,
 } from "./scene-choices";
 import { SizeControl } from "./size-control";
+import { imageSky, SkyChoice } from "./sky-choice";
 import type { ViewState } from "./view-state";
 
 type Values = Record<string, unknown>;
@@ -35,13 +35,14 @@ export class ChoicePanel {
   private readonly controls: LiveControls<Choices>;
   private readonly skies: Values = { ...SKIES };
   private readonly size: SizeControl;
+  private readonly sky = new SkyChoice();
   private scene: ViewState["scene"] = null;
 
   /** Material and sky go into one folder, how light is followed into another. */
   constructor(subject: GUI, optics: GUI, send: (patch: Values) => void) {
     this.controls = new LiveControls<Choices>(
       () => choicesOf(this.scene),
-      (name, value) => send(patchOf(this.scene, name, value)),
+      (name, value) => send(name === "sky" ? this.skyPatch(value) : patchOf(this.scene, name, value)),
     );
     this.add(subject, "material", "Material", {});
     this.size = new SizeControl(subject, send);
@@ -55,9 +56,20 @@ export class ChoicePanel {
 
   update({ scene }: ViewState): void {
     this.scene = scene;
+    this.sky.see(scene);
     this.controls.display();
     this.controls.controllers.get("material")?.show(hasStone(scene));
     this.size.update({ scene });
+  }
+
+  /** The merge patch for a sky. */
+  skyPatch(sky: string): Values {
+    return this.sky.patch(this.scene, sky);
+  }
+
+  /** Another scene comes. */
+  forgetSky(): void {
+    this.sky.forget();
   }
 
   addMaterials(materials: Material[]): void {

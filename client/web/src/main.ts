@@ -24,10 +24,11 @@ import { listenToPointers } from "./pointer-input";
 import { expose, header } from "./probe";
 import { OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
-import { imageSky, patchOf, stonePatch } from "./scene-choices";
+import { stonePatch } from "./scene-choices";
 import { SceneStrip } from "./scene-strip";
 import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
+import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
@@ -113,7 +114,9 @@ async function saveScene(): Promise<void> {
 }
 
 async function openScene(file: File): Promise<void> {
-  viewer?.send({ type: "set_scene", scene: parseScene(await file.text(), file.name) });
+  const scene = parseScene(await file.text(), file.name);
+  panel.choices.forgetSky();
+  viewer?.send({ type: "set_scene", scene });
 }
 
 /** Upload a file, with words about it for as long as that takes; a refusal names the file. */
@@ -141,10 +144,11 @@ async function openSky(file: File): Promise<void> {
   const summary = sky.findings.join("\n");
   toasts.finding(`${file.name}:\n${summary}`);
   panel.choices.addSkies([{ name: file.name, summary }], () => sky.id);
-  viewer?.send({ type: "patch_scene", patch: patchOf(viewer.state.scene, "sky", imageSky(sky.id)) });
+  viewer?.send({ type: "patch_scene", patch: panel.choices.skyPatch(imageSky(sky.id)) });
 }
 
 function choosePreset({ scene }: rest.Preset): void {
+  panel.choices.forgetSky();
   viewer?.send({ type: "set_scene", scene: framed(scene, window.innerWidth / window.innerHeight) });
 }
 

@@ -4,7 +4,6 @@ import {
   choicesOf,
   ENDS,
   ENDS_SAID,
-  imageSky,
   NOTHING_CHOSEN,
   patchOf,
   sizeMatters,
@@ -13,6 +12,7 @@ import {
   TONE_MAPS,
   TONE_MAPS_SAID,
 } from "./scene-choices";
+import { imageSky } from "./sky-choice";
 
 const STONE = { cut: "brilliant", material: "ruby", position: [0, 4, 0] };
 const SCENE = {

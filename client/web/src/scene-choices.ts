@@ -3,6 +3,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import { number, object, part, text, triple } from "./json";
 import type { Catalogued } from "./rest";
+import { imageSky, skyPatch } from "./sky-choice";
 
 export interface Choices {
   /** A material's name, or what to call one that the scene describes by its indices. */
@@ -20,7 +21,13 @@ export interface Choices {
 export const BANDS = [3, 8, 16, 32];
 export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
 export const ENDS = { "cut, counted": "cut", "by chance": "roulette", "in the sky": "sky" };
-export const TONE_MAPS = { sRGB: "srgb", filmic: "filmic", "the report's": "classic", none: "none" };
+export const TONE_MAPS = {
+  neutral: "neutral",
+  sRGB: "srgb",
+  filmic: "filmic",
+  "the report's": "classic",
+  none: "none",
+};
 /** What they mean, by their names. */
 export const ENDS_SAID: Catalogued[] = [
   {
@@ -34,6 +41,10 @@ export const ENDS_SAID: Catalogued[] = [
   },
 ];
 export const TONE_MAPS_SAID: Catalogued[] = [
+  {
+    name: "neutral",
+    summary: "As it is, but for what is brighter than 0.8: that approaches white without reaching it",
+  },
   { name: "sRGB", summary: "What is brighter than white is white" },
   { name: "filmic", summary: "Highlights are rolled off, and keep their hues" },
   { name: "the report's", summary: "As the report draws it" },
@@ -51,13 +62,6 @@ export const NOTHING_CHOSEN: Choices = {
   end: "cut",
   toneMap: "srgb",
 };
-
-const IMAGE = "image:";
-
-/** The sky of an image, by its name or the id of an upload. */
-export function imageSky(image: string): string {
-  return IMAGE + image;
-}
 
 export function choicesOf(scene: JsonObject | null): Choices {
   const { material } = stoneOf(scene);
@@ -82,7 +86,7 @@ export function patchOf<K extends keyof Choices>(scene: JsonObject | null, name:
     case "material":
       return stonePatch(scene, { material: value });
     case "sky":
-      return { environment: environmentOf(String(value)) };
+      return skyPatch(scene, String(value));
     case "toneMap":
       return { film: { tone_map: value } };
     default:
@@ -93,10 +97,6 @@ export function patchOf<K extends keyof Choices>(scene: JsonObject | null, name:
 /** The merge patch that changes something about the scene's stone; a list is replaced as a whole. */
 export function stonePatch(scene: JsonObject | null, change: JsonObject): JsonObject {
   return { stones: [{ ...stoneOf(scene), ...change }] };
-}
-
-function environmentOf(sky: string): JsonObject {
-  return sky.startsWith(IMAGE) ? { kind: "image", image: sky.slice(IMAGE.length) } : { kind: sky };
 }
 
 export function hasStone(scene: JsonObject | null): boolean {

@@ -56,7 +56,6 @@ def _parameters(title: str, settings: type[Settings]) -> Iterator[tuple[str, ins
         notes = [variable(name), *_bounds(field)]
         if field.default is not None:
             notes.append(f"default {shown(field.default)}")
-            (variable(name),)
         help_text = f"{field.description} ({'; '.join(notes)})"
         names = [f"{option(name)}/--no-{option(name)[2:]}"] if kind == bool | None else [option(name)]
         default = typer.Option(None, *names, metavar=metavar, help=help_text, show_default=False, rich_help_panel=title)

@@ -38,13 +38,23 @@ def read_stage(file: Path | None, preset: str | None, mesh: Path | None, sky: Pa
         scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
     if mesh is not None:
         meshes[FILE] = _mesh(mesh)
-        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": FILE})
-        scene = scene.model_copy(update={"stones": (stone,)})
+        scene = _with_mesh(scene, meshes[FILE])
     if sky is not None:
         skies[FILE] = _sky(sky)
-        scene = _under_the_file(scene)
+        scene = _under_the_file(scene, seen=file is None)
     with _naming(file):
         return Stage.of(scene, Library(meshes, skies))
+
+
+def _with_mesh(scene: Scene, shape: Shape) -> Scene:
+    """The scene with that shape in place of its stone's, on the floor if the stone was."""
+    from culet.geometry.load import shape_of
+    from culet.scene import Scene
+    from culet.simulation.lying import on_the_floor
+
+    placed = scene.stones[0] if scene.stones else Scene().stones[0]
+    named = scene.model_copy(update={"stones": (placed.model_copy(update={"mesh": FILE}),)})
+    return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, shape_of(placed, {})))
 
 
 def _mesh(file: Path) -> Shape:
@@ -75,12 +85,17 @@ def _sky(file: Path) -> SkyPicture:
     return picture
 
 
-def _under_the_file(scene: Scene) -> Scene:
-    """The scene under the panorama from a file, which keeps the scale and turn that it may have given to another."""
+def _under_the_file(scene: Scene, *, seen: bool) -> Scene:
+    """The scene under the panorama from a file, which keeps the scale and turn that it may have given to another.
+
+    `seen`: nothing hides it; else the scene says whether a backdrop does.
+    """
     from culet.scene.model import ImageEnvironment
+    from culet.scene.sky_seen import under
 
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
-    return scene.model_copy(update={"environment": image.model_copy(update={"image": FILE})})
+    image = image.model_copy(update={"image": FILE})
+    return under(scene, image) if seen else scene.model_copy(update={"environment": image})
 
 
 def _report(file: Path, findings: Iterable[str]) -> None:

@@ -6,10 +6,11 @@ import asyncio
 import contextlib
 import logging
 from collections.abc import AsyncIterator
+from http import HTTPStatus
 from pathlib import Path
 
 from fastapi import FastAPI
-from fastapi.responses import FileResponse, HTMLResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 
@@ -62,6 +63,10 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     @app.get("/docs", include_in_schema=False)
     async def docs() -> FileResponse:
         return FileResponse(DOCS_FOLDER / "index.html")
+
+    @app.get("/docs/", include_in_schema=False)
+    async def docs_without_slash() -> RedirectResponse:
+        return RedirectResponse("../docs", HTTPStatus.PERMANENT_REDIRECT)  # relative: a proxy may have it in a folder
 
     app.mount("/docs", StaticFiles(directory=DOCS_FOLDER))  # its script and style: no policy allows those in a page
 

@@ -18,6 +18,7 @@ from culet.gateway.connection import LINGER_SECONDS, WAITING, Connection, Guarde
 from culet.gateway.holdings import Holdings
 from culet.gateway.open_files import connection_limit
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.turns import Turns
 
 log = logging.getLogger(__name__)
 
@@ -40,6 +41,7 @@ class Guard:
         self.limit_of_address = settings.max_connections_per_address
         self.ended = 0
         """Connections that were ended for others or for owing too long."""
+        self.turns = Turns()
         self._proxies = proxies
         self._connections: dict[asyncio.BaseTransport, Connection] = {}
         self._of_address = Holdings()

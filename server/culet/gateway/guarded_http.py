@@ -10,11 +10,13 @@ import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
+from culet.gateway.bucket import Bucket
 from culet.gateway.connection import LINGER_SECONDS, Connection, Phase
 from culet.gateway.connection_guard import Guard
 from culet.gateway.lingering_transport import LingeringTransport
 from culet.gateway.paced_stream import PacedStream
 from culet.gateway.problems import RETRY_AFTER_SECONDS, problem
+from culet.gateway.turns import EVENTS_PER_SECOND, TurnedConnection
 
 
 class GuardedConfig(uvicorn.Config):
@@ -29,8 +31,16 @@ class GuardedHttp(H11Protocol):
     """uvicorn's HTTP/1.1, which tells the guard what it waits for."""
 
     config: GuardedConfig
+    conn: TurnedConnection
     cycle: RequestResponseCycle | None  # type: ignore[assignment]  # there is none before the first request
     connection: Connection | None = None
+    _waits = False
+    """For its next turn."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:  # noqa: ANN401 - as uvicorn's
+        super().__init__(*arguments, **options)
+        self.conn = TurnedConnection(self.config.guard.turns)
+        self._events = Bucket(EVENTS_PER_SECOND)
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn's
         """Let it in, or close it at once."""
@@ -49,6 +59,26 @@ class GuardedHttp(H11Protocol):
         super().data_received(data)
         self.tell()
 
+    def handle_events(self) -> None:
+        """As many as it may have in this turn of the loop; meanwhile no more is read."""
+        if self._waits:
+            return
+        self.conn.begin()
+        super().handle_events()
+        now = self.loop.time()
+        self._events.spend(self.conn.given, now)
+        if self.conn.has_more and not self.transport.is_closing():
+            self._waits = True
+            self.loop.call_later(self._events.overdrawn_for(now), self.config.guard.turns.wait, self)
+        self._lingering().hold(self._waits)
+
+    def go_on(self) -> None:
+        """It is its turn again."""
+        self._waits = False
+        if not self.transport.is_closing():
+            self.handle_events()
+            self.tell()
+
     def on_response_complete(self) -> None:
         """The answer is with the transport."""
         super().on_response_complete()
@@ -57,6 +87,7 @@ class GuardedHttp(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """It is gone."""
         self.config.guard.forget(self.transport)
+        self.config.guard.turns.forget(self)
         super().connection_lost(exc)
 
     def _should_upgrade(self) -> bool:
@@ -100,8 +131,11 @@ class GuardedHttp(H11Protocol):
 
     def written(self) -> int:
         """Bytes of answers that the transport was given."""
+        return self._lingering().written
+
+    def _lingering(self) -> LingeringTransport:
         assert isinstance(self.transport, LingeringTransport)  # noqa: S101 - by `connection_made`
-        return self.transport.written
+        return self.transport
 
     @property
     def may_read(self) -> bool:

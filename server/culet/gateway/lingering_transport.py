@@ -20,6 +20,7 @@ class LingeringTransport(asyncio.Transport):
         self._transport = transport
         self._is_sending = is_sending
         self._lingering = False
+        self._paused = self._held = False
         self.written = 0
 
     def close(self) -> None:
@@ -27,7 +28,8 @@ class LingeringTransport(asyncio.Transport):
             self._transport.close()
             return
         self._lingering = True
-        self._transport.resume_reading()
+        self._held = False
+        self.resume_reading()
         self._transport.write_eof()
         asyncio.get_running_loop().call_later(LINGER_SECONDS, self._transport.abort)
 
@@ -49,10 +51,21 @@ class LingeringTransport(asyncio.Transport):
         return self._transport.can_write_eof()
 
     def pause_reading(self) -> None:
+        self._paused = True
         self._transport.pause_reading()
 
     def resume_reading(self) -> None:
-        self._transport.resume_reading()
+        self._paused = False
+        if not self._held:
+            self._transport.resume_reading()
+
+    def hold(self, held: bool) -> None:
+        """Read nothing for now, whoever wants to."""
+        self._held = held
+        if held:
+            self._transport.pause_reading()
+        elif not self._paused:
+            self._transport.resume_reading()
 
     def is_reading(self) -> bool:
         return self._transport.is_reading()

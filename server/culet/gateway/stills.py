@@ -9,12 +9,14 @@ from pydantic import Field
 
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
+from culet.gateway.entity_tag import entity_tag, names
 from culet.gateway.parts import ThisGateway
 from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
 from culet.scene.model import MaterialName
+from culet.scene.sky_seen import under
 from culet_protocol.engine import Format, Render
 
 router = APIRouter(tags=["pictures"])
@@ -29,6 +31,8 @@ MEDIA_TYPES: dict[Format, str] = {
 ENDINGS: dict[str, Format] = {"png": "png", "jpg": "jpeg", "webp": "webp", "tga": "tga", "exr": "exr"}
 """Of the addresses that answer with a picture of that format."""
 DEFAULT_WIDTH, DEFAULT_HEIGHT = 640, 360
+FRESHNESS = "max-age=3600"
+"""Of a preset's picture: for an hour a browser does not even ask whether the server has another one by now."""
 
 Width = Annotated[int, Field(ge=1, le=8192, description="Pixels; width x height is at most 33.5 million.")]
 Height = Annotated[int, Field(ge=1, le=8192, description="Pixels.")]
@@ -55,7 +59,12 @@ class StillQuery(Model):
         if self.material is not None:
             for stone in data["stones"]:
                 stone["material"] = self.material
-        for name, kind in (("floor", self.floor), ("walls", self.walls), ("environment", self.environment)):
+        if self.environment is not None:
+            data["environment"] = {"kind": self.environment}
+            if self.environment != "studio":
+                scene = Scene.read(data)
+                data = under(scene, scene.environment).model_dump(mode="json")
+        for name, kind in (("floor", self.floor), ("walls", self.walls)):
             if kind is not None:
                 data[name] = {"kind": kind}
         return Scene.read(data)
@@ -87,16 +96,25 @@ def _offer(ending: str, file_format: Format) -> None:
     """Make GET /api/render.ENDING a route."""
 
     async def render_preset(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
-        return await _picture(http, gateway, query.scene(), query.width, query.height, file_format)
+        scene = query.scene()
+        tag = entity_tag(scene, query.width, query.height, file_format)
+        headers = {"ETag": tag, "Cache-Control": FRESHNESS}
+        if names(http.headers.get("If-None-Match"), tag):
+            return Response(status_code=304, headers=headers)
+        picture = await _picture(http, gateway, scene, query.width, query.height, file_format)
+        picture.headers.update(headers)
+        return picture
 
     router.add_api_route(
         f"/api/render.{ending}",
         render_preset,
         methods=["GET"],
         summary=f"Render Preset as {ending.upper()}",
-        description="A preset, rendered" + (" as linear radiance." if file_format == "exr" else "."),
+        description="A preset, rendered"
+        + (" as linear radiance" if file_format == "exr" else "")
+        + ". `If-None-Match` with the `ETag` of an earlier answer asks whether the picture would be another.",
         response_class=response_class_of(file_format),
-        responses=answers(404, 422, 429, 503),
+        responses={304: {"description": "The picture is as it was."}, **answers(404, 422, 429, 503)},
     )
 
 

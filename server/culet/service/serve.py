@@ -8,25 +8,15 @@ starts, connections wait instead of being refused.
 from __future__ import annotations
 
 import asyncio
-import signal
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from culet.endpoints import check_free
+from culet.endpoints import check_free, reachable
 from culet.gateway.address import listening_socket, url_of
 from culet.gateway.settings import settings_of
-from culet.notify import Notice, notify
-from culet.service.command_lines import engine_command, gateway_command
+from culet.service.keeping import keep
+from culet.service.parts import engine_part, gateway_part
 from culet.service.socket_folder import socket_folder
-from culet.service.supervisor import Part, Supervisor
-
-ENGINE_SILENCE_SECONDS = 22.0
-"""An engine whose loop or render thread stands ends itself before (`culet.engine.process.watchdog`). This is for one
-that cannot."""
-GATEWAY_SILENCE_SECONDS = 60.0
-"""The gateway's loop may be held up for up to 30 s, and goes on."""
-STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 def serve(
@@ -52,38 +42,33 @@ def serve(
         settings = settings_of(given, control, own_frames)
         if settings.uploads_folder is None:
             settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
-        command = engine_command(control, own_frames, *([frames] if frames else []), options=engine_options)
-        engine = Part("engine", [*command, "--stand-by"], ENGINE_SILENCE_SECONDS, has_spare=spare)
+        endpoints = [own_frames, *([frames] if frames else [])]
+        engine = engine_part(control, *endpoints, options=engine_options, spare=spare)
         with listening_socket(settings.host, settings.port) as listening:
-            number = listening.fileno()
-            words = gateway_command(number, settings.model_dump_json())
-            gateway = Part("gateway", words, GATEWAY_SILENCE_SECONDS, inherited=(number,), has_spare=spare)
-            asyncio.run(_serve(folder, gateway, engine, url_of(listening, settings.host)))
+            gateway = gateway_part(listening, settings, spare=spare)
+            url = url_of(listening, settings.host)
+            asyncio.run(keep(folder, gateway, engine, ready_line=f"culet is ready: {url}"))
 
 
-async def _serve(folder: Path, gateway: Part, engine: Part, url: str) -> None:
-    ready, stopping = asyncio.Event(), asyncio.Event()
-    loop = asyncio.get_running_loop()
-    for number in STOP_SIGNALS:
-        loop.add_signal_handler(number, stopping.set)
-    supervisors = Supervisor(gateway, folder, ready.set), Supervisor(engine, folder)
-    running = [asyncio.create_task(supervisor.run()) for supervisor in supervisors]
-    announcement, stop = asyncio.create_task(_announce(ready, url)), asyncio.create_task(stopping.wait())
-    try:
-        await asyncio.wait([*running, stop], return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        for task in (announcement, stop):
-            task.cancel()
-        for supervisor in supervisors:  # the gateway first: it still has answers to give
-            await supervisor.stop()
-        results = await asyncio.gather(*running, return_exceptions=True)
-        await asyncio.gather(announcement, stop, return_exceptions=True)
-    for result in results:
-        if isinstance(result, BaseException):
-            raise result
+def serve_engine(control: str, frames: Sequence[str], options: Sequence[str] = ()) -> None:
+    """Run an engine, and another one that stands by, until SIGINT or SIGTERM.
+
+    `control` and `frames` are the endpoints that it binds. EngineUnavailableError if it dies again and again before it
+    was ever ready.
+    """
+    with socket_folder() as folder:
+        asyncio.run(keep(folder, engine_part(control, *frames, options=options)))
 
 
-async def _announce(ready: asyncio.Event, url: str) -> None:
-    await ready.wait()
-    print(f"culet is ready: {url}", flush=True)
-    notify(Notice.READY)
+def serve_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
+    """Run a gateway, and another one that stands by, until SIGINT or SIGTERM, for an engine that somebody else starts.
+
+    `given` are its settings, `control` and `frames` the engine's endpoints. InputError for a setting that cannot be
+    used or an address that cannot be listened on.
+    """
+    settings = settings_of(given, reachable(control), reachable(frames))
+    with socket_folder() as folder, listening_socket(settings.host, settings.port) as listening:
+        if settings.uploads_folder is None:
+            settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
+        gateway = gateway_part(listening, settings, alone=True)
+        asyncio.run(keep(folder, gateway, ready_line=f"culet is ready: {url_of(listening, settings.host)}"))

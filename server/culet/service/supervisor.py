@@ -47,6 +47,8 @@ class Part:
     """File descriptors that it is given, by the same numbers."""
     has_spare: bool = False
     """Another one waits for that line, ready to take over."""
+    start_seconds: float = START_SECONDS
+    """One that is not ready by then is replaced."""
 
 
 class Supervisor:
@@ -135,8 +137,8 @@ class Supervisor:
                 await asyncio.wait({ending}, timeout=0.02 if process.heard_at else 0.1)
                 if ending.done():
                     return f"ended with code {ending.result()}"
-                if time.monotonic() - began > START_SECONDS:
-                    return await self._replace(process, f"was not ready within {START_SECONDS:g} s")
+                if time.monotonic() - began > self.part.start_seconds:
+                    return await self._replace(process, f"was not ready within {self.part.start_seconds:g} s")
             self._on_ready()
             if self.part.has_spare and (self._making_spare is None or self._making_spare.done()):
                 self._making_spare = asyncio.create_task(self._make_spare())

@@ -64,6 +64,16 @@ async def test_a_still_that_is_cancelled_frees_its_place_and_the_render_thread(e
         assert (await peer.ask(type="render", scene=CHEAP, width=16, height=16))["status"] == 200
 
 
+async def test_what_a_gateway_waits_for_that_was_killed_is_given_up(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        async with connected(engine) as (other, _):
+            other.ask_later(
+                type="render", scene=DEAREST | {"sampling": {"samples_per_pixel": 16}}, width=2048, height=2048
+            )
+            await _stills_waiting(peer, 1)
+        await _stills_waiting(peer, 0)
+
+
 async def test_a_still_that_is_more_work_than_one_may_make_is_refused_by_its_numbers(engine: EngineProcess) -> None:
     scene = {"sampling": {"samples_per_pixel": 65536}, "optics": {"bands": 64}}
     async with connected(engine) as (peer, _):

@@ -12,14 +12,18 @@ from culet.errors import InputError, SceneError
 from culet.optics.sky_files.picture import SkyPicture
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
-from culet.stage import Library, Stage
+from culet.scene.room import FLOOR_Y
+from culet.simulation.rotation import rotate
+from culet.stage import Library, Sky, Stage
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent
+from shared.stones import skew_block
 
 SKIES = {
     name: SkyPicture(np.full((4, 8, 3), grey, np.float32)) for name, grey in {"sunrise": 0.5, "sunset": 0.25}.items()
 }
 LIBRARY = Library({}, SKIES)
+MESHES = Library({"block": skew_block()}, SKIES)
 
 
 def session(**scene: Any) -> Session:  # noqa: ANN401
@@ -145,6 +149,19 @@ def test_a_switched_sky_survives_in_another_engine() -> None:
     assert after(other, messages.ToggleEnvironment()).environment == own
 
 
+def test_the_light_sky_is_seen_in_the_atelier_too_and_goes_back_to_it_in_another_engine() -> None:
+    subject = lying_session()
+    before = subject.scene
+    light = after(subject, messages.ToggleEnvironment())
+    assert (light.environment.kind, light.backdrop.kind, kinds(light)) == ("light", "none", ("mirror", "none"))
+    snapshot = Snapshot.read(json.loads(subject.snapshot().model_dump_json()))
+    other = Session.restored(subject.name, subject.stage, snapshot, sky=Sky(before.environment))
+    for one in (subject, other):
+        assert after(one, messages.ToggleEnvironment()) == before
+    after(subject, messages.ToggleEnvironment(), messages.PatchScene(patch={"floor": {"kind": "matte"}}))
+    assert kinds(after(subject, messages.ToggleEnvironment())) == ("matte", "none"), "chosen under the light sky"
+
+
 def test_a_patched_sky_brings_its_panorama_and_another_edit_keeps_it() -> None:
     subject = session(environment={"kind": "image", "image": "sunrise"})
     sunrise, sunset = LIBRARY.skies["sunrise"].pixels, LIBRARY.skies["sunset"].pixels
@@ -208,6 +225,36 @@ def test_another_shape_is_put_at_the_start_at_rest() -> None:
     scene = after(subject, messages.PatchScene(patch={"stones": [{"cut": {"table_percent": 60}}]}))
     assert subject.shown.scene.stones[0].position == scene.stones[0].position
     assert not subject.motion.falling
+
+
+def lying_session() -> Session:
+    """The default scene, whose stone lies on the floor."""
+    return Session("0" * 32, Stage.of(Scene(), MESHES))
+
+
+def lowest(subject: Session) -> float:
+    """y of the stone's lowest corner, R."""
+    placed = subject.shown.scene.stones[0]
+    corners = (rotate(placed.orientation, (a, b, c)) for a, b, c in subject.stage.shapes[0].vertices.tolist())
+    return placed.position[1] + min(y for _, y, _ in corners)
+
+
+@pytest.mark.parametrize("change", [{"cut": {"pavilion_degrees": 46}}, {"mesh": "block"}])
+def test_another_shape_lies_on_the_floor_as_the_one_before_did(change: dict[str, Any]) -> None:
+    subject = lying_session()
+    before = subject.scene
+    whole = before.model_dump(mode="json")["stones"][0]
+    events.apply(subject, messages.PatchScene(patch={"stones": [whole | change]}), MESHES)
+    assert lowest(subject) == pytest.approx(FLOOR_Y, abs=1e-9)
+    assert subject.scene.stones[0].position == subject.shown.scene.stones[0].position, "R puts it there too"
+    events.apply(subject, messages.PatchScene(patch={"stones": [whole]}), MESHES)
+    assert subject.scene == before, "what is put back is as it was"
+
+
+def test_another_shape_goes_where_the_patch_says() -> None:
+    subject = lying_session()
+    after(subject, messages.PatchScene(patch={"stones": [{"cut": {"table_percent": 60}, "position": [0, -0.5, 0]}]}))
+    assert subject.scene.stones[0].position == (0, -0.5, 0)
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,8 @@ PROGRAM = ("-m", NAME)
 """What the process runs; isolated from the user's own packages and from the folder that it is started in."""
 ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
 """All that the process gets of one: nothing of the engine's."""
+Buffer = bytes | bytearray | memoryview
+"""Bytes of a file."""
 COMPLAINT_BYTES = 4096
 """Of what it printed last, which may say why it ended."""
 BYTES_PER_PIXEL = 12
@@ -40,11 +42,12 @@ class Room:
 
 
 async def read_upload(
-    kind: str, error: type[InputError], file_type: str, data: bytes, limits: Limits, room: Room
+    kind: str, error: type[InputError], file_type: str, data: Buffer, limits: Limits, room: Room
 ) -> Shape | SkyPicture:
     """What the file holds. InputError (of that type, if there is no better one) says what is wrong with it;
     TooLittleMemoryError, that the room was too little, which is not all that a file may take."""
-    with _descriptor("answer") as answer, _descriptor("complaint") as complaint:
+    with _descriptor("upload") as upload, _descriptor("answer") as answer, _descriptor("complaint") as complaint:
+        await asyncio.to_thread(_fill, os.dup(upload), data)  # a pipe would be filled by the loop
         order = Order(
             kind, file_type, answer, limits.max_mesh_triangles, limits.max_sky_pixels, room.memory,
             math.ceil(limits.read_processor_seconds),
@@ -52,12 +55,12 @@ async def read_upload(
         )  # fmt: skip
         process = await asyncio.create_subprocess_exec(
             sys.executable, "-I", *PROGRAM, *order.words(),
-            stdin=asyncio.subprocess.PIPE, stdout=complaint, stderr=complaint, pass_fds=(answer,),
+            stdin=upload, stdout=complaint, stderr=complaint, pass_fds=(answer,),
             env=ENVIRONMENT, cwd="/", start_new_session=True,
         )  # fmt: skip
         try:
             async with asyncio.timeout(limits.read_seconds):
-                await process.communicate(data)
+                await process.wait()
         except TimeoutError:
             raise error(f"the {kind} could not be read in {limits.read_seconds:g} s", "file") from None
         finally:
@@ -96,6 +99,15 @@ def _last_line(descriptor: int) -> str:
     size = os.fstat(descriptor).st_size
     said = os.pread(descriptor, COMPLAINT_BYTES, max(0, size - COMPLAINT_BYTES))
     return said.decode(errors="replace").strip().rpartition("\n")[2][:200]
+
+
+def _fill(descriptor: int, data: Buffer) -> None:
+    """Write all of it, to be read from its beginning, and close the descriptor: nobody may wait for that any more."""
+    with os.fdopen(descriptor, "wb", buffering=0) as file:
+        rest = memoryview(data)
+        while rest:
+            rest = rest[file.write(rest) :]
+        file.seek(0)
 
 
 @contextlib.contextmanager

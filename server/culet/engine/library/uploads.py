@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from culet.engine.library.upload_answer import TooLittleMemoryError
-from culet.engine.library.upload_process import Room, read_upload
+from culet.engine.library.upload_process import Buffer, Room, read_upload
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
@@ -107,7 +107,7 @@ class UploadStore(Mapping[str, T]):
         """All that is kept, without being used by that."""
         return [kept.content for kept in self._kept.values()]
 
-    async def put(self, name: str, file_type: str, data: bytes) -> dict[str, Any]:
+    async def put(self, name: str, file_type: str, data: Buffer) -> dict[str, Any]:
         """Read a file and keep what it holds under a name; what was found in it, or InputError, BusyError."""
         kind = self._kind.name
         if not re.fullmatch(r"[A-Za-z0-9_-]{1,64}", name):
@@ -135,7 +135,7 @@ class UploadStore(Mapping[str, T]):
         kept = self._kept.get(name)
         return kept is not None and kept.digest == digest
 
-    async def _read(self, name: str, digest: bytes, file_type: str, data: bytes) -> _Kept[T]:
+    async def _read(self, name: str, digest: bytes, file_type: str, data: Buffer) -> _Kept[T]:
         """In a process that can be ended, so that no frame waits for it; its memory is reserved meanwhile.
 
         At first with what is free. A file for which that is too little is worth what nobody uses.
@@ -169,7 +169,7 @@ class UploadStore(Mapping[str, T]):
         memory = max(LEAST_TO_READ, min(most, size))
         return Room(memory, full=memory == most)
 
-    async def _read_within(self, room: Room, digest: bytes, file_type: str, data: bytes) -> _Kept[T]:
+    async def _read_within(self, room: Room, digest: bytes, file_type: str, data: Buffer) -> _Kept[T]:
         kind = self._kind
         with self._memory.reserved("reading", room.memory, f"reading a {kind.name}"):
             content = await read_upload(kind.name, kind.error, file_type, data, self._limits, room)
@@ -197,8 +197,10 @@ class UploadStore(Mapping[str, T]):
         return 0
 
 
-def _digest(file_type: str, data: bytes) -> bytes:
-    return hashlib.sha256(file_type.encode() + b"\0" + data).digest()
+def _digest(file_type: str, data: Buffer) -> bytes:
+    digest = hashlib.sha256(file_type.encode() + b"\0")
+    digest.update(data)  # which lets other threads run
+    return digest.digest()
 
 
 def described_mesh(shape: Shape) -> DescribedMesh:

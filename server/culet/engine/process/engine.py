@@ -26,6 +26,8 @@ from culet_protocol import engine as protocol
 log = logging.getLogger(__name__)
 
 HEARTBEAT_SECONDS = 1.0
+WAITED_FOR = (protocol.Render, protocol.PutMesh, protocol.PutSky)
+"""Requests whose work is for who asked alone. Others are quickly done, and meant whether or not somebody waits."""
 RETRY_SECONDS = 10.0
 """Until a picture is tried again that something passing was in the way of."""
 
@@ -45,10 +47,12 @@ class Engine:
     ) -> None:
         self._control = bind_control(context, control, limits.max_upload_bytes)
         self._frames = bind_frames(context, frames)
-        self._peers = Peers(self._control)
+        self._peers = Peers(self._control, self._give_up)
         self._tasks: set[asyncio.Task[None]] = set()
         self._under_way: dict[tuple[bytes, bytes], asyncio.Task[None]] = {}
         """Requests that are not answered yet, by peer and number."""
+        self._waited_for: set[tuple[bytes, bytes]] = set()
+        """Those of them that are WAITED_FOR."""
         stills = StillQueue(limits.max_stills, limits.max_still_pixels)
         self._painter = Painter(
             renderer,
@@ -95,26 +99,39 @@ class Engine:
 
     async def _take_requests(self) -> None:
         while True:
-            peer, *parts = await self._control.recv_multipart()
-            greeting = parts in ([], [b""])  # ZMQ_PROBE_ROUTER: somebody connected
+            # Copying an upload of 64 MiB would hold this loop up for longer than a frame takes.
+            sender, *parts = await self._control.recv_multipart(copy=False)
+            peer = sender.bytes
+            greeting = [len(part) for part in parts] in ([], [0])  # ZMQ_PROBE_ROUTER: somebody connected
             self._peers.heard_from(peer, asks=not greeting)
             if greeting:
                 await self._peers.send(peer, [protocol.REQUEST_NUMBER.pack(0), self._heartbeat()])
                 continue
             self._answer(peer, parts)
 
-    def _answer(self, peer: bytes, parts: list[bytes]) -> None:
+    def _answer(self, peer: bytes, parts: list[zmq.Frame]) -> None:
         task = self._spawn(self._reply(peer, parts))
-        request = (peer, parts[0])
+        request = (peer, parts[0].bytes)
         self._under_way[request] = task
-        task.add_done_callback(lambda _: self._under_way.pop(request, None))
+
+        def forget(_: asyncio.Task[None]) -> None:
+            self._under_way.pop(request, None)
+            self._waited_for.discard(request)
+
+        task.add_done_callback(forget)
 
     def _cancel(self, peer: bytes, number: int) -> None:
         task = self._under_way.get((peer, protocol.REQUEST_NUMBER.pack(number)))
         if task is not None:
             task.cancel()
 
-    async def _reply(self, peer: bytes, parts: list[bytes]) -> None:
+    def _give_up(self, peer: bytes) -> None:
+        """A gateway is gone, and with it whoever waited for pictures and for files to be read."""
+        for request in [request for request in self._waited_for if request[0] == peer]:
+            if request in self._under_way:
+                self._under_way[request].cancel()
+
+    async def _reply(self, peer: bytes, parts: list[zmq.Frame]) -> None:
         number, data = protocol.REQUEST_NUMBER.pack(0), None
         try:
             if len(parts) not in (2, 3) or len(parts[0]) != protocol.REQUEST_NUMBER.size:
@@ -122,11 +139,13 @@ class Engine:
                     f"expected a request number of 8 bytes, JSON, and bytes or nothing; got parts of "
                     f"{', '.join(str(len(part)) for part in parts)} bytes"
                 )
-            number = parts[0]
-            request = read_request(parts[1])
+            number = parts[0].bytes
+            request = read_request(parts[1].bytes)
             if isinstance(request, protocol.Cancel):
                 self._cancel(peer, request.request)
-            result, data = await self._requests.answer(request, parts[2] if len(parts) == 3 else None)
+            elif isinstance(request, WAITED_FOR):
+                self._waited_for.add((peer, number))
+            result, data = await self._requests.answer(request, parts[2].buffer if len(parts) == 3 else None)
             reply = protocol.Reply(result=result)
         except CuletError as error:
             reply = refusal(error)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, assert_never
 
+from culet.engine.library.upload_process import Buffer
 from culet.engine.library.uploads import MESH, SKY, UploadStore
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
@@ -61,7 +62,7 @@ class Requests:
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)
 
-    async def answer(self, request: protocol.Request, data: bytes | None) -> Answer:
+    async def answer(self, request: protocol.Request, data: Buffer | None) -> Answer:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
@@ -142,7 +143,7 @@ class Requests:
         return own + sky_bytes(self.sessions, self._stills, kept)
 
 
-def _file(data: bytes | None) -> bytes:
+def _file(data: Buffer | None) -> Buffer:
     if data is None:
         raise InputError("expected the file's bytes as the third part of the message, got none")
     return data

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import zmq
 import zmq.asyncio
@@ -48,8 +48,10 @@ def _bind(socket: zmq.asyncio.Socket, endpoints: Sequence[str], option: str) -> 
 class Peers:
     """Who is on the other side of the ROUTER: those who asked something, and those who only connected."""
 
-    def __init__(self, socket: zmq.asyncio.Socket) -> None:
+    def __init__(self, socket: zmq.asyncio.Socket, left: Callable[[bytes], None] = lambda _: None) -> None:
+        """`left` is told of a peer that is gone, when it is next to be told something."""
         self._socket = socket
+        self._left = left
         self._asking: dict[bytes, None] = {}
         self._connected: dict[bytes, None] = {}
 
@@ -77,9 +79,10 @@ class Peers:
     async def send(self, peer: bytes, parts: list[bytes]) -> None:
         """Send to one; one that left is forgotten, one that takes nothing any more (1000 messages wait) misses this."""
         try:
-            await self._socket.send_multipart([peer, *parts], flags=zmq.NOBLOCK)
+            await self._socket.send_multipart([peer, *parts], flags=zmq.NOBLOCK, copy=False)  # of large stills
         except zmq.Again:
             log.warning("a peer takes no messages: dropped one of %d bytes", sum(map(len, parts)))
         except zmq.ZMQError:
             self._asking.pop(peer, None)
             self._connected.pop(peer, None)
+            self._left(peer)

@@ -13,6 +13,8 @@ from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
 from culet.scene import Camera, Light, Plane, Scene
 from culet.scene.model import DarkEnvironment, LightEnvironment
+from culet.scene.sky_seen import Surroundings, back_under, under
+from culet.simulation.lying import on_the_floor
 from culet.stage import Library, Sky, Stage
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent, Target
@@ -38,8 +40,7 @@ def apply(session: Session, event: SessionEvent, library: Library) -> None:
         case messages.ToggleMirror():
             session.change(session.stage.showing(_with_mirror_toggled(session.scene)))
         case messages.ToggleEnvironment():
-            light = session.scene.environment.kind == "light"
-            session.change(session.stage.under(session.sky if light else LIGHT))
+            _toggle_environment(session)
         case messages.ToggleWalls():
             session.change(session.stage.showing(_with_walls_toggled(session.scene)))
         case messages.PatchScene():
@@ -135,6 +136,17 @@ def _with_mirror_toggled(scene: Scene) -> Scene:
     return scene.model_copy(update={"floor": Plane(kind=kind), "walls": walls})
 
 
+def _toggle_environment(session: Session) -> None:
+    """To the light sky, which is seen then, or back to the scene's own as that was seen."""
+    stage, own = session.stage, session.sky
+    if stage.scene.environment.kind == "light":
+        scene = back_under(stage.scene, own.environment, own.surroundings)
+        session.change(stage.under(own).showing(scene))
+    else:
+        sky = own._replace(surroundings=Surroundings.of(stage.scene))
+        session.change(stage.under(LIGHT).showing(under(stage.scene, LIGHT.environment)), sky=sky)
+
+
 def _with_walls_toggled(scene: Scene) -> Scene:
     if scene.walls.kind != "none":
         walls = Plane(kind="none")
@@ -155,6 +167,9 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
     stage = stage_for(after, session, library)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
     if stage.shapes != session.stage.shapes:
+        if _poses(after) == _poses(before):
+            before_shapes = session.stage.shapes
+            stage = stage.posed(map(on_the_floor, after.stones, stage.shapes, before_shapes))
         session.replace_stones(stage, home=home, sky=sky)
     elif _start(after) != _start(before):
         session.start_anew(stage, home=home, sky=sky)
@@ -164,5 +179,9 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
 
 def _start(scene: Scene) -> object:
     """Where and how the stone starts: a patch of anything else leaves it where it is."""
-    poses = [(stone.position, stone.orientation) for stone in scene.stones]
-    return poses, scene.simulation.velocity, scene.simulation.spin
+    return _poses(scene), scene.simulation.velocity, scene.simulation.spin
+
+
+def _poses(scene: Scene) -> object:
+    """Of the stones at the start."""
+    return [(stone.position, stone.orientation) for stone in scene.stones]

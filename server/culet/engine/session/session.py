@@ -84,7 +84,8 @@ class Session:
         history: int = 600,
     ) -> Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
-        session = cls(name, stage, sky=sky, history=history)
+        own = (sky or stage.sky)._replace(surroundings=snapshot.surroundings)
+        session = cls(name, stage, sky=own, history=history)
         session.home = snapshot.home
         session.sequence = snapshot.next_sequence
         session.balance = Balance(exactness=snapshot.exactness, pinned=snapshot.pinned)
@@ -195,6 +196,7 @@ class Session:
             falling=self.motion.falling,
             home=self.home,
             environment=self.sky.environment,
+            surroundings=self.sky.surroundings,
             exactness=self.balance.exactness,
             pinned=self.balance.pinned,
             step=self.shown.step,

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from culet.errors import InputError
 from culet.scene import Camera, Environment
 from culet.scene.model import scene_error
+from culet.scene.sky_seen import Surroundings
 from culet_protocol.messages import BALANCED, Exactness
 
 NUMBER_GAP = 1000
@@ -36,6 +37,8 @@ class Snapshot(BaseModel):
     home: Camera
     environment: Environment | None = None
     """The session's own, which it goes back to from the light one; None if that is the scene's."""
+    surroundings: Surroundings | None = None
+    """With which it goes back to that; None if the scene's are those."""
     exactness: Exactness = BALANCED
     pinned: bool = False
     step: Annotated[int, Field(ge=1, lt=2**63)]

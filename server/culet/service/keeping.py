@@ -1,0 +1,48 @@
+"""Parts that are kept running until this process is told to stop."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from pathlib import Path
+
+from culet.notify import Notice, notify
+from culet.service.supervisor import Part, Supervisor
+
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+async def keep(folder: Path, *parts: Part, ready_line: str = "") -> None:
+    """Keep all of them running until SIGINT or SIGTERM; the first one is stopped first. `folder` is for their sockets.
+
+    Once the first one is ready, whoever supervises this process is told, and a line, if there is one, is printed.
+    EngineUnavailableError if one dies again and again before it was ever ready.
+    """
+    ready, stopping = asyncio.Event(), asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in STOP_SIGNALS:
+        loop.add_signal_handler(number, stopping.set)
+    first, *others = parts
+    supervisors = [Supervisor(first, folder, ready.set), *(Supervisor(part, folder) for part in others)]
+    running = [asyncio.create_task(supervisor.run()) for supervisor in supervisors]
+    announcement = asyncio.create_task(_announce(ready, ready_line))
+    stop = asyncio.create_task(stopping.wait())
+    try:
+        await asyncio.wait([*running, stop], return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in (announcement, stop):
+            task.cancel()
+        for supervisor in supervisors:
+            await supervisor.stop()
+        results = await asyncio.gather(*running, return_exceptions=True)
+        await asyncio.gather(announcement, stop, return_exceptions=True)
+    for result in results:
+        if isinstance(result, BaseException):
+            raise result
+
+
+async def _announce(ready: asyncio.Event, line: str) -> None:
+    await ready.wait()
+    if line:
+        print(line, flush=True)
+    notify(Notice.READY)

@@ -1,0 +1,87 @@
+"""How a stone of another shape takes the place of one that was on the floor: neither above the floor nor through it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from culet.geometry.shape import Shape
+from culet.scene.model import Pose, StoneSettings
+from culet.scene.room import FLOOR_Y
+from culet.simulation.drop import STANDING
+from culet.simulation.rotation import normalised, product, rotate, rotate_back
+from culet.simulation.state import Quaternion, Triple
+
+LYING_DEGREES = 10.0
+"""A stone looks as if it lay on a facet that is level to this. The default stone's is by 5.4 degrees: its pose was
+drawn for its light. A stone that is tilted further was set on a corner on purpose."""
+DOWN: Triple = (0.0, -1.0, 0.0)
+
+Array = NDArray[np.float64]
+
+
+def on_the_floor(stone: StoneSettings, shape: Shape, before: Shape) -> Pose:
+    """The pose of a stone of that shape which stands as the shape before stood in that place.
+
+    It touches the floor. What lay on a facet lies on one: if the new shape does not by itself, it is turned as little
+    as it can be. What stood on a corner or an edge is not turned. What was in the air, or deep in the floor, stays.
+    """
+    position, orientation = stone.position, stone.orientation
+    if abs(position[1] - resting_height(before, orientation)) > STANDING:
+        return position, orientation
+    facet = lowest_facet(shape, orientation)
+    lay = slope_degrees(orientation, lowest_facet(before, orientation)) <= LYING_DEGREES
+    if lay and slope_degrees(orientation, facet) > LYING_DEGREES:
+        orientation = laid(orientation, facet)
+    x, _, z = position
+    return (x, resting_height(shape, orientation), z), orientation
+
+
+def resting_height(shape: Shape, orientation: Quaternion) -> float:
+    """y of the centre of a stone whose lowest corner touches the floor, R."""
+    return FLOOR_Y - float((shape.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
+
+
+def lowest_facet(shape: Shape, orientation: Quaternion) -> Triple:
+    """Outward normal, in the stone's axes, of the facet that it could lie on and that points down the most."""
+    x, y, z = rotate_back(orientation, DOWN)
+    normals = resting_facets(shape.vertices)
+    a, b, c = normals[(normals @ np.array([x, y, z])).argmax()].tolist()
+    return (a, b, c)
+
+
+def resting_facets(vertices: Array) -> Array:
+    """(F, 3) outward unit normals of those facets of the convex hull that have the origin, the centre of mass, above
+    themselves: a body lies on these alone."""
+    hull = ConvexHull(vertices)
+    normals, foot = hull.equations[:, :3], -hull.equations[:, :3] * hull.equations[:, 3:]
+    corners = vertices[hull.simplices]
+    middle = corners.mean(axis=1)
+    above = np.ones(len(normals), bool)
+    for k in range(3):  # the foot of the centre is on the middle's side of each edge
+        along = corners[:, (k + 1) % 3] - corners[:, k]
+        inward = np.cross(normals, along)
+        inward *= np.sign((inward * (middle - corners[:, k])).sum(axis=1, keepdims=True))
+        length = np.maximum(np.linalg.norm(inward, axis=1), 1e-30)
+        above &= (inward * (foot - corners[:, k])).sum(axis=1) > -1e-9 * length
+    # The nearest facet always holds; roundings may let it miss.
+    above[hull.equations[:, 3].argmax()] = True
+    return np.asarray(normals[above])
+
+
+def laid(orientation: Quaternion, facet: Triple) -> Quaternion:
+    """The orientation after the smallest turn that lets a facet of that outward normal (stone's axes) point down."""
+    a, b, c = rotate(orientation, facet)
+    if b > 1 - 1e-9:  # it points up: any half turn about a level axis will do
+        return product((0.0, 1.0, 0.0, 0.0), orientation)
+    # Half-way quaternion (1 + u . v, u x v) of u = facet and v = down
+    return normalised(product((1.0 - b, c, 0.0, -a), orientation))
+
+
+def slope_degrees(orientation: Quaternion, facet: Triple) -> float:
+    """Between a facet of that outward normal (stone's axes) and the floor below it."""
+    _, b, _ = rotate(orientation, facet)
+    return math.degrees(math.acos(max(-1.0, min(1.0, -b))))
