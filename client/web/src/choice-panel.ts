@@ -11,7 +11,6 @@ import {
   choicesOf,
   ENDS,
   ENDS_SAID,
-  hasStone,
   imageSky,
   patchOf,
   SKIES,
@@ -19,6 +18,7 @@ import {
   TONE_MAPS_SAID,
 } from "./scene-choices";
 import { SizeControl } from "./size-control";
+import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
 
 type Values = Record<string, unknown>;

@@ -3,7 +3,7 @@
 import type { GUI } from "lil-gui";
 import { type CutKind, cutName, cutOf, cutPatch, type Proportion, proportionsOf } from "./cut";
 import { LiveControls } from "./live-controls";
-import { stonePatch } from "./scene-choices";
+import { stonePatch } from "./stones";
 import type { ViewState } from "./view-state";
 
 const STEP = 0.05;

@@ -2,7 +2,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import { number, object, part, text } from "./json";
-import { stoneOf, stonePatch } from "./scene-choices";
+import { stoneOf, stonePatch } from "./stones";
 
 /** A cut of /api/cuts: `proportions` is the JSON schema of each. */
 export interface CutKind {
@@ -80,5 +80,5 @@ export function cutOf(scene: JsonObject | null, proportions: readonly Proportion
 
 /** The merge patch that changes one proportion and leaves the others. */
 export function cutPatch(scene: JsonObject | null, name: string, value: number): JsonObject {
-  return stonePatch(scene, { cut: { name: cutName(scene), ...part(stoneOf(scene), "cut"), [name]: value } });
+  return stonePatch(scene, { cut: { name: cutName(scene), [name]: value } });
 }

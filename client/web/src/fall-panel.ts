@@ -5,7 +5,7 @@ import { type Direction, type Fall, fallOf, fallPatch, MODELS, OF_RIGID, spinAxi
 import { LiveControls } from "./live-controls";
 import { describeOptions } from "./option-titles";
 import type { Catalogued } from "./rest";
-import { hasStone } from "./scene-choices";
+import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
 
 interface Slider {

@@ -38,7 +38,7 @@ def read_stage(file: Path | None, preset: str | None, mesh: Path | None, sky: Pa
         scene = preset_scene(preset) if preset is not None else Scene.read(_json(file))
     if mesh is not None:
         meshes[FILE] = _mesh(mesh)
-        stone = (scene.stones[0] if scene.stones else Scene().stones[0]).model_copy(update={"mesh": FILE})
+        stone = (scene.only_stone() or Scene().stones[0]).model_copy(update={"mesh": FILE})
         scene = scene.model_copy(update={"stones": (stone,)})
     if sky is not None:
         skies[FILE] = _sky(sky)
@@ -77,10 +77,11 @@ def _sky(file: Path) -> SkyPicture:
 
 def _under_the_file(scene: Scene) -> Scene:
     """The scene under the panorama from a file, which keeps the scale and turn that it may have given to another."""
-    from culet.scene.model import ImageEnvironment
+    from culet.scene.sky import ImageEnvironment
 
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
-    return scene.model_copy(update={"environment": image.model_copy(update={"image": FILE})})
+    image = image.model_copy(update={"image": FILE})
+    return scene.model_copy(update={"environment": image, "emitters": scene.points})
 
 
 def _report(file: Path, findings: Iterable[str]) -> None:

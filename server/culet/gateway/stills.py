@@ -14,7 +14,8 @@ from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
-from culet.scene.model import MaterialName
+from culet.scene.patch import patched
+from culet.scene.stone import MaterialName
 from culet_protocol.engine import Format, Render
 
 router = APIRouter(tags=["pictures"])
@@ -57,7 +58,7 @@ class StillQuery(Model):
                 stone["material"] = self.material
         for name, kind in (("floor", self.floor), ("walls", self.walls), ("environment", self.environment)):
             if kind is not None:
-                data[name] = {"kind": kind}
+                data = patched(data, {name: {"kind": kind}})
         return Scene.read(data)
 
 

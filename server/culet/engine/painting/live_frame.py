@@ -13,7 +13,7 @@ from culet.engine.governing.governor import Plan
 from culet.engine.painting.renderer import Picture
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
-from culet.scene.model import Optics
+from culet.scene.optics import Optics
 from culet_protocol.frame import Codec, Flags, Frame
 
 
