@@ -26,12 +26,12 @@ export const TONE_MAPS = { sRGB: "srgb", filmic: "filmic", "the report's": "clas
 export const ENDS_SAID: Catalogued[] = [
   {
     name: "cut, counted",
-    summary: "What such light would still bring is dropped, and its sum is said: at most so much is missing",
+    summary: "Weak light is dropped. The picture says how much light was dropped: it is darker by that at most",
   },
-  { name: "by chance", summary: "It is ended by lot, and what goes on counts for more: right on average, but noisy" },
+  { name: "by chance", summary: "Weak light is dropped at random, and the light that goes on counts for more: right on average, but noisy" },
   {
     name: "in the sky",
-    summary: "It leaves the stone where it is and takes the sky's light from there: no darker, but a guess",
+    summary: "Weak light leaves the stone at once and meets the sky: the picture is not darker, but this is a guess",
   },
 ];
 export const TONE_MAPS_SAID: Catalogued[] = [

@@ -17,6 +17,7 @@ from culet.scene.fields import Model
 from culet.scene.patch import patched
 from culet.scene.stone import MaterialName
 from culet_protocol.engine import Format, Render
+from culet_protocol.sizes import STILL_SIZE
 
 router = APIRouter(tags=["pictures"])
 
@@ -29,7 +30,7 @@ MEDIA_TYPES: dict[Format, str] = {
 }
 ENDINGS: dict[str, Format] = {"png": "png", "jpg": "jpeg", "webp": "webp", "tga": "tga", "exr": "exr"}
 """Of the addresses that answer with a picture of that format."""
-DEFAULT_WIDTH, DEFAULT_HEIGHT = 640, 360
+DEFAULT_WIDTH, DEFAULT_HEIGHT = STILL_SIZE
 
 Width = Annotated[int, Field(ge=1, le=8192, description="Pixels; width x height is at most 33.5 million.")]
 Height = Annotated[int, Field(ge=1, le=8192, description="Pixels.")]

@@ -69,7 +69,7 @@ def past_stage(past: Past, session: Session, library: Library) -> Stage:
 
 
 def own_sky(sky: Sky) -> Sky:
-    """The other sky than the light one: that of a scene, or, if that is light itself, the dark."""
+    """The sky that a switch from the light sky goes to: the scene's own sky, or the dark if that is the light."""
     return Sky(DarkEnvironment(kind="dark")) if sky.environment.kind == "light" else sky
 
 
