@@ -4,6 +4,7 @@ that what a part needs never needs that part."""
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -105,6 +106,14 @@ def test_no_part_needs_what_needs_it() -> None:
     needs = rooms()
     assert {"culet.rendering", "culet.gateway", "culet.engine"} <= needs.keys()
     assert circle(needs) == []
+
+
+def test_no_module_of_the_page_needs_what_needs_it() -> None:
+    folder = Path(__file__).parents[1] / "client" / "web" / "src"
+    files = {file.stem: file for file in folder.glob("*.ts")}
+    assert "main" in files
+    imports = re.compile(r'from "\./([\w.-]+)"')
+    assert circle({name: set(imports.findall(file.read_text(encoding="utf-8"))) for name, file in files.items()}) == []
 
 
 def test_a_circle_is_found_wherever_it_is_closed() -> None:

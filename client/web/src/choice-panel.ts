@@ -1,9 +1,9 @@
 /** The panel's choices about the picture: material, sky and optics. */
 
 import type { Controller, GUI } from "lil-gui";
+import type { Catalogued, Material } from "./catalogue";
 import { LiveControls } from "./live-controls";
 import { describeOptions } from "./option-titles";
-import type { Catalogued, Material } from "./rest";
 import {
   BANDS,
   type Choices,

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { type CutKind, cutName, cutOf, cutPatch, proportionsOf } from "./cut";
+import type { CutKind } from "./catalogue";
+import { cutName, cutOf, cutPatch, proportionsOf } from "./cut";
 
 const KIND: CutKind = {
   name: "brilliant",

@@ -4,12 +4,6 @@ import type { JsonObject } from "@culet/protocol/messages";
 import { number, object, part, text } from "./json";
 import { stoneOf, stonePatch } from "./stones";
 
-/** A cut of /api/cuts: `proportions` is the JSON schema of each. */
-export interface CutKind {
-  name: string;
-  proportions: JsonObject;
-}
-
 /** A slider about one proportion. */
 export interface Proportion {
   name: string;

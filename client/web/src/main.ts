@@ -13,6 +13,7 @@ import {
   WAITING,
   WAITING_LONG,
 } from "./banner";
+import type { Preset, Upload } from "./catalogue";
 import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { framed, framingPatch } from "./framing";
@@ -118,7 +119,7 @@ async function openScene(file: File): Promise<void> {
 }
 
 /** Upload a file, with words about it for as long as that takes; a refusal names the file. */
-async function read(file: File, upload: (file: File) => Promise<rest.Upload>): Promise<rest.Upload> {
+async function read(file: File, upload: (file: File) => Promise<Upload>): Promise<Upload> {
   const clear = toasts.note(`Reading ${file.name}\u2026`);
   try {
     return await upload(file);
@@ -145,7 +146,7 @@ async function openSky(file: File): Promise<void> {
   viewer?.send({ type: "patch_scene", patch: patchOf(viewer.state.scene, "sky", imageSky(sky.id)) });
 }
 
-function choosePreset({ scene }: rest.Preset): void {
+function choosePreset({ scene }: Preset): void {
   viewer?.send({ type: "set_scene", scene: framed(scene, window.innerWidth / window.innerHeight) });
 }
 

@@ -1,8 +1,8 @@
 /** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import type { Catalogued } from "./catalogue";
 import { number, part, text } from "./json";
-import type { Catalogued } from "./rest";
 import { stoneOf, stonePatch, stonesOf } from "./stones";
 
 export interface Choices {
@@ -28,7 +28,10 @@ export const ENDS_SAID: Catalogued[] = [
     name: "cut, counted",
     summary: "Weak light is dropped. The picture says how much light was dropped: it is darker by that at most",
   },
-  { name: "by chance", summary: "Weak light is dropped at random, and the light that goes on counts for more: right on average, but noisy" },
+  {
+    name: "by chance",
+    summary: "Weak light is dropped at random, and the light that goes on counts for more: right on average, but noisy",
+  },
   {
     name: "in the sky",
     summary: "Weak light leaves the stone at once and meets the sky: the picture is not darker, but this is a guess",
