@@ -1,6 +1,7 @@
 /** The proportions of a stone's cut, as the server lists and a scene says them, and the merge patches that change them. */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import type { CutKind } from "./catalogue";
 import { number, object, part, text } from "./json";
 import { stoneOf, stonePatch } from "./stones";
 
