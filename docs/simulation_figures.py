@@ -10,13 +10,14 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 
-from culet.geometry.load import shape_of
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
-from culet.scene.model import Camera, Plane
-from culet.scene.model import Simulation as SimulationSettings
-from culet.simulation import Simulation, record, surfaces_of
+from culet.scene.camera import Camera
+from culet.scene.motion import Simulation as Laws
+from culet.scene.room import Plane
+from culet.simulation import Simulation, record
 from culet.simulation.plot import plot
+from culet.stage import Stage
 
 HERE = Path(__file__).parent
 START = (0.0, 1.5, 0.0)
@@ -26,25 +27,26 @@ TIMES = (0.2, 0.6, 0.8, 1.0, 1.3, 1.8, 6.0)
 
 
 def scene_of(**settings: object) -> Scene:
-    scene = Scene(floor=Plane(kind="matte"), simulation=SimulationSettings.model_validate(settings))
-    return scene.moved(START, TILT)
+    scene = Scene(floor=Plane(kind="matte"), simulation=Laws.model_validate(settings))
+    return scene.moved((START, TILT))
 
 
 def sheet(file: Path) -> None:
     """The same drop in both models, row by row; the camera stands still."""
     renderer, width, height = Renderer(), 240, 200
-    stone = shape_of(Scene().stones[0], {})
     picture = Image.new("RGB", (width * len(TIMES), 2 * height), "white")
     draw, font = ImageDraw.Draw(picture), ImageFont.load_default(size=14)
     for row, model in enumerate(("classic", "rigid")):
         scene = scene_of(model=model).model_copy(
             update={"camera": Camera(position=(0, 2.2, 7), target=(0, 0.3, 0), fov_degrees=34)}
         )
-        moving = Simulation(scene.simulation, stone, START, TILT, surfaces_of(scene))
+        stage = Stage.of(scene)
+        moving = Simulation.of(stage)
         for column, moment in enumerate(TIMES):
             while moving.state.time < moment - 1e-9:
                 moving.step()
-            still = renderer.picture(scene.moved(moving.state.position, moving.state.orientation), stone, width, height)
+            pose = moving.state.position, moving.state.orientation
+            still = renderer.picture(stage.posed([pose]), width, height)
             still.refine(4)
             picture.paste(Image.fromarray(still.rgb()), (column * width, row * height))
             draw.text((column * width + 6, row * height + 4), f"{model}, {moment} s", "white", font)
@@ -53,8 +55,7 @@ def sheet(file: Path) -> None:
 
 def main(what: list[str]) -> None:
     if not what or "plot" in what:
-        stone = shape_of(Scene().stones[0], {})
-        plot(record(scene_of(), stone, 8), HERE / "drop.png")
+        plot(record(Stage.of(scene_of()), 8), HERE / "drop.png")
     if not what or "sheet" in what:
         sheet(HERE / "drops.png")
 

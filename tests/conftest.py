@@ -12,7 +12,7 @@ from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
-from culet.scene.model import StoneSettings
+from culet.scene.stone import StoneSettings
 
 RendererOf = Callable[[int, type[np.floating[Any]]], Renderer]
 

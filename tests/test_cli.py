@@ -224,7 +224,7 @@ def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:
 async def test_frames_of_a_session_are_taken_without_a_gateway(tmp_path: Path) -> None:
     with running_engine(tmp_path) as engine:
         async with connected(engine) as (peer, _):
-            session = await peer.open({"floor": {"kind": "none"}, "lights": []})
+            session = await peer.open({"floor": {"kind": "none"}})
             await peer.demand()
             run = culet("view", engine.frames, "--session", session, "--frames", "3", "-o", tmp_path / "out")
             assert run.returncode == 0, run.stderr

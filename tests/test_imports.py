@@ -110,6 +110,14 @@ def test_no_part_needs_what_needs_it() -> None:
     assert circle(needs) == []
 
 
+def test_no_module_of_the_page_needs_what_needs_it() -> None:
+    folder = Path(__file__).parents[1] / "client" / "web" / "src"
+    files = {file.stem: file for file in folder.glob("*.ts")}
+    assert "main" in files
+    imports = re.compile(r'from "\./([\w.-]+)"')
+    assert circle({name: set(imports.findall(file.read_text(encoding="utf-8"))) for name, file in files.items()}) == []
+
+
 def test_a_circle_is_found_wherever_it_is_closed() -> None:
     assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": set()})) == {"a", "b", "c"}
     inside = "def late():\n    from culet.rendering import program\n"

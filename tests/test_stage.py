@@ -9,7 +9,7 @@ from culet.errors import MeshError, SceneError
 from culet.optics.panoramas import light_box
 from culet.optics.sky_files.picture import SkyPicture
 from culet.scene import Scene
-from culet.scene.model import DarkEnvironment
+from culet.scene.sky import DarkEnvironment
 from culet.stage import Library, Sky, Stage, uploads_of
 from shared.stones import brilliant, tetrahedron
 

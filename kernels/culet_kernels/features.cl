@@ -22,8 +22,7 @@
 #define CONSTANT 0
 #define GRADIENT 1
 #define HALF 2
-#define STUDIO 3
-#define IMAGE 4
+#define IMAGE 3
 
 // Kinds of GEOMETRY: no stone, facet half-spaces, or triangles in a tree. Never RUNTIME.
 #define EMPTY 0
@@ -58,7 +57,10 @@
 #ifndef SKY
 #define SKY RUNTIME
 #endif
-#ifndef BOXES // 0: a studio sky has none
+#ifndef LAMPS // 0: no round ones are in the sky
+#define LAMPS RUNTIME
+#endif
+#ifndef BOXES // 0: no boxes are
 #define BOXES RUNTIME
 #endif
 #ifndef HEAD // 0: the observer has none

@@ -112,35 +112,38 @@ static inline void hide_by_head(world_t world, vec3L direction, maskL mask, chan
         fma(share, scene->head_radiance[channels.first + k] - radiance->channel[k], radiance->channel[k]);
 }
 
+// Smoothstep over 1 - cosine, from the lamp's rim to where it has its full radiance; as half the squared distance between
+// unit vectors, since small lamps would lose their digits in a cosine next to 1.
+static inline void add_lamps(__constant const parameters_t *scene, vec3L direction, channels_t channels,
+                             radianceL *radiance) {
+  for (int i = 0; i < scene->lamps; i++) {
+    const vec3L apart =
+        vec3(direction.x - scene->lamp[i][0], direction.y - scene->lamp[i][1], direction.z - scene->lamp[i][2]);
+    const realL s = clamp(scene->lamp_rim[i] - scene->lamp_slope[i] * dot3(apart, apart), (realL)0, (realL)1);
+    const realL share = s * s * ((real)3 - 2 * s);
+    EACH_CHANNEL (k, channels)
+      radiance->channel[k] = fma(share, splat(scene->lamp_radiance[i][channels.first + k]), radiance->channel[k]);
+  }
+}
+
 static inline radianceL sky(world_t world, vec3L direction, channels_t channels) {
   __constant const parameters_t *scene = world.scene;
   const int kind = DECIDED(SKY, scene->sky_kind);
-  if (kind == IMAGE) return panorama(world, direction, channels);
   radianceL radiance = black();
-  if (kind == STUDIO) {
-    EACH_CHANNEL (k, channels) radiance.channel[k] = splat(scene->sky_bottom[channels.first + k]);
-    for (int i = 0; i < scene->lamps; i++) {
-      // Smoothstep over 1 - cosine, from the lamp's rim to where it has its full radiance; as half the squared distance
-      // between unit vectors, since small lamps would lose their digits in a cosine next to 1.
-      const vec3L apart =
-          vec3(direction.x - scene->lamp[i][0], direction.y - scene->lamp[i][1], direction.z - scene->lamp[i][2]);
-      const realL s = clamp(scene->lamp_rim[i] - scene->lamp_slope[i] * dot3(apart, apart), (realL)0, (realL)1);
-      const realL share = s * s * ((real)3 - 2 * s);
-      EACH_CHANNEL (k, channels)
-        radiance.channel[k] = fma(share, splat(scene->lamp_radiance[i][channels.first + k]), radiance.channel[k]);
+  if (kind == IMAGE) radiance = panorama(world, direction, channels);
+  if (kind != IMAGE) {
+    EACH_CHANNEL (k, channels) {
+      const real bottom = scene->sky_bottom[channels.first + k], top = scene->sky_top[channels.first + k];
+      if (kind == GRADIENT)
+        radiance.channel[k] = bottom + (top - bottom) * ((real)0.5 * (direction.y + 1));
+      else if (kind == HALF)
+        radiance.channel[k] = blend(direction.y > 0, splat(top), splat(bottom));
+      else
+        radiance.channel[k] = splat(top);
     }
-    if (BOXES != 0) add_boxes(scene, direction, channels, &radiance);
-    return radiance;
   }
-  EACH_CHANNEL (k, channels) {
-    const real bottom = scene->sky_bottom[channels.first + k], top = scene->sky_top[channels.first + k];
-    if (kind == GRADIENT)
-      radiance.channel[k] = bottom + (top - bottom) * ((real)0.5 * (direction.y + 1));
-    else if (kind == HALF)
-      radiance.channel[k] = blend(direction.y > 0, splat(top), splat(bottom));
-    else
-      radiance.channel[k] = splat(top);
-  }
+  if (LAMPS != 0) add_lamps(scene, direction, channels, &radiance);
+  if (BOXES != 0) add_boxes(scene, direction, channels, &radiance);
   return radiance;
 }
 

@@ -11,8 +11,11 @@ from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.optics.panoramas import STUDIO, Panorama, panorama_of
 from culet.optics.sky_files.picture import SkyPicture
-from culet.scene.model import Environment, ImageEnvironment, Pose, Scene, StoneSettings
+from culet.scene.fields import Pose
+from culet.scene.model import Scene
+from culet.scene.sky import Environment, ImageEnvironment
 from culet.scene.sky_seen import Surroundings
+from culet.scene.stone import StoneSettings
 
 
 class Sky(NamedTuple):

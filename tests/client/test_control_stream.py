@@ -40,7 +40,7 @@ def server() -> Iterator[str]:
 @pytest.fixture
 def session(server: str) -> str:
     """A new one."""
-    scene = {"floor": {"kind": "none"}, "lights": [], "environment": {"kind": "dark"}}
+    scene = {"floor": {"kind": "none"}, "environment": {"kind": "dark"}}
     reply = httpx.post(f"{server}api/sessions", json={"scene": scene}, timeout=PATIENCE)
     assert reply.status_code == 201, reply.text
     created: str = reply.json()["id"]

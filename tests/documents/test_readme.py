@@ -18,7 +18,7 @@ from PIL import Image
 
 from culet.cli import app
 from culet.scene import PRESETS, Scene
-from culet.scene.model import BrilliantCut
+from culet.scene.stone import BrilliantCut
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

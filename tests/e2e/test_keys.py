@@ -160,10 +160,16 @@ SEEN = 0.4
 """Mean difference, of 255, that an edit must make. Measured: a light moved by half an R 1.1 to 2.3, the rest 10 to 81;
 two finished pictures of one scene differ by 0."""
 
+
+def point_lights(scene: Scene) -> list[Any]:
+    """The emitters that lights 1 and 2 are."""
+    return [emitter for emitter in scene["emitters"] if emitter["shape"] == "point"]
+
+
 PLACES: dict[str, Callable[[Scene], Any]] = {
     "camera": lambda scene: scene["camera"]["position"],
-    "light_1": lambda scene: scene["lights"][0]["position"],
-    "light_2": lambda scene: scene["lights"][1]["position"],
+    "light_1": lambda scene: point_lights(scene)[0]["position"],
+    "light_2": lambda scene: point_lights(scene)[1]["position"],
 }
 
 

@@ -14,9 +14,9 @@ from culet_protocol.engine import Reply
 
 @pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
 def test_a_number_that_is_none_is_named_by_its_place(number: float) -> None:
-    with pytest.raises(InputError, match=r"lights\.1\.position: expected a finite number") as refused:
-        finite({"lights": [{"position": 0.0}, {"position": number}], "name": "x"})
-    assert refused.value.field == "lights.1.position"
+    with pytest.raises(InputError, match=r"emitters\.1\.position: expected a finite number") as refused:
+        finite({"emitters": [{"position": 0.0}, {"position": number}], "name": "x"})
+    assert refused.value.field == "emitters.1.position"
 
 
 def test_deep_nesting_is_refused_before_anything_recurses_into_it() -> None:

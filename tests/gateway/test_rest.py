@@ -13,7 +13,8 @@ import pytest
 from PIL import Image
 
 from culet.scene import Scene
-from culet.scene.model import MaterialName, Simulation
+from culet.scene.motion import Simulation
+from culet.scene.stone import MaterialName
 from culet_client import FrameSubscription
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
@@ -211,10 +212,10 @@ async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -
     assert path == f"/api/sessions/{made.json()['id']}"
     assert made.json()["scene"]["floor"]["kind"] == "matte"
 
-    changed = await gateway.http.patch(path, json={"floor": {"kind": "none"}, "lights": []})
+    changed = await gateway.http.patch(path, json={"floor": {"kind": "none"}, "emitters": []})
     assert changed.status_code == 200
     scene: dict[str, Any] = (await gateway.http.get(path)).json()["scene"]
-    assert (scene["floor"]["kind"], scene["lights"]) == ("none", [])
+    assert (scene["floor"]["kind"], scene["emitters"]) == ("none", [])
     for environment in (
         {"kind": "light"},
         {"kind": "constant", "radiance": [1, 2, 3]},
@@ -241,7 +242,7 @@ async def test_a_session_without_a_body_shows_the_default_scene(gateway: Gateway
     [
         ({"preset": "coal"}, 404, None),
         ({"preset": "matte", "scene": {}}, 422, None),
-        ({"scene": {"lights": 7}}, 422, "scene.lights"),
+        ({"scene": {"emitters": 7}}, 422, "scene.emitters"),
     ],
 )
 async def test_a_session_that_cannot_be_made_is_refused(

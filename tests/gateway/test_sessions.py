@@ -9,9 +9,9 @@ from culet.gateway.session_record import SessionRecord
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
-from culet.gateway.viewer import DEFAULT_SIZE
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Engine, State, Viewers
+from culet_protocol.sizes import LIVE_SIZE
 
 SETTINGS = GatewaySettings(control="ipc://unused", frames="ipc://unused")
 
@@ -40,7 +40,7 @@ def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_w
     sessions: Sessions,
 ) -> None:
     session = SessionRecord("ab" * 16, {})
-    assert session.wanted(0) == (0, *DEFAULT_SIZE)
+    assert session.wanted(0) == (0, *LIVE_SIZE)
     desk, phone = sessions.join(session), sessions.join(session)
     now = phone.watching_since
     desk.resize(1280, 720)
@@ -55,7 +55,7 @@ def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_w
     session.viewers.remove(phone)
     assert session.wanted(now + 3) == (60, 1920, 1080)
     desk.show(False, now + 4)
-    assert session.wanted(now + 4) == (0, *DEFAULT_SIZE)
+    assert session.wanted(now + 4) == (0, *LIVE_SIZE)
 
 
 def test_the_words_of_a_document_are_all_its_texts() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from culet.errors import SceneError
 from culet.optics.dispersion import PETER_1923, channel_indices, sellmeier
-from culet.scene.model import IndexMaterial, SellmeierMaterial
+from culet.scene.stone import IndexMaterial, SellmeierMaterial
 
 BK7 = ((1.03961212, 0.00600069867**0.5), (0.231792344, 0.0200179144**0.5), (1.01046945, 103.560653**0.5))
 """SCHOTT's data sheet of N-BK7; it gives the squares of C."""

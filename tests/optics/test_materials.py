@@ -11,7 +11,7 @@ from culet.errors import InputError, SceneError
 from culet.optics.dispersion import channel_indices
 from culet.optics.materials import CLASSIC_INDICES, MATERIALS, PETER_1923, material_of
 from culet.optics.wavelengths import LINE_B, LINE_C, LINE_D, LINE_F, LINE_G, RGB_NANOMETRES
-from culet.scene.model import IndexMaterial, SellmeierMaterial
+from culet.scene.stone import IndexMaterial, SellmeierMaterial
 
 CHECK_VALUES = {
     # at 450, 550, 650 nm and the d line; n_F - n_C; computed once from the published coefficients by another program

@@ -42,14 +42,14 @@ def _paths(scene: Scene, stone: Shape, direction: Array, channel: int) -> Array:
         o, d = origin[alive], direction[alive]
         t, normal, surface = _nearest(o, d, triangles, kinds)
         missed = ~np.isfinite(t)
-        radiance[alive[missed]] += weight[alive[missed]] * sky(scene.environment, d[missed])[:, channel]
+        radiance[alive[missed]] += weight[alive[missed]] * sky(scene, d[missed])[:, channel]
         alive, o, d = alive[~missed], o[~missed], d[~missed]
         t, normal, surface = t[~missed], normal[~missed], surface[~missed]
         if len(alive) == 0:
             break
         reflected = d - 2 * (d * normal).sum(1)[:, None] * normal
         if meeting == scene.optics.max_bounces - 1:
-            radiance[alive] += weight[alive] * sky(scene.environment, reflected)[:, channel]
+            radiance[alive] += weight[alive] * sky(scene, reflected)[:, channel]
             break
         point = o + t[:, None] * d
         goes_on = np.ones(len(alive), bool)
@@ -67,7 +67,7 @@ def _paths(scene: Scene, stone: Shape, direction: Array, channel: int) -> Array:
         cosine = -(d[gem] * outward).sum(1)
         f0 = ((1 - eta) / (1 + eta)) ** 2
         term = f0 + (1 - f0) * (1 - cosine) ** 5
-        radiance[alive[gem]] += weight[alive[gem]] * term * sky(scene.environment, reflected[gem])[:, channel]
+        radiance[alive[gem]] += weight[alive[gem]] * term * sky(scene, reflected[gem])[:, channel]
         ratio = np.where(entering, 1 / eta, eta)
         squared = 1 - ratio**2 * (1 - cosine**2)
         through = squared >= 0
@@ -134,7 +134,7 @@ def _room(
     u, v = np.where(on_floor, x, normal[:, 2] * x - normal[:, 0] * z), np.where(on_floor, z, y)
     odd = (np.floor(u) + np.floor(v)) % 2 > 0.5
     light = np.full(len(point), 0.2)
-    for lamp in scene.lights:
+    for lamp in scene.points:
         to_light = np.array(lamp.position) - point
         distance = np.linalg.norm(to_light, axis=1)
         to_light /= distance[:, None]

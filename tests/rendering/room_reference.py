@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
 from culet.scene import Scene
-from culet.scene.lamps import BoxLamp
-from culet.scene.model import (
+from culet.scene.emitters import BoxLamp, PointLight, RoundLamp, Sun
+from culet.scene.sky import (
     ConstantEnvironment,
     Environment,
     GradientEnvironment,
     HalfEnvironment,
     LightEnvironment,
+    StudioEnvironment,
 )
-from culet.scene.studio import StudioEnvironment
 from rendering.views import Array, pixel_directions
 
 SURFACES = np.array([[0, 1, 0, -1], [0, 0, 1, -8], [math.sqrt(3) / 2, 0, 0.5, -8], [-math.sqrt(3) / 2, 0, 0.5, -8]])
@@ -57,8 +57,43 @@ def box_share(box: BoxLamp, direction: Array) -> Array:
     return np.asarray((3 * share**2 - 2 * share**3) * (1 - box.fade * (1 - height) / 2))
 
 
-def sky(environment: Environment, direction: Array) -> Array:
+def sky(scene: Scene, direction: Array) -> Array:
     """(N, 3) radiance from infinity; direction (N, 3) of unit length."""
+    total = ground(scene.environment, direction)
+    if scene.environment.kind in ("dark", "light"):
+        return total
+    for lamp in scene.emitters:
+        if isinstance(lamp, PointLight):
+            continue
+        total = total + lamp_share(lamp, direction)[:, None] * radiance_of(lamp)
+    return total
+
+
+def lamp_share(lamp: RoundLamp | BoxLamp | Sun, direction: Array) -> Array:
+    """(N,) the share of a lamp's radiance that each direction sees."""
+    if isinstance(lamp, BoxLamp):
+        return box_share(lamp, direction)
+    rim, full = np.cos(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])))
+    cosine = direction @ (np.array(lamp.direction) / np.linalg.norm(lamp.direction))
+    s = np.clip((cosine - rim) / (full - rim), 0, 1)
+    return np.asarray(3 * s**2 - 2 * s**3)
+
+
+def radiance_of(lamp: RoundLamp | BoxLamp | Sun) -> Array:
+    """(3,) at its brightest. A sun's is what gives a surface that faces it pi times its colour, by quadrature."""
+    if not isinstance(lamp, Sun):
+        return np.array(lamp.radiance)
+    angle = np.radians(lamp.half_angle_degrees) * (np.arange(20_000) + 0.5) / 20_000
+    around = np.column_stack([np.sin(angle), np.cos(angle), np.zeros_like(angle)])
+    share = lamp_share(lamp.model_copy(update={"direction": (0, 1, 0)}), around)
+    irradiance = (
+        (share * np.cos(angle) * 2 * np.pi * np.sin(angle)).sum() * np.radians(lamp.half_angle_degrees) / 20_000
+    )
+    return np.array(lamp.colour) * float(np.pi / irradiance)
+
+
+def ground(environment: Environment, direction: Array) -> Array:
+    """(N, 3) the sky without its lamps."""
     height = (0.5 * (1 + direction[:, 1]))[:, None]
     match environment:
         case ConstantEnvironment(radiance=colour):
@@ -69,17 +104,8 @@ def sky(environment: Environment, direction: Array) -> Array:
             return np.where(direction[:, 1:2] > 0, colour, 0.0)
         case GradientEnvironment(bottom=bottom, top=top):
             return np.array(bottom) * (1 - height) + np.array(top) * height
-        case StudioEnvironment(ambient=ambient, lamps=lamps):
-            total = np.tile(np.array(ambient), (len(direction), 1))
-            for lamp in lamps:
-                if isinstance(lamp, BoxLamp):
-                    total += box_share(lamp, direction)[:, None] * np.array(lamp.radiance)
-                    continue
-                rim, full = np.cos(np.radians(lamp.half_angle_degrees * np.array([1, 1 - lamp.softness])))
-                cosine = direction @ (np.array(lamp.direction) / np.linalg.norm(lamp.direction))
-                s = np.clip((cosine - rim) / (full - rim), 0, 1)
-                total += (3 * s**2 - 2 * s**3)[:, None] * np.array(lamp.radiance)
-            return total
+        case StudioEnvironment(ambient=ambient):
+            return np.tile(np.array(ambient), (len(direction), 1))
         case _:
             return np.array((0.05, 0.05, 0.1)) * (1 - height) + np.array((0.2, 0.2, 0.3)) * height
 
@@ -113,7 +139,7 @@ def passes_through(
 def lighting(scene: Scene, planes: Array, point: Array, normal: Array) -> Array:
     """(N, 3) light on surfaces: 0.2 of ambient, and each light's colour by its cosine, a fifth of it in the shadow."""
     total = np.full(point.shape, 0.2)
-    for light in scene.lights:
+    for light in scene.points:
         way = np.array(light.position) - point
         cosine = (way * normal).sum(axis=1) / np.linalg.norm(way, axis=1)
         shadow = np.where(passes_through(planes, point, way, 1.0), 0.2, 1.0)
@@ -139,7 +165,7 @@ def look_around(scene: Scene, stone: Shape | None, width: int, height: int) -> S
             nearest, which = np.where(nearer, t, nearest), np.where(nearer, number, which)
         met_stone |= ~stopped & passes_through(planes, origin, direction, nearest)
         stopped |= met_stone
-        seen = sky(scene.environment, direction)
+        seen = sky(scene, direction)
         met = which >= 0
         mirror = met & (np.array(kinds)[which] == "mirror")
         normal = SURFACES[which, :3]

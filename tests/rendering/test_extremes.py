@@ -33,7 +33,7 @@ def test_no_light_comes_out_of_nothing(renderer: Renderer, exact: Renderer, extr
 @pytest.mark.parametrize("extreme", SCENES.values(), ids=SCENES.keys())
 def test_single_precision_sees_what_double_sees(renderer: Renderer, exact: Renderer, extreme: dict[str, Any]) -> None:
     """On the whole: the mean under a gradient, where a wrong facet shows."""
-    scene = legacy({**extreme, "lights": [], "environment": {"kind": "gradient"}})
+    scene = legacy({**extreme, "emitters": [], "environment": {"kind": "gradient"}})
     single, double = (radiance(take(used, scene, size=SIZE)).mean() for used in (renderer, exact))
     assert single == pytest.approx(double, abs=1e-3)  # measured 4.2e-4, the floor's checker 1e8 R away; 7e-5 the others
 

@@ -14,13 +14,14 @@ from conftest import RendererOf
 from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import PRESETS
-from culet.scene.legacy import LEGACY_DEFAULT, legacy
+from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, legacy
 from pictures import compared
 from rendering.views import BARE, radiance, take
 from shared.stages import staged
 
 LANES = 4
 """Narrow packets compile faster, and the claims are about the source."""
+LAMPS = [lamp.model_dump() for lamp in LEGACY_LAMPS]
 DECIDED: dict[str, tuple[str, int, dict[str, Any]]] = {
     "no floor": ("floor", SURFACE["none"], {"floor": {"kind": "none"}}),
     "matte floor": ("floor", SURFACE["matte"], {"floor": {"kind": "matte"}}),
@@ -28,11 +29,11 @@ DECIDED: dict[str, tuple[str, int, dict[str, Any]]] = {
     "no walls": ("walls", SURFACE["none"], {}),
     "matte walls": ("walls", SURFACE["matte"], {"walls": {"kind": "matte"}}),
     "mirror walls": ("walls", SURFACE["mirror"], {"walls": {"kind": "mirror"}}),
-    "no lights": ("lights", 0, {"lights": [], "floor": {"kind": "matte"}}),
+    "no lights": ("lights", 0, {"emitters": LAMPS, "floor": {"kind": "matte"}}),
     "constant sky": ("sky", SKY["constant"], {"environment": {"kind": "constant"}}),
     "gradient sky": ("sky", SKY["gradient"], {"environment": {"kind": "gradient"}}),
     "half sky": ("sky", SKY["half"], {"environment": {"kind": "half"}}),
-    "studio sky": ("sky", SKY["studio"], {}),
+    "no lamps": ("lamps", 0, {"emitters": []}),
     "no dispersion": ("dispersion", 0, {"stones": [{"material": {"ior": [2.4, 2.4, 2.4]}}]}),
     "no absorption": ("absorption", 0, {}),
     "exact Fresnel": ("fresnel", FRESNEL["exact"], {}),
@@ -40,7 +41,7 @@ DECIDED: dict[str, tuple[str, int, dict[str, Any]]] = {
     "camera outside": ("camera_inside", 0, {}),
 }
 """What is decided, how, and a scene in which it is so."""
-OFF = ("no floor", "no walls", "no lights", "no absorption", "exact Fresnel", "constant sky")
+OFF = ("no floor", "no walls", "no lights", "no absorption", "exact Fresnel", "no lamps")
 
 
 def machine_code(picture: Picture) -> int:
@@ -120,7 +121,7 @@ OWN: dict[str, dict[str, Any]] = {
     "default": {},
     "bare": {**BARE, "environment": {"kind": "constant"}, "stones": [{"material": {"ior": [2, 2, 2]}}]},
     "report's room": {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}, "environment": {"kind": "dark"}},
-    "tinted mirror": {"stones": [{"absorption": [2, 1, 0.1]}], "optics": {"fresnel": "schlick"}, "lights": []},
+    "tinted mirror": {"stones": [{"absorption": [2, 1, 0.1]}], "optics": {"fresnel": "schlick"}, "emitters": LAMPS},
 }
 
 
@@ -146,11 +147,11 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
         }
         for name, preset in PRESETS.items()
     }
-    assert left["default"] == {"boxes"}
-    assert left["mirror"] == {"lights"}
+    assert left["default"] == {"boxes", "lamps"}
+    assert left["mirror"] == {"lights", "lamps"}
     assert left["tinted-blue"] == {"lights", "absorption"}
     assert features_of(staged(legacy(OWN["bare"]))) == Features(
-        Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], boxes=0, head=0, backdrop=0, glare=1,
+        Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], lamps=0, boxes=0, head=0, backdrop=0, glare=1,
         dispersion=0, absorption=0, fresnel=0, end=0, camera_inside=0,
     )  # fmt: skip
 

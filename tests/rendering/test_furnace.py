@@ -81,6 +81,6 @@ ROOMS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("room", ROOMS.values(), ids=ROOMS.keys())
 def test_a_stone_of_index_one_cannot_be_seen(exact: Renderer, room: dict[str, Any]) -> None:
     """Without lights, for it would still cast its shadow."""
-    scene = legacy({"stones": [INDEX_ONE], "lights": [], "environment": {"kind": "gradient"}, **room})
+    scene = legacy({"stones": [INDEX_ONE], "emitters": [], "environment": {"kind": "gradient"}, **room})
     difference = abs(radiance(take(exact, scene)) - radiance(take(exact, without_stone(scene)))).max(axis=-1)
     assert (difference > 1e-12).sum() == 0

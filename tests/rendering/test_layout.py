@@ -13,7 +13,7 @@ from culet.rendering.build import FLAGS, Variant
 from culet.rendering.chains import GROUPS
 from culet.rendering.device import Device
 from culet.rendering.layout import arguments, constants, in_order, struct
-from culet.scene.lamps import MOST_LAMPS
+from culet.scene.emitters import MOST_LAMPS
 
 PROBE = """
 #define PLACE(field) (int)((__private char *)&p.field - (__private char *)&p)

@@ -12,7 +12,7 @@ from culet.geometry.shape import Shape
 from culet.rendering.features import Features, Geometry
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
-from culet.scene.legacy import legacy
+from culet.scene.legacy import LEGACY_LAMPS, legacy
 from pictures import compared
 from rendering.room_reference import look_around
 from rendering.views import radiance, take
@@ -64,7 +64,7 @@ def test_every_room_is_as_described(renderer: Renderer, exact: Renderer, floor: 
 
 def test_a_mirror_floor_returns_four_fifths_of_the_sky_and_a_fifth_of_its_own_light(exact: Renderer) -> None:
     """The closed form for no lights: 0.8 sky + 0.2 x 0.2 x albedo, albedo 0.1 and 0.05."""
-    data = {"stones": [], "lights": [], "environment": {"kind": "constant", "radiance": [1, 2, 4]}}
+    data = {"stones": [], "emitters": [], "environment": {"kind": "constant", "radiance": [1, 2, 4]}}
     camera = {"position": [0, 3, 0], "target": [0.5, -1, 0.5], "fov_degrees": 50}
     pixels = radiance(take(exact, legacy({**data, "camera": camera}))).reshape(-1, 3)
     expected = np.array([[0.8 * c + 0.04 * albedo for c in (1, 2, 4)] for albedo in (0.1, 0.05)])
@@ -81,7 +81,7 @@ def test_a_mirrored_camera_sees_the_mirrored_stone(exact: Renderer) -> None:
     """
     stone = {"material": {"ior": [1, 1, 1]}, "absorption": [0.5, 1, 2], "position": [0, 1, 0]}
     sky = {"kind": "gradient", "bottom": [0.2, 0.3, 0.4], "top": [1, 2, 3]}
-    common = {"stones": [stone], "lights": [], "environment": sky, "optics": FINE}
+    common = {"stones": [stone], "emitters": [], "environment": sky, "optics": FINE}
     above = {"position": [0, 2, 4], "target": [0, -2.9, -0.2], "fov_degrees": 25}
     below = {"position": [0, -4, 4], "target": [0, 0.9, -0.2], "up": [0, -1, 0], "fov_degrees": 25}
     mirrored = radiance(take(exact, legacy({**common, "camera": above})))
@@ -94,16 +94,21 @@ def test_a_mirrored_camera_sees_the_mirrored_stone(exact: Renderer) -> None:
     assert (abs(direct - bare.radiance[:, ::-1]).max(axis=-1) > 0.1).mean() > 0.05  # the stone is in view
 
 
+def lit(*points: dict[str, Any]) -> dict[str, Any]:
+    """The legacy lamps, with these point lights."""
+    return {"emitters": [*(lamp.model_dump() for lamp in LEGACY_LAMPS), *({"shape": "point", **p} for p in points)]}
+
+
 LIGHTS: dict[str, dict[str, Any]] = {
     "two above": {},
-    "low": {"lights": [{"position": [-3, -0.5, 1], "colour": [1, 1, 1]}]},
-    "near": {"lights": [{"position": [0.3, 1.9, 0.2], "colour": [1, 1, 1]}]},
-    "inside the stone": {"lights": [{"position": [0.1, 0.75, 0], "colour": [1, 1, 1]}]},
-    "under the stone": {"lights": [{"position": [0.2, -0.5, 0.1], "colour": [1, 1, 1]}]},
-    "below the floor": {"lights": [{"position": [0, -3, 0], "colour": [1, 1, 1]}]},
-    "in the floor": {"lights": [{"position": [2, -1, 0], "colour": [1, 1, 1]}]},
-    "far": {"lights": [{"position": [-1e6, 2e6, 5e5], "colour": [1, 1, 1]}]},
-    "eight": {"lights": [{"position": [4 - i, 3, i], "colour": [0.1 * i, 0.5, 1]} for i in range(8)]},
+    "low": lit({"position": [-3, -0.5, 1], "colour": [1, 1, 1]}),
+    "near": lit({"position": [0.3, 1.9, 0.2], "colour": [1, 1, 1]}),
+    "inside the stone": lit({"position": [0.1, 0.75, 0], "colour": [1, 1, 1]}),
+    "under the stone": lit({"position": [0.2, -0.5, 0.1], "colour": [1, 1, 1]}),
+    "below the floor": lit({"position": [0, -3, 0], "colour": [1, 1, 1]}),
+    "in the floor": lit({"position": [2, -1, 0], "colour": [1, 1, 1]}),
+    "far": lit({"position": [-1e6, 2e6, 5e5], "colour": [1, 1, 1]}),
+    "eight": lit(*({"position": [4 - i, 3, i], "colour": [0.1 * i, 0.5, 1]} for i in range(8))),
 }
 PLACES: dict[str, dict[str, Any]] = {
     "hovering": {"position": [0, 0.8, 0]},

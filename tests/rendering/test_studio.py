@@ -34,9 +34,9 @@ BOXES = [
      "radiance": [1, 2, 3], "fade": 0.5, "softness": 0.4},
     {"shape": "box", "direction": [-0.8, 0.2, 0.5], "half_width_degrees": 50, "half_height_degrees": 4,
      "radiance": [0.5, 0.4, 0.3]},
-    {"direction": [0, 0.4, 1], "half_angle_degrees": 6, "radiance": [4, 5, 6]},
+    {"shape": "round", "direction": [0, 0.4, 1], "half_angle_degrees": 6, "radiance": [4, 5, 6]},
 ]  # fmt: skip
-STUDIO: dict[str, Any] = {"kind": "studio", "ambient": [0.1, 0.2, 0.3], "lamps": BOXES}
+STUDIO: dict[str, Any] = {"kind": "studio", "ambient": [0.1, 0.2, 0.3]}
 OFF = {"boxes": 0, "head": 0, "backdrop": 0, "glare": 1}
 BEFORE = np.load(Path(__file__).parent / "legacy_default.npz")
 """`LEGACY_DEFAULT` by version 0.1 in double precision, 96 x 54."""
@@ -52,7 +52,9 @@ def shown(
 
 def scene_of(**fields: object) -> Scene:
     """A bare room under `STUDIO`, without head and backdrop, but for what is given."""
-    base: dict[str, Any] = {**BARE, "stones": [], "environment": STUDIO, "optics": {"cutoff": 1e-9}}
+    base: dict[str, Any] = {**BARE, "stones": [], "optics": {"cutoff": 1e-9}}
+    if "environment" not in fields:
+        base |= {"environment": STUDIO, "emitters": BOXES}
     camera = {"position": [0.7, 1.5, 5], "target": [0.2, 0, -2], "fov_degrees": 75}
     return legacy({**base, "camera": camera, **fields})
 
@@ -72,8 +74,7 @@ def test_a_scene_that_asks_for_none_of_it_has_a_program_without_it(name: str, br
     asks = scene.head is not None or scene.backdrop.kind != "none" or not scene.optics.glare
     features = features_of(staged(scene, brilliant))
     found = {feature: getattr(features, feature) for feature in OFF}
-    lamps = getattr(scene.environment, "lamps", ())
-    assert (found == OFF) is not (asks or any(lamp.shape == "box" for lamp in lamps))
+    assert (found == OFF) is not (asks or any(lamp.shape == "box" for lamp in scene.shown_lamps))
 
 
 def test_the_legacy_default_is_drawn_as_before(exact: Renderer, brilliant: Shape) -> None:
@@ -85,7 +86,7 @@ def test_the_legacy_default_is_drawn_as_before(exact: Renderer, brilliant: Shape
 
 def test_boxes_are_seen_as_described(renderer: Renderer, exact: Renderer) -> None:
     scene = scene_of(camera={"position": [0, 0, 0], "target": [-0.1, 0.4, 1], "fov_degrees": 150})
-    expected = sky(scene.environment, pixel_directions(scene, *SIZE).reshape(-1, 3)).reshape(SIZE[1], SIZE[0], 3)
+    expected = sky(scene, pixel_directions(scene, *SIZE).reshape(-1, 3)).reshape(SIZE[1], SIZE[0], 3)
     assert (expected.max(axis=(0, 1)) > 1).all()
     assert shown(exact, scene) == pytest.approx(expected, abs=1e-11)  # measured 2e-12
     assert shown(renderer, scene) == pytest.approx(expected, abs=2e-3)
@@ -96,9 +97,7 @@ def test_a_turned_box_is_as_wide_as_it_was_high(exact: Renderer, turn: float) ->
     camera = {"position": [0, 0, 0], "target": [0.3, 0.7, 0.6], "fov_degrees": 80}
     box = {**BOXES[0], "fade": 0}
     turned = {**box, "half_width_degrees": 20, "half_height_degrees": 14, "turn_degrees": turn}
-    pictures = [
-        shown(exact, scene_of(camera=camera, environment={"kind": "studio", "lamps": [lamp]})) for lamp in (box, turned)
-    ]
+    pictures = [shown(exact, scene_of(camera=camera, emitters=[lamp])) for lamp in (box, turned)]
     assert pictures[1] == pytest.approx(pictures[0], abs=1e-12)
 
 
@@ -208,7 +207,7 @@ def test_a_studio_as_a_panorama_shows_the_same_stone(renderer: Renderer, brillia
     head = {"half_angle_degrees": 14, "radiance": [0.02, 0.02, 0.02]}
     studio = scene_of(**common, floor={"kind": "studio", "colour": [0.3, 0.2, 0.1], "reflectance": 0}, head=head)
     d = directions(1024)
-    painted = sky(studio.environment, d.reshape(-1, 3)).reshape(d.shape)
+    painted = sky(studio, d.reshape(-1, 3)).reshape(d.shape)
     towards = np.array([0, 7.5, 11]) / np.hypot(7.5, 11)
     rim, full = np.cos(np.radians(14 * np.array([1, 0.7])))
     s = np.clip((d @ towards - rim) / (full - rim), 0, 1)

@@ -16,7 +16,7 @@ from shared.stages import staged
 
 Array = NDArray[np.float64]
 
-BARE: dict[str, Any] = {"floor": {"kind": "none"}, "walls": {"kind": "none"}, "lights": []}
+BARE: dict[str, Any] = {"floor": {"kind": "none"}, "walls": {"kind": "none"}}
 """A room that holds nothing but the stone."""
 
 UPRIGHT: dict[str, Any] = {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}

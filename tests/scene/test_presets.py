@@ -11,8 +11,11 @@ import pytest
 from culet.errors import NotFoundError
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene, preset
-from culet.scene.model import BrilliantCut, ConstantEnvironment, Optics, Plane
-from culet.scene.studio import NoBackdrop
+from culet.scene.backdrop import NoBackdrop
+from culet.scene.optics import Optics
+from culet.scene.room import Plane
+from culet.scene.sky import ConstantEnvironment
+from culet.scene.stone import BrilliantCut
 from culet.scene.thumbnails import SIZE, thumbnail_of
 from rendering.views import BARE, radiance, take, without_stone
 
@@ -69,6 +72,7 @@ def test_face_up_the_eightfold_outline_looks_the_same_turned_by_a_quarter(render
     """A brilliant has eight mains, so that its outline is its own after 45 degrees; of a square picture after 90."""
     plain = {
         "environment": ConstantEnvironment(kind="constant"),
+        "emitters": (),
         "floor": Plane(),
         "backdrop": NoBackdrop(),
         "head": None,
@@ -112,14 +116,15 @@ def test_the_classic_scene_has_the_reports_constants() -> None:
     scene = preset("classic")
     assert [*scene.camera.position, scene.camera.fov_degrees] == [0, 2, 13, 45]
     assert scene.camera.target[1] < scene.camera.position[1]  # slightly down
-    assert [light.position for light in scene.lights] == [(-4, 6, 4), (4, 6, 4)]
-    assert [light.colour for light in scene.lights] == [(1, 0.2, 0.2), (0.2, 0.5, 1)]
+    assert [light.position for light in scene.points] == [(-4, 6, 4), (4, 6, 4)]
+    assert [light.colour for light in scene.points] == [(1, 0.2, 0.2), (0.2, 0.5, 1)]
     assert list(scene.stones[0].position) == [0, 4, 0]
     assert list(scene.stones[0].absorption) == [0.02] * 3
     assert (scene.optics.estimator, scene.optics.fresnel, scene.optics.max_bounces) == ("classic", "schlick", 12)
     assert scene.film.tone_map == "classic"
     physics = scene.simulation
-    assert (physics.model, physics.inertia, physics.mass, physics.spin) == ("classic", "cone", 2, (0.5, 3, 0))
+    assert (physics.model, physics.inertia) == ("classic", "cone")
+    assert (scene.stones[0].mass, scene.stones[0].spin) == (2, (0.5, 3, 0))
     assert (physics.gravity, physics.time_step, physics.restitution) == (9.81, 1 / 30, 0.6)
     assert (physics.velocity_threshold, physics.tangential_damping, physics.angular_damping) == (0.1, 0.9, 0.75)
     assert (physics.random_torque, physics.random_torque_speed) == (5, 2)

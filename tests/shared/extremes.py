@@ -10,7 +10,13 @@ from typing import Any
 from rendering.views import UPRIGHT
 from shared.stones import needle, prism, slab
 
-GLOW: dict[str, Any] = {"environment": {"kind": "constant"}, "lights": []}
+
+def point(*position: float) -> dict[str, Any]:
+    """A light without light."""
+    return {"shape": "point", "position": list(position), "colour": [0, 0, 0]}
+
+
+GLOW: dict[str, Any] = {"environment": {"kind": "constant"}, "emitters": []}
 """A sky of radiance 1 and unlit surfaces below 1: no pixel may be brighter."""
 
 
@@ -32,7 +38,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "stone far away": {"stones": [{"position": [1e8, 5, 1e8]}], **looking([1e8, 5, 1e8 + 4], [1e8, 5, 1e8])},
     "widest": {"camera": {"fov_degrees": 170}},
     "opaque": {"stones": [{"absorption": [1e6, 1e6, 1e6]}]},
-    "as opaque as can be": {"stones": [{"absorption": [1e9, 0, 1e9], "size_mm": 1e9}]},
+    "as opaque as can be": {"stones": [{"absorption": [1e18, 0, 1e18]}]},
     "index 1": {"stones": [{"material": {"ior": [1, 1, 1]}}]},
     "index just above 1": {"stones": [{"material": {"ior": [1 + 1e-6, 1 + 1e-6, 1 + 1e-7]}}]},
     "index 10": {"stones": [{"material": {"ior": [10, 10, 10]}}]},
@@ -41,8 +47,8 @@ SCENES: dict[str, dict[str, Any]] = {
     "coarsest": {"optics": {"cutoff": 0.999999, "max_bounces": 1}},
     "sunk in the floor": {"stones": [{"position": [0, -1, 0]}]},
     "in a wall": {"walls": {"kind": "mirror"}, "stones": [{"position": [0, 0, -8]}]},
-    "light in the stone": {"floor": {"kind": "matte"}, "lights": [{"position": [0, 0.5, 0], "colour": [0, 0, 0]}]},
-    "light in the camera": {"floor": {"kind": "matte"}, "lights": [{"position": [0, 2.4, 4.6], "colour": [0, 0, 0]}]},
+    "light in the stone": {"floor": {"kind": "matte"}, "emitters": [point(0, 0.5, 0)]},
+    "light in the camera": {"floor": {"kind": "matte"}, "emitters": [point(0, 2.4, 4.6)]},
 }  # fmt: skip
 """Views, materials and settings."""
 

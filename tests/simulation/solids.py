@@ -9,10 +9,10 @@ import struct
 import numpy as np
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.motion import Motion, gaps
 from culet.simulation.rotation import IDENTITY, normalised
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, RigidState, Triple
 from culet.simulation.surfaces import FLOOR, Surface

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.active_set import refine
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import contacts
 from culet.simulation.impulses import with_impulses
 from culet.simulation.linear import factorised, solution
 from culet.simulation.motion import Motion, velocities
+from culet.simulation.settings import SimulationSettings
 from simulation.solids import UPRIGHT, lowest
 
 

@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 
 from culet.errors import InputError
 from culet.geometry.shape import MassProperties, Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import normalised
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import RigidState
 
 SCENE_DEFAULT = SimulationSettings.model_validate({})

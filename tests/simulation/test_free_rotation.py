@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import MassProperties, Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.free_rotation import INTEGRATORS, MAX_DIVISIONS, rkmk4, turned
 from culet.simulation.rotation import rotate, rotate_back
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, Triple
 from simulation.jacobi import FreeTop
 from simulation.solids import UPRIGHT

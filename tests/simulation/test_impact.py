@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact, closing_speed, contacts
 from culet.simulation.impact import impact
 from culet.simulation.motion import Motion, gaps, kinetic_energy
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR
 from simulation.solids import TABLE_DOWN, about, random_body

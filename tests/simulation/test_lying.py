@@ -10,8 +10,9 @@ import pytest
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.scene import Scene, StoneSettings
-from culet.scene.model import BrilliantCut, Pose
+from culet.scene.fields import Pose
 from culet.scene.room import FLOOR_Y
+from culet.scene.stone import BrilliantCut
 from culet.simulation import Simulation
 from culet.simulation.lying import (
     LYING_DEGREES,
@@ -23,6 +24,7 @@ from culet.simulation.lying import (
     slope_degrees,
 )
 from culet.simulation.rotation import rotate
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, Triple
 from shared import stones
 
@@ -72,7 +74,7 @@ def test_another_brilliant_is_not_turned(name: str, brilliant: Shape) -> None:
 def test_what_is_laid_down_rests_there(name: str) -> None:
     stone, orientation = OTHERS[name](), DEFAULT.orientation
     orientation = laid(orientation, lowest_facet(stone, orientation))
-    settings = Scene().simulation.model_copy(update={"spin": (0, 0, 0)})
+    settings = SimulationSettings.of(Scene(), DEFAULT.model_copy(update={"spin": (0, 0, 0)}), stone)
     simulation = Simulation(settings, stone, (0.0, resting_height(stone, orientation), 0.0), orientation)
     start = simulation.state.position
     for _ in range(120):

@@ -16,6 +16,7 @@ from culet.geometry.shape import Shape
 from culet.scene import Scene, preset
 from culet.simulation.paths import MAX_STEPS, Path, record, write
 from culet.simulation.simulation import Simulation
+from culet.stage import Stage
 from shared.stages import staged
 
 
@@ -35,8 +36,7 @@ def test_ten_seconds_are_the_start_and_three_hundred_steps(path: Path) -> None:
 
 
 def test_a_path_is_the_simulations(path: Path, box: Shape) -> None:
-    scene = preset("classic")
-    moving = Simulation(scene.simulation, box, scene.stones[0].position, scene.stones[0].orientation)
+    moving = Simulation.of(Stage(preset("classic"), (box,), None))
     for index in range(301):
         state = moving.state
         assert tuple(path.position[index]) == state.position

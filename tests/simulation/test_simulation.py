@@ -13,12 +13,13 @@ import pytest
 from culet.errors import InputError
 from culet.geometry.shape import Shape
 from culet.scene import preset
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.clock import FixedStepClock
 from culet.simulation.models import MODELS
 from culet.simulation.rotation import rotate
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, RigidState, Triple
+from culet.stage import Stage
 from simulation.solids import UPRIGHT, classic, digest, numbers
 
 START: Triple = (0.0, 4.0, 0.0)
@@ -247,9 +248,7 @@ def test_every_model_that_a_scene_can_name_exists() -> None:
 
 
 def test_the_reports_scene_bounces_and_rests(box: Shape) -> None:
-    scene = preset("classic")
-    placed = scene.stones[0]
-    path = states(Simulation(scene.simulation, box, placed.position, placed.orientation), 300)
+    path = states(Simulation.of(Stage(preset("classic"), (box,), None)), 300)
     assert 2 <= path[-1].impacts <= 4
     assert path[-1].asleep
     assert len(set(map(astuple, path))) == 300

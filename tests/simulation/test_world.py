@@ -14,6 +14,7 @@ from culet.errors import InputError, TooLargeError
 from culet.geometry.shape import Shape
 from culet.simulation.bodies import Body
 from culet.simulation.rotation import IDENTITY
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
 from culet.simulation.surfaces import FLOOR, WALLS
@@ -41,7 +42,8 @@ def two(stone: Shape) -> list[Body]:
 
 def test_one_stone_moves_as_its_own_simulation_to_the_bit(box: Shape) -> None:
     moving = world([one(box, mass=2.0)])
-    alone = Simulation(law(mass=2.0, spin=(0.5, 3, 0)), box, (0.0, 2.0, 0.0), TILTED)
+    settings = SimulationSettings(**law().model_dump(), mass=2.0, spin=(0.5, 3, 0))
+    alone = Simulation(settings, box, (0.0, 2.0, 0.0), TILTED)
     for _ in range(240):
         moving.step()
         alone.step()

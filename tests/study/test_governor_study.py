@@ -26,7 +26,7 @@ SIZE = 64, 36
 FLAT = Scene.read(
     {
         "stones": [{"position": [0, 0, 0], "orientation": [0, 1, 0, 0]}],
-        "simulation": {"restitution": 0, "spin": [0, 0, 0]},
+        "simulation": {"restitution": 0},
     }
 )
 """Lands on its table, and sleeps half a second later."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from culet.scene.model import Film
+from culet.scene.film import Film
 from culet.study.image_error import (
     as_shown,
     colour_difference,

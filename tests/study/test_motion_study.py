@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import MassProperties, Shape
-from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import rotate, rotate_back
+from culet.simulation.settings import SimulationSettings as Settings
 from culet.study.journal import Journal
 from culet.study.motions import Motion, bounce_truth, flat_orientation
 from culet.study.report import Point

@@ -14,7 +14,7 @@ import pytest
 
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
-from culet.scene.model import StoneSettings
+from culet.scene.stone import StoneSettings
 from culet.simulation.rotation import normalised, rotate, rotate_back
 from culet.simulation.state import Quaternion, Triple
 from simulation.solids import rigid

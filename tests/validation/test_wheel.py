@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,8 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import sync_playwright
+
+from culet.simulation.solver.build import library_name
 
 REPOSITORY = Path(__file__).parents[2]
 PAGE = REPOSITORY / "client" / "web" / "dist" / "index.html"
@@ -83,6 +86,24 @@ def test_the_wheel_holds_the_built_page_and_the_small_pictures_of_the_scenes(whe
     assert {name.rpartition(".")[2] for name in names if name.startswith("culet/page/assets/")} >= {"js", "css"}
     assert "culet/scene/thumbnails/default.webp" in names
     assert not [name for name in names if "node_modules" in name]
+
+
+def test_the_wheel_holds_the_solver_of_several_stones_and_is_of_this_kind_of_machine(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+    assert f"culet/simulation/solver/{library_name()}" in names
+    assert wheel.name.endswith(f"-py3-none-linux_{platform.machine()}.whl")
+
+
+def test_an_installed_wheel_moves_several_stones_without_a_compiler(culet: Path, tmp_path: Path) -> None:
+    program = (
+        "from culet.simulation.solver.library import SOURCES, library\n"
+        "from culet.study.contacts.heaps import heap\n"
+        "heap(2, 1).step()\n"
+        "assert library()._name.startswith(str(SOURCES))\n"
+    )
+    environment = {"PATH": str(tmp_path), "HOME": str(tmp_path)}
+    subprocess.run([culet.parent / "python", "-c", program], cwd=tmp_path, env=environment, check=True)
 
 
 def test_an_installed_wheel_serves_its_page_and_a_picture(served: tuple[str, Path]) -> None:

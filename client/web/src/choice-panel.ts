@@ -1,9 +1,9 @@
 /** The panel's choices about the picture: material, sky and optics. */
 
 import type { Controller, GUI } from "lil-gui";
+import type { Catalogued, Material } from "./catalogue";
 import { LiveControls } from "./live-controls";
 import { describeOptions } from "./option-titles";
-import type { Catalogued, Material } from "./rest";
 import {
   BANDS,
   type Choices,
@@ -11,7 +11,6 @@ import {
   choicesOf,
   ENDS,
   ENDS_SAID,
-  hasStone,
   patchOf,
   SKIES,
   TONE_MAPS,
@@ -19,6 +18,7 @@ import {
 } from "./scene-choices";
 import { SizeControl } from "./size-control";
 import { imageSky, SkyChoice } from "./sky-choice";
+import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
 
 type Values = Record<string, unknown>;

@@ -1,9 +1,10 @@
 /** The panel's sliders for the proportions of the stone's cut; hidden for a mesh, which has none. */
 
 import type { GUI } from "lil-gui";
-import { type CutKind, cutName, cutOf, cutPatch, type Proportion, proportionsOf } from "./cut";
+import type { CutKind } from "./catalogue";
+import { cutName, cutOf, cutPatch, type Proportion, proportionsOf } from "./cut";
 import { LiveControls } from "./live-controls";
-import { stonePatch } from "./scene-choices";
+import { stonePatch } from "./stones";
 import type { ViewState } from "./view-state";
 
 const STEP = 0.05;

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { type CutKind, cutName, cutOf, cutPatch, proportionsOf } from "./cut";
+import type { CutKind } from "./catalogue";
+import { cutName, cutOf, cutPatch, proportionsOf } from "./cut";
 
 const KIND: CutKind = {
   name: "brilliant",
@@ -12,7 +13,7 @@ const KIND: CutKind = {
 };
 const PROPORTIONS = proportionsOf(KIND);
 const CUT = { name: "brilliant", pavilion_degrees: 44, lower_half_percent: 75 };
-const STONE = { material: "ruby", position: [0, 4, 0] };
+const STONE = { id: "ruby", material: "ruby", position: [0, 4, 0] };
 
 describe("the sliders", () => {
   it("are those of the server's list that are numbers, in its order", () => {
@@ -50,11 +51,11 @@ describe("the cut of a stone", () => {
 describe("a change of a proportion", () => {
   it("leaves the others, and the rest of the stone", () => {
     const patch = cutPatch({ stones: [{ ...STONE, cut: CUT }] }, "pavilion_degrees", 41);
-    expect(patch).toEqual({ stones: [{ ...STONE, cut: { ...CUT, pavilion_degrees: 41 } }] });
+    expect(patch).toEqual({ stones: { ruby: { cut: { name: "brilliant", pavilion_degrees: 41 } } } });
   });
 
   it("makes proportions of a name", () => {
     const patch = cutPatch({ stones: [{ ...STONE, cut: "brilliant" }] }, "pavilion_degrees", 41);
-    expect(patch).toEqual({ stones: [{ ...STONE, cut: { name: "brilliant", pavilion_degrees: 41 } }] });
+    expect(patch).toEqual({ stones: { ruby: { cut: { name: "brilliant", pavilion_degrees: 41 } } } });
   });
 });

@@ -1,14 +1,9 @@
 /** The proportions of a stone's cut, as the server lists and a scene says them, and the merge patches that change them. */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import type { CutKind } from "./catalogue";
 import { number, object, part, text } from "./json";
-import { stoneOf, stonePatch } from "./scene-choices";
-
-/** A cut of /api/cuts: `proportions` is the JSON schema of each. */
-export interface CutKind {
-  name: string;
-  proportions: JsonObject;
-}
+import { stoneOf, stonePatch } from "./stones";
 
 /** A slider about one proportion. */
 export interface Proportion {
@@ -80,5 +75,5 @@ export function cutOf(scene: JsonObject | null, proportions: readonly Proportion
 
 /** The merge patch that changes one proportion and leaves the others. */
 export function cutPatch(scene: JsonObject | null, name: string, value: number): JsonObject {
-  return stonePatch(scene, { cut: { name: cutName(scene), ...part(stoneOf(scene), "cut"), [name]: value } });
+  return stonePatch(scene, { cut: { name: cutName(scene), [name]: value } });
 }

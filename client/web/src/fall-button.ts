@@ -1,7 +1,7 @@
 /** The round button in the picture that lets the stone fall, or pauses the fall. */
 
 import { actionNamed, labelWithKey } from "./actions";
-import { hasStone } from "./scene-choices";
+import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
 
 export const FALL = "Let the stone fall";

@@ -1,11 +1,11 @@
 /** The panel's sliders and lists about the fall. They act while the stone falls. */
 
 import type { GUI } from "lil-gui";
+import type { Catalogued } from "./catalogue";
 import { type Direction, type Fall, fallOf, fallPatch, MODELS, OF_RIGID, spinAxis } from "./fall";
 import { LiveControls } from "./live-controls";
 import { describeOptions } from "./option-titles";
-import type { Catalogued } from "./rest";
-import { hasStone } from "./scene-choices";
+import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
 
 interface Slider {

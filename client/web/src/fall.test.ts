@@ -1,9 +1,9 @@
 import { describe, expect, it, test } from "vitest";
 import { type Fall, fallOf, fallPatch, NOTHING_FALLS, spinAxis } from "./fall";
+import { object } from "./json";
 
-const STONE = { cut: "brilliant", material: "ruby", position: [1, 4, 2] };
+const STONE = { id: "ruby", cut: "brilliant", position: [1, 4, 2], spin: [0, 3, 4] };
 const SIMULATION = {
-  spin: [0, 3, 4],
   gravity: 1.6,
   restitution: 0.5,
   friction: 0.1,
@@ -29,7 +29,7 @@ describe("how a scene's stone falls", () => {
     expect(fallOf(SCENE)).toEqual(FALL);
   });
 
-  it.each([null, {}, { stones: [{ position: "up" }], simulation: { spin: [1, 2], gravity: "low" } }])(
+  it.each([null, {}, { stones: [{ position: "up", spin: [1, 2] }], simulation: { gravity: "low" } }])(
     "survives %j",
     (scene) => {
       expect(fallOf(scene)).toEqual(NOTHING_FALLS);
@@ -40,22 +40,23 @@ describe("how a scene's stone falls", () => {
 
 describe("a change", () => {
   test.each(Object.entries(FALL) as [keyof Fall, never][])("of %s patches nothing else", (name, value) => {
-    const before = { stones: [{ ...STONE, position: [1, 0, 2] }], simulation: { spin: [0, 0.3, 0.4] } };
+    const before = { stones: [{ ...STONE, position: [1, 0, 2], spin: [0, 0.3, 0.4] }] };
     const patch = fallPatch(before, name, value);
-    expect(fallOf(patch)[name]).toEqual(value);
-    expect(Object.keys(patch)).toEqual([name === "height" ? "stones" : "simulation"]);
-    expect({ ...fallOf(patch), [name]: NOTHING_FALLS[name] }).toEqual(NOTHING_FALLS);
+    const after = { ...patch, stones: Object.values(object(patch.stones)) };
+    expect(fallOf(after)[name]).toEqual(value);
+    expect(Object.keys(patch)).toEqual([["height", "spin"].includes(name) ? "stones" : "simulation"]);
+    expect({ ...fallOf(after), [name]: NOTHING_FALLS[name] }).toEqual(NOTHING_FALLS);
   });
 
   it("of the height leaves the rest of the stone", () => {
-    expect(fallPatch(SCENE, "height", 2)).toEqual({ stones: [{ ...STONE, position: [1, 2, 2] }] });
+    expect(fallPatch(SCENE, "height", 2)).toEqual({ stones: { ruby: { position: [1, 2, 2] } } });
   });
 
   it("of the spin keeps its axis, or takes the one that it had", () => {
-    expect(fallPatch(SCENE, "spin", 10)).toEqual({ simulation: { spin: [0, 6, 8] } });
-    const still = { simulation: { spin: [0, 0, 0] } };
+    expect(fallPatch(SCENE, "spin", 10)).toEqual({ stones: { ruby: { spin: [0, 6, 8] } } });
+    const still = { stones: [{ ...STONE, spin: [0, 0, 0] }] };
     expect(spinAxis(still)).toBeNull();
-    expect(fallPatch(still, "spin", 2)).toEqual({ simulation: { spin: [0, 2, 0] } });
-    expect(fallPatch(still, "spin", 2, [1, 0, 0])).toEqual({ simulation: { spin: [2, 0, 0] } });
+    expect(fallPatch(still, "spin", 2)).toEqual({ stones: { ruby: { spin: [0, 2, 0] } } });
+    expect(fallPatch(still, "spin", 2, [1, 0, 0])).toEqual({ stones: { ruby: { spin: [2, 0, 0] } } });
   });
 });

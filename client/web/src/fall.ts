@@ -2,7 +2,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import { number, part, text, triple } from "./json";
-import { stoneOf, stonePatch } from "./scene-choices";
+import { stoneOf, stonePatch } from "./stones";
 
 export interface Fall {
   /** R: how far above the floor the stone's bounding sphere starts. */
@@ -45,7 +45,7 @@ export function fallOf(scene: JsonObject | null): Fall {
   const none = NOTHING_FALLS;
   return {
     height: triple(stoneOf(scene).position)?.[1] ?? none.height,
-    spin: Math.hypot(...(triple(simulation.spin) ?? [none.spin])),
+    spin: Math.hypot(...(triple(stoneOf(scene).spin) ?? [none.spin])),
     gravity: number(simulation.gravity, none.gravity),
     restitution: number(simulation.restitution, none.restitution),
     friction: number(simulation.friction, none.friction),
@@ -57,7 +57,7 @@ export function fallOf(scene: JsonObject | null): Fall {
 
 /** The axis about which the scene's stone starts to turn, or null if it does not turn. */
 export function spinAxis(scene: JsonObject | null): Direction | null {
-  const spin = triple(part(scene, "simulation").spin);
+  const spin = triple(stoneOf(scene).spin);
   const speed = spin ? Math.hypot(...spin) : 0;
   return spin && speed > 0 ? [spin[0] / speed, spin[1] / speed, spin[2] / speed] : null;
 }
@@ -76,7 +76,7 @@ export function fallPatch<K extends keyof Fall>(
     }
     case "spin": {
       const about = spinAxis(scene) ?? axis;
-      return { simulation: { spin: about.map((component) => component * Number(value)) } };
+      return stonePatch(scene, { spin: about.map((component) => component * Number(value)) });
     }
     default:
       return { simulation: { [name === "rolling" ? "rolling_resistance" : name]: value } };

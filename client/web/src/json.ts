@@ -10,6 +10,10 @@ export function object(value: unknown): JsonObject {
   return typeof value === "object" && value !== null ? (value as JsonObject) : {};
 }
 
+export function list(value: unknown): JsonObject[] {
+  return Array.isArray(value) ? value.map(object) : [];
+}
+
 export function text(value: unknown, otherwise: string): string {
   return typeof value === "string" ? value : otherwise;
 }

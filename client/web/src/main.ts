@@ -13,6 +13,7 @@ import {
   WAITING,
   WAITING_LONG,
 } from "./banner";
+import type { Preset, Upload } from "./catalogue";
 import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { framed, framingPatch } from "./framing";
@@ -24,12 +25,12 @@ import { listenToPointers } from "./pointer-input";
 import { expose, header } from "./probe";
 import { OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
-import { stonePatch } from "./scene-choices";
 import { SceneStrip } from "./scene-strip";
 import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
+import { stonePatch } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
@@ -120,7 +121,7 @@ async function openScene(file: File): Promise<void> {
 }
 
 /** Upload a file, with words about it for as long as that takes; a refusal names the file. */
-async function read(file: File, upload: (file: File) => Promise<rest.Upload>): Promise<rest.Upload> {
+async function read(file: File, upload: (file: File) => Promise<Upload>): Promise<Upload> {
   const clear = toasts.note(`Reading ${file.name}\u2026`);
   try {
     return await upload(file);
@@ -147,7 +148,7 @@ async function openSky(file: File): Promise<void> {
   viewer?.send({ type: "patch_scene", patch: panel.choices.skyPatch(imageSky(sky.id)) });
 }
 
-function choosePreset({ scene }: rest.Preset): void {
+function choosePreset({ scene }: Preset): void {
   panel.choices.forgetSky();
   viewer?.send({ type: "set_scene", scene: framed(scene, window.innerWidth / window.innerHeight) });
 }

@@ -1,7 +1,7 @@
 /** What the options of a list mean, as their tooltips. */
 
 import type { Controller } from "lil-gui";
-import type { Catalogued } from "./rest";
+import type { Catalogued } from "./catalogue";
 
 export function describeOptions(list: Controller, described: readonly Catalogued[]): void {
   const summaries = new Map(described.map(({ name, summary }) => [name, summary]));

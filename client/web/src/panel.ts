@@ -4,8 +4,8 @@ import { type Controller, GUI } from "lil-gui";
 // By its path, since the package does not export it: a style sheet of our own origin instead of one that a script writes.
 import "../node_modules/lil-gui/dist/lil-gui.css";
 import { type Action, actionNamed, labelWithKey } from "./actions";
+import type { CutKind } from "./catalogue";
 import { ChoicePanel } from "./choice-panel";
-import type { CutKind } from "./cut";
 import { CutPanel } from "./cut-panel";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";

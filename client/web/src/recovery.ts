@@ -1,7 +1,8 @@
 /** What the page does when the server has lost its session: it has it made again, from what it knows itself. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { type Lost, ProblemError, type Upload } from "./rest";
+import type { Upload } from "./catalogue";
+import { type Lost, ProblemError } from "./rest";
 
 type Give = (file: File) => Promise<Upload>;
 

@@ -1,7 +1,7 @@
 /** The gateway's REST interface. Errors are problem documents (RFC 9457). */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import type { CutKind } from "./cut";
+import type { Catalogued, CutKind, Material, Preset, Upload } from "./catalogue";
 import { object, part } from "./json";
 
 /** An answer other than 2xx; the message is fit to be shown. */
@@ -23,34 +23,8 @@ export function isPassing({ status }: ProblemError): boolean {
   return [0, 429, 502, 503, 504].includes(status);
 }
 
-/** Something that a scene can name. */
-export interface Catalogued {
-  name: string;
-  summary: string;
-}
-
-export interface Preset extends Catalogued {
-  /** What people call it. */
-  title: string;
-  group: string;
-  /** Address of a small picture. */
-  thumbnail: string;
-  scene: JsonObject;
-}
-
 /** What a picture is saved as. */
 export type Format = "png" | "tga";
-
-export interface Material extends Catalogued {
-  /** It absorbs by a spectrum of its own. */
-  coloured: boolean;
-}
-
-/** An uploaded mesh or sky: its id for the scene, and sentences about it for the user. */
-export interface Upload {
-  id: string;
-  findings: string[];
-}
 
 async function request(path: string, init?: RequestInit): Promise<Response> {
   let response: Response;

@@ -1,4 +1,5 @@
 import { describe, expect, it, test } from "vitest";
+import { object } from "./json";
 import {
   type Choices,
   choicesOf,
@@ -8,13 +9,13 @@ import {
   patchOf,
   sizeMatters,
   sizeOf,
-  stonePatch,
+  sizePatch,
   TONE_MAPS,
   TONE_MAPS_SAID,
 } from "./scene-choices";
 import { imageSky } from "./sky-choice";
 
-const STONE = { cut: "brilliant", material: "ruby", position: [0, 4, 0] };
+const STONE = { id: "stone", cut: "brilliant", material: "ruby", position: [0, 4, 0] };
 const SCENE = {
   stones: [STONE],
   environment: { kind: "image", image: "light-box", scale: 2 },
@@ -34,7 +35,7 @@ const CHOSEN: Choices = {
 describe("the choices of a scene", () => {
   it("are what it says", () => {
     expect(choicesOf(SCENE)).toEqual(CHOSEN);
-    expect(choicesOf({ environment: { kind: "studio", lamps: [] } }).sky).toBe("studio");
+    expect(choicesOf({ environment: { kind: "studio" } }).sky).toBe("studio");
   });
 
   it("call a material by indices what it is", () => {
@@ -50,12 +51,13 @@ describe("a choice", () => {
   test.each(Object.entries(CHOSEN) as [keyof Choices, never][])("of %s patches nothing else", (name, value) => {
     const patch = patchOf({ stones: [{ ...STONE, material: "diamond" }] }, name, value);
     const after = { ...NOTHING_CHOSEN, [name]: value };
-    expect({ ...choicesOf(patch), material: name === "material" ? value : "" }).toEqual(after);
+    const scene = { ...patch, stones: Object.values(object(patch.stones)) };
+    expect(choicesOf(scene)).toEqual(after);
     expect(Object.keys(patch)).toHaveLength(1);
   });
 
   it("of a material leaves the stone's shape and place", () => {
-    expect(patchOf(SCENE, "material", "emerald")).toEqual({ stones: [{ ...STONE, material: "emerald" }] });
+    expect(patchOf(SCENE, "material", "emerald")).toEqual({ stones: { stone: { material: "emerald" } } });
   });
 
   it("of a sky is one of its kind, or an image", () => {
@@ -64,29 +66,19 @@ describe("a choice", () => {
   });
 });
 
-it("changes the stone, or makes one where there was none", () => {
-  expect(stonePatch(SCENE, { mesh: "m1" })).toEqual({ stones: [{ ...STONE, mesh: "m1" }] });
-  expect(stonePatch({ stones: [] }, { mesh: "m1" })).toEqual({ stones: [{ mesh: "m1" }] });
-  expect(stonePatch(null, { mesh: "m1" })).toEqual({ stones: [{ mesh: "m1" }] });
-});
-
 describe("the size", () => {
   const coloured = new Set(["ruby"]);
-  const matters = (stone: Record<string, unknown>) => sizeMatters({ stones: [stone] }, coloured);
 
-  it("is that of a carat unless the scene has one", () => {
-    expect(sizeOf({ stones: [{ size_mm: null }] })).toBe(3.25);
-    expect(sizeOf({ stones: [{ size_mm: 5 }] })).toBe(5);
+  it("is the scene's, or that of a carat", () => {
+    expect(sizeOf({ stones: [] })).toBe(3.25);
+    expect(sizeOf({ millimetres: 5 })).toBe(5);
+    expect(sizePatch(5)).toEqual({ millimetres: 5 });
   });
 
-  it("matters to a coloured material, and to an absorption per millimetre", () => {
-    expect(matters({ material: "ruby", size_mm: null, absorption: [0, 0, 0] })).toBe(true);
-    expect(matters({ material: "diamond", size_mm: 2, absorption: [0, 1, 0] })).toBe(true);
-  });
-
-  it("does not to clear ones, and would change what an absorption per radius means", () => {
-    expect(matters({ material: "diamond", size_mm: 2, absorption: [0, 0, 0] })).toBe(false);
-    expect(matters({ material: "ruby", size_mm: null, absorption: [0, 1, 0] })).toBe(false);
+  it("matters if any stone is of a coloured material", () => {
+    const clear = { material: "diamond", absorption: [0, 1, 0] };
+    expect(sizeMatters({ stones: [clear, { material: "ruby" }] }, coloured)).toBe(true);
+    expect(sizeMatters({ stones: [clear, { material: { ior: [2, 2, 2] } }] }, coloured)).toBe(false);
     expect(sizeMatters({ stones: [] }, coloured)).toBe(false);
   });
 });

@@ -1,9 +1,10 @@
 /** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { number, object, part, text, triple } from "./json";
-import type { Catalogued } from "./rest";
+import type { Catalogued } from "./catalogue";
+import { number, part, text } from "./json";
 import { imageSky, skyPatch } from "./sky-choice";
+import { stoneOf, stonePatch, stonesOf } from "./stones";
 
 export interface Choices {
   /** A material's name, or what to call one that the scene describes by its indices. */
@@ -32,12 +33,15 @@ export const TONE_MAPS = {
 export const ENDS_SAID: Catalogued[] = [
   {
     name: "cut, counted",
-    summary: "What such light would still bring is dropped, and its sum is said: at most so much is missing",
+    summary: "Weak light is dropped. The picture says how much light was dropped: it is darker by that at most",
   },
-  { name: "by chance", summary: "It is ended by lot, and what goes on counts for more: right on average, but noisy" },
+  {
+    name: "by chance",
+    summary: "Weak light is dropped at random, and the light that goes on counts for more: right on average, but noisy",
+  },
   {
     name: "in the sky",
-    summary: "It leaves the stone where it is and takes the sky's light from there: no darker, but a guess",
+    summary: "Weak light leaves the stone at once and meets the sky: the picture is not darker, but this is a guess",
   },
 ];
 export const TONE_MAPS_SAID: Catalogued[] = [
@@ -94,35 +98,19 @@ export function patchOf<K extends keyof Choices>(scene: JsonObject | null, name:
   }
 }
 
-/** The merge patch that changes something about the scene's stone; a list is replaced as a whole. */
-export function stonePatch(scene: JsonObject | null, change: JsonObject): JsonObject {
-  return { stones: [{ ...stoneOf(scene), ...change }] };
-}
-
-export function hasStone(scene: JsonObject | null): boolean {
-  return Array.isArray(scene?.stones) && scene.stones.length > 0;
-}
-
-/** mm. That of about a carat, which the server takes for a coloured material in a scene without a size. */
+/** mm, of a scene that says nothing: that of about a carat. */
 const CARAT_MM = 3.25;
 
-/** The girdle's radius in millimetres. */
+/** The radius in millimetres of a stone of scale 1. */
 export function sizeOf(scene: JsonObject | null): number {
-  return number(stoneOf(scene).size_mm, CARAT_MM);
+  return number(scene?.millimetres, CARAT_MM);
 }
 
-/**
- * Whether the picture depends on the stone's size: it has a coloured material, or an absorption per millimetre. One
- * without a size absorbs per radius, and giving it one would change what its numbers mean.
- */
+export function sizePatch(millimetres: number): JsonObject {
+  return { millimetres };
+}
+
+/** Whether the picture depends on the size: a stone is of a material that absorbs by a spectrum of its own. */
 export function sizeMatters(scene: JsonObject | null, coloured: ReadonlySet<string>): boolean {
-  const { material, size_mm: size, absorption } = stoneOf(scene);
-  const absorbs = triple(absorption)?.some((coefficient) => coefficient > 0) ?? false;
-  if (absorbs) return typeof size === "number";
-  return typeof material === "string" && coloured.has(material);
-}
-
-export function stoneOf(scene: JsonObject | null): JsonObject {
-  const stones = scene?.stones;
-  return object(Array.isArray(stones) ? stones[0] : undefined);
+  return stonesOf(scene).some(({ material }) => typeof material === "string" && coloured.has(material));
 }

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Preset } from "./rest";
+import type { Preset } from "./catalogue";
 import { byGroup, entryAfter } from "./scene-strip";
 
 const preset = (name: string, group: string): Preset => ({

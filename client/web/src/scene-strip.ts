@@ -1,6 +1,6 @@
 /** The presets as small pictures over the picture: what the page opens on. */
 
-import type { Preset } from "./rest";
+import type { Preset } from "./catalogue";
 
 /** CSS pixels: in a lower window the strip is folded at first, for the picture's sake. */
 const LOW = 480;

@@ -2,7 +2,7 @@
 
 import type { Controller, GUI } from "lil-gui";
 import { LiveControls } from "./live-controls";
-import { sizeMatters, sizeOf, stonePatch } from "./scene-choices";
+import { sizeMatters, sizeOf, sizePatch } from "./scene-choices";
 import type { ViewState } from "./view-state";
 
 const LEAST_MM = 0.5;
@@ -19,7 +19,7 @@ export class SizeControl {
   constructor(folder: GUI, send: (patch: Record<string, unknown>) => void) {
     this.controls = new LiveControls(
       () => ({ size: sizeOf(this.scene) }),
-      (_, value) => send(stonePatch(this.scene, { size_mm: value })),
+      (_, value) => send(sizePatch(Number(value))),
     );
     this.controller = folder.add(this.controls.shown, "size", LEAST_MM, MOST_MM, STEP_MM).decimals(2);
     this.controller.name("Radius, mm").hide().domElement.title = HINT;

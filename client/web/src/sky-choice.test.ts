@@ -1,10 +1,12 @@
 import { expect, it } from "vitest";
 import { imageSky, SkyChoice, skyPatch } from "./sky-choice";
 
-const STUDIO = { kind: "studio", lamps: [{ shape: "box" }] };
+const STUDIO = { kind: "studio" };
+const POINT = { shape: "point" };
+const EMITTERS = [POINT, { shape: "box" }];
 const BACKDROP = { kind: "gradient", centre: [1, 1, 1] };
 const FLOOR = { kind: "studio", shadow: 0.5 };
-const SCENE = { environment: STUDIO, backdrop: BACKDROP, floor: FLOOR };
+const SCENE = { environment: STUDIO, emitters: EMITTERS, backdrop: BACKDROP, floor: FLOOR };
 const BARE = { kind: "none" };
 
 it("is seen: backdrop and studio floor go", () => {
@@ -28,7 +30,7 @@ it.each([
 it("goes back to the studio's lamps, backdrop and floor", () => {
   const choice = new SkyChoice();
   choice.see(SCENE);
-  const away = { ...SCENE, ...choice.patch(SCENE, imageSky("aset")) };
+  const away = { ...SCENE, ...choice.patch(SCENE, imageSky("aset")), emitters: [POINT] }; // as the server does
   choice.see(away);
   const light = { ...away, ...choice.patch(away, "light") };
   expect(light.floor).toEqual({ kind: "mirror" });
@@ -38,7 +40,12 @@ it("goes back to the studio's lamps, backdrop and floor", () => {
 it("leaves what was put in the place of backdrop and floor since", () => {
   const choice = new SkyChoice();
   choice.see(SCENE);
-  const changed = { environment: { kind: "light" }, backdrop: { kind: "plain" }, floor: { kind: "matte" } };
+  const changed = {
+    environment: { kind: "light" },
+    emitters: [{ shape: "round" }],
+    backdrop: { kind: "plain" },
+    floor: { kind: "matte" },
+  };
   expect(choice.patch(changed, "studio")).toEqual({ environment: STUDIO });
 });
 

@@ -1,13 +1,21 @@
 /** Another sky for the scene, so that it is seen: behind a studio's backdrop and floor nothing of it would show. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { part } from "./json";
+import { list, part } from "./json";
 
 const IMAGE = "image:";
 
 /** The sky of an image, by its name or the id of an upload. */
 export function imageSky(image: string): string {
   return IMAGE + image;
+}
+
+function pointsOf(scene: JsonObject | null): JsonObject[] {
+  return list(scene?.emitters).filter(({ shape }) => shape === "point");
+}
+
+function lampsOf(scene: JsonObject | null): JsonObject[] {
+  return list(scene?.emitters).filter(({ shape }) => shape !== "point");
 }
 
 /**
@@ -33,7 +41,8 @@ export class SkyChoice {
   /** The scene as it is now. */
   see(scene: JsonObject | null): void {
     if (part(scene, "environment").kind !== "studio" || !scene) return;
-    this.studio = { environment: scene.environment, backdrop: scene.backdrop, floor: scene.floor };
+    const { environment, emitters, backdrop, floor } = scene;
+    this.studio = { environment, emitters: emitters ?? [], backdrop, floor };
   }
 
   /** Another scene comes, with which the studio has nothing to do. */
@@ -53,8 +62,10 @@ export class SkyChoice {
     const { environment, backdrop, floor } = this.studio;
     const bare = part(scene, "backdrop").kind === "none";
     const ours = ["none", "mirror"].includes(String(part(scene, "floor").kind));
+    const lamps = lampsOf(this.studio);
     return {
       environment,
+      ...(lamps.length > 0 && lampsOf(scene).length === 0 ? { emitters: [...pointsOf(scene), ...lamps] } : {}),
       ...(bare ? { backdrop } : {}),
       ...(ours && part(this.studio, "floor").kind === "studio" ? { floor } : {}),
     };

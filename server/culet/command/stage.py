@@ -52,7 +52,7 @@ def _with_mesh(scene: Scene, shape: Shape) -> Scene:
     from culet.scene import Scene
     from culet.simulation.lying import on_the_floor
 
-    placed = scene.stones[0] if scene.stones else Scene().stones[0]
+    placed = scene.only_stone() or Scene().stones[0]
     named = scene.model_copy(update={"stones": (placed.model_copy(update={"mesh": FILE}),)})
     return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, shape_of(placed, {})))
 
@@ -90,12 +90,12 @@ def _under_the_file(scene: Scene, *, seen: bool) -> Scene:
 
     `seen`: nothing hides it; else the scene says whether a backdrop does.
     """
-    from culet.scene.model import ImageEnvironment
+    from culet.scene.sky import ImageEnvironment
     from culet.scene.sky_seen import under
 
     image = scene.environment if isinstance(scene.environment, ImageEnvironment) else ImageEnvironment(kind="image")
     image = image.model_copy(update={"image": FILE})
-    return under(scene, image) if seen else scene.model_copy(update={"environment": image})
+    return under(scene, image) if seen else scene.model_copy(update={"environment": image, "emitters": scene.points})
 
 
 def _report(file: Path, findings: Iterable[str]) -> None:

@@ -10,8 +10,8 @@ from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
 from culet.scene.fields import Model
-from culet.scene.model import BrilliantCut
 from culet.scene.presets import Group
+from culet.scene.stone import BrilliantCut
 from culet.scene.thumbnails import thumbnail_of
 
 router = APIRouter(tags=["catalogue"])
@@ -69,7 +69,7 @@ class Material(Model):
     """Wavelengths for which the source gives the index; outside, the nearer end's counts."""
     indices: tuple[float, float, float]
     coloured: bool
-    """Whether it absorbs by a spectrum of its own: at the stone's `size_mm`, or without one at about a carat's."""
+    """Whether it absorbs by a spectrum of its own: at the scene's `millimetres`, by default about a carat's."""
 
 
 class Materials(Model):

@@ -10,8 +10,8 @@ from collections.abc import Container
 from culet.errors import CuletError, NotFoundError
 from culet.gateway.link import EngineLink
 from culet.gateway.session_record import SessionRecord
-from culet.gateway.viewer import DEFAULT_SIZE
 from culet_protocol.engine import Demand
+from culet_protocol.sizes import LIVE_SIZE
 
 log = logging.getLogger(__name__)
 
@@ -19,7 +19,7 @@ RATE_CHANGE = 0.2
 """A demand that changes by a smaller part is not worth a message."""
 DEMAND_SECONDS = 0.25
 """Between two demands of a session: each size is another picture, begun anew."""
-UNTOLD = (-1.0, *DEFAULT_SIZE)
+UNTOLD = (-1.0, *LIVE_SIZE)
 """A demand unlike any, for an engine that may not have heard the last one."""
 
 
@@ -75,5 +75,5 @@ class Demands:
 
     def begin_anew(self, session: SessionRecord) -> None:
         """Another engine has the session, and was told no demand."""
-        session.demand = (0.0, *DEFAULT_SIZE)
+        session.demand = (0.0, *LIVE_SIZE)
         self.update(session)

@@ -15,7 +15,7 @@ from starlette.requests import ClientDisconnect
 
 from culet.errors import CuletError, InputError
 from culet.gateway.departure import ClientLeftError
-from culet.scene.model import field_of
+from culet.scene.refusal import field_of
 from culet.scene.wording import at_its_tag, expected
 from culet_protocol.messages import PatchScene, SessionEvent, SetScene, ViewerEvent
 

@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from culet.gateway.client_address import UNKNOWN
-from culet.gateway.viewer import DEFAULT_SIZE, Viewer
+from culet.gateway.viewer import Viewer
 from culet_protocol.engine import SessionState
 from culet_protocol.frame import Frame
 from culet_protocol.messages import BALANCED, Notice, Snapshot, State
+from culet_protocol.sizes import LIVE_SIZE
 
 SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
@@ -42,7 +43,7 @@ class SessionRecord:
         self.viewers_told = 0
         """How many of them the viewers were last told of."""
         self.subscribed = False
-        self.demand: tuple[float, int, int] = (0.0, *DEFAULT_SIZE)
+        self.demand: tuple[float, int, int] = (0.0, *LIVE_SIZE)
         """What the engine was last told."""
         self.demanding: asyncio.Task[None] | None = None
         """Tells the engine, one demand after the other."""
@@ -91,4 +92,4 @@ class SessionRecord:
         rate = max((viewer.rate(now) for viewer in watching), default=0.0)
         sized = [viewer for viewer in watching if viewer.size]
         size = min(sized, key=lambda viewer: viewer.watching_since).size if sized else None
-        return (rate, *(size or (self.demand[1:] if watching else DEFAULT_SIZE)))
+        return (rate, *(size or (self.demand[1:] if watching else LIVE_SIZE)))

@@ -15,9 +15,11 @@ from culet.gateway.picture_response import PictureResponse
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
-from culet.scene.model import MaterialName
+from culet.scene.patch import patched
 from culet.scene.sky_seen import under
+from culet.scene.stone import MaterialName
 from culet_protocol.engine import Format, Render
+from culet_protocol.sizes import STILL_SIZE
 
 router = APIRouter(tags=["pictures"])
 
@@ -30,7 +32,7 @@ MEDIA_TYPES: dict[Format, str] = {
 }
 ENDINGS: dict[str, Format] = {"png": "png", "jpg": "jpeg", "webp": "webp", "tga": "tga", "exr": "exr"}
 """Of the addresses that answer with a picture of that format."""
-DEFAULT_WIDTH, DEFAULT_HEIGHT = 640, 360
+DEFAULT_WIDTH, DEFAULT_HEIGHT = STILL_SIZE
 FRESHNESS = "max-age=3600"
 """Of a preset's picture: for an hour a browser does not even ask whether the server has another one by now."""
 
@@ -66,7 +68,7 @@ class StillQuery(Model):
                 data = under(scene, scene.environment).model_dump(mode="json")
         for name, kind in (("floor", self.floor), ("walls", self.walls)):
             if kind is not None:
-                data[name] = {"kind": kind}
+                data = patched(data, {name: {"kind": kind}})
         return Scene.read(data)
 
 

@@ -24,7 +24,7 @@ from culet.gateway.problems import check_numbers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
 from culet.gateway.viewer import Standing, Viewer
-from culet.scene.model import scene_error
+from culet.scene.refusal import scene_error
 from culet_protocol import SUBPROTOCOL, VERSION
 from culet_protocol.close import CloseCode
 from culet_protocol.messages import (

@@ -15,8 +15,6 @@ NOTICES_WAITING = 256
 """A viewer that has so many unread ones does not read at all."""
 SETTLING_SECONDS = 0.25
 """A new viewer has so long to say its size before frames are rendered for the default one."""
-DEFAULT_SIZE = (960, 540)
-"""Pixels, for viewers that never say."""
 STATE_SECONDS = 0.04
 """Between two states, which hold the whole scene: a drag makes 60 or 120 a second, and sliders follow at 25."""
 
@@ -30,7 +28,7 @@ class Standing(Enum):
     DISMISSED = auto()
     """The session is gone: the stream ends once the notices are out."""
     STOPPING = auto()
-    """The server stops: likewise."""
+    """The server stops: the stream ends once the notices are out."""
 
 
 class Viewer:

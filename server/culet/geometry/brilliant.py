@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from culet.errors import MeshError
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.shape import Shape
-from culet.scene.model import BrilliantCut
+from culet.scene.stone import BrilliantCut
 
 FACETS, VERTICES = 73, 57
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from culet.errors import MeshError, SceneError
 from culet.geometry.brilliant import brilliant
 from culet.geometry.shape import Shape
-from culet.scene.model import BrilliantCut, StoneSettings
+from culet.scene.stone import BrilliantCut, StoneSettings
 
 
 def shape_of(settings: StoneSettings, meshes: Mapping[str, Shape], field: str = "stones.0") -> Shape:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from culet.optics.formulas import sellmeier
 from culet.optics.materials import CLASSIC_INDICES, PETER_1923, material_of
 from culet.optics.wavelengths import RGB_NANOMETRES
-from culet.scene.model import IndexMaterial, SellmeierMaterial
+from culet.scene.stone import IndexMaterial, SellmeierMaterial
 
 __all__ = ["CLASSIC_INDICES", "PETER_1923", "RGB_NANOMETRES", "channel_indices", "sellmeier"]
 

@@ -14,7 +14,7 @@ from culet.optics.absorption import AbsorptionSpectrum, GaussianBand
 from culet.optics.formulas import Cauchy, Sellmeier, SinglePole, ThroughLines
 from culet.optics.material import Material
 from culet.optics.wavelengths import RGB_NANOMETRES
-from culet.scene.model import IndexMaterial, SellmeierMaterial
+from culet.scene.stone import IndexMaterial, SellmeierMaterial
 
 VISIBLE_NANOMETRES = (380.0, 780.0)
 """The range of a formula that comes without one."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError, SceneError
-from culet.scene.model import ImageEnvironment
+from culet.scene.sky import ImageEnvironment
 
 Panorama = NDArray[np.float32]
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from culet.rendering.parameters import sky_colours
-from culet.scene.model import ImageEnvironment
-from culet.scene.studio import StudioEnvironment, StudioFloor
+from culet.scene.emitters import boxes, discs
+from culet.scene.room import StudioFloor
+from culet.scene.sky import ImageEnvironment
 from culet.stage import Stage
 
 MATTE_ALBEDO = 0.9
@@ -23,13 +24,16 @@ def largest_radiance(stage: Stage) -> float:
         brightest = float(stage.panorama.max()) * environment.scale
     else:
         brightest = float(np.max(sky_colours(environment)))
-    if isinstance(environment, StudioEnvironment):
-        brightest += float(np.sum([lamp.radiance for lamp in environment.lamps], axis=0).max(initial=0))
+    radiances = [
+        *(disc.radiance for disc in discs(scene.shown_lamps)),
+        *(box.radiance for box in boxes(scene.shown_lamps)),
+    ]
+    brightest += float(np.sum(radiances, axis=0).max(initial=0))
     if scene.head is not None:
         brightest = max(brightest, *scene.head.radiance)
     if isinstance(scene.floor, StudioFloor):
         brightest = max(brightest, *scene.floor.colour)
     if scene.floor.kind in ("matte", "mirror") or scene.walls.kind != "none":
-        light = AMBIENT + np.sum([light.colour for light in scene.lights], axis=0).max(initial=0)
+        light = AMBIENT + np.sum([light.colour for light in scene.points], axis=0).max(initial=0)
         brightest = max(brightest, MATTE_ALBEDO * float(light))
     return brightest

@@ -14,8 +14,6 @@ from culet.scene.model import Scene
 
 GROUPS = constants("features.cl")["SPECTRAL_GROUPS"]
 """Sets of wavelengths that neighbouring pixels take."""
-DEFAULT_SIZE_MM = 3.25
-"""Radius R of a round brilliant of about one carat (6.5 mm across), for a coloured material in a scene without size."""
 GOLDEN = 0.6180339887498949
 """Fractional part of the golden ratio: multiples of it, modulo 1, fill the strata of the spectrum evenly."""
 
@@ -29,10 +27,8 @@ def absorption(scene: Scene) -> tuple[float, float, float]:
     """Of the red, green and blue channel, per R: what the scene asks for, and what the material has by itself."""
     stone = scene.stones[0]
     own = material_of(stone.material).absorption_rgb_per_mm()
-    size = DEFAULT_SIZE_MM if stone.size_mm is None else stone.size_mm
     red, green, blue = (
-        asked * (1 if stone.size_mm is None else stone.size_mm) + coefficient * size
-        for asked, coefficient in zip(stone.absorption, own, strict=True)
+        asked + coefficient * scene.millimetres for asked, coefficient in zip(stone.absorption, own, strict=True)
     )
     return red, green, blue
 
@@ -57,10 +53,11 @@ def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArr
     stone = scene.stones[0]
     material = material_of(stone.material)
     spectrum = bands(scene.optics.bands, offset=(0.5 + sample * GOLDEN) % 1, groups=GROUPS)
-    size = DEFAULT_SIZE_MM if stone.size_mm is None else stone.size_mm
     table = np.zeros(len(spectrum.wavelength), struct("chain_t", real))
     table["eta"] = material.index(spectrum.wavelength, clamp=True)
-    table["absorption"] = material.absorption_per_mm(spectrum.wavelength) * size + _asked(scene, spectrum.wavelength)
+    table["absorption"] = material.absorption_per_mm(spectrum.wavelength) * scene.millimetres + _asked(
+        scene, spectrum.wavelength
+    )
     table["share"] = spectrum.weights
     table["summed_share"] = abs(spectrum.weights).sum(axis=1)
     return table
@@ -68,6 +65,5 @@ def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArr
 
 def _asked(scene: Scene, wavelength: NDArray[np.float64]) -> NDArray[np.float64]:
     """The scene's three coefficients over wavelength, per R: linear between the lines that stand for the channels."""
-    stone = scene.stones[0]
-    red, green, blue = (a * (1 if stone.size_mm is None else stone.size_mm) for a in stone.absorption)
+    red, green, blue = scene.stones[0].absorption
     return np.interp(wavelength, (435.8, 546.1, 656.3), (blue, green, red))

@@ -10,8 +10,9 @@ from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.projection import camera_is_inside
-from culet.scene.model import Environment, Floor, Plane
-from culet.scene.studio import boxes_of
+from culet.scene.emitters import boxes, discs
+from culet.scene.room import Floor, Plane
+from culet.scene.sky import Environment
 from culet.stage import Stage
 
 RUNTIME = -1
@@ -31,7 +32,7 @@ MOST_HALF_SPACES = 1500
 balls, one of 600 facets takes 1.9 times as long by the tree, one of 1500 as long, one of 2000 0.8 times."""
 ESTIMATOR = {"chain": 0, "classic": 1}
 SURFACE = {"none": 0, "matte": 1, "mirror": 2, "studio": 3}
-SKY = {"constant": 0, "light": 0, "dark": 1, "gradient": 1, "half": 2, "studio": 3, "image": 4}
+SKY = {"constant": 0, "light": 0, "studio": 0, "dark": 1, "gradient": 1, "half": 2, "image": 3}
 FRESNEL = {"exact": 0, "schlick": 1}
 END = {"cut": 0, "roulette": 1, "sky": 2}
 
@@ -45,6 +46,7 @@ class Features:
     walls: int = RUNTIME
     lights: int = RUNTIME
     sky: int = RUNTIME
+    lamps: int = RUNTIME
     boxes: int = RUNTIME
     head: int = RUNTIME
     backdrop: int = RUNTIME
@@ -100,15 +102,16 @@ def features_of(stage: Stage) -> Features:
     floor, walls, environment = kinds
     optics = scene.optics
     lit = floor.kind in ("matte", "mirror") or walls.kind != "none"
-    settings = scene.stones[0] if shape is not None else None
+    settings = scene.only_stone() if shape is not None else None
     indices = channel_indices(settings.material) if settings else (1.0, 1.0, 1.0)
     return Features(
         geometry=geometry_of(shape),
         floor=SURFACE[floor.kind],
         walls=SURFACE[walls.kind],
-        lights=RUNTIME if scene.lights and lit else 0,
+        lights=RUNTIME if scene.points and lit else 0,
         sky=SKY[environment.kind],
-        boxes=RUNTIME if boxes_of(environment) else 0,
+        lamps=RUNTIME if discs(scene.shown_lamps) else 0,
+        boxes=RUNTIME if boxes(scene.shown_lamps) else 0,
         head=int(scene.head is not None),
         backdrop=int(scene.backdrop.kind != "none"),
         glare=int(optics.glare),

@@ -17,7 +17,8 @@ from culet.rendering.parameters import parameters, shown_surfaces
 from culet.rendering.projection import placement, world_planes
 from culet.rendering.shadows import shadow_planes
 from culet.rendering.tree import tree_of
-from culet.scene.model import ImageEnvironment, Scene
+from culet.scene.model import Scene
+from culet.scene.sky import ImageEnvironment
 from culet.stage import Stage
 
 
@@ -90,7 +91,7 @@ def _shadow_volumes(
     centre, rotation = placement(scene)
     surfaces, vertices, edges = shown_surfaces(scene, centre), shape.vertices @ rotation.T, edges_of_facets(shape)
     volumes = [
-        shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.lights
+        shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.points
     ]
     starts = np.cumsum([0, *map(len, volumes)]).astype(np.int32)
     return starts, np.vstack([*volumes, np.zeros((1, 4))])

@@ -12,16 +12,16 @@ from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.layout import struct
 from culet.rendering.projection import camera_is_inside, placement, project
 from culet.rendering.studio import set_studio
-from culet.scene.model import (
+from culet.scene.model import Scene
+from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
+from culet.scene.sky import (
     ConstantEnvironment,
     Environment,
     GradientEnvironment,
     HalfEnvironment,
     LightEnvironment,
-    Scene,
+    StudioEnvironment,
 )
-from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
-from culet.scene.studio import StudioEnvironment
 
 
 def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -69,10 +69,10 @@ def parameters(scene: Scene, shape: Shape | None, width: int, height: int, real:
     p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
     set_studio(p, scene, shape, width, height)
     p["surface"] = room_surfaces(centre)
-    for number, light in enumerate(scene.lights):
+    for number, light in enumerate(scene.points):
         p["light"][number] = np.array(light.position) - centre
         p["light_colour"][number] = light.colour
-    p["lights"] = len(scene.lights)
+    p["lights"] = len(scene.points)
     p["axes"] = rotation
     p["max_bounces"] = scene.optics.max_bounces
     p["width"], p["height"] = width, height

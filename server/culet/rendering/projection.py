@@ -27,9 +27,10 @@ def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
 
 def placement(scene: Scene) -> tuple[Array, Array]:
     """The stone's centre (3,) and rotation (3, 3); the world's origin where there is no stone."""
-    if not scene.stones:
+    stone = scene.only_stone()
+    if stone is None:
         return np.zeros(3), np.eye(3)
-    return np.array(scene.stones[0].position), rotation_matrix(scene.stones[0].orientation)
+    return np.array(stone.position), rotation_matrix(stone.orientation)
 
 
 def world_planes(scene: Scene, shape: Shape) -> Array:

@@ -7,31 +7,24 @@ from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
 from culet.rendering.projection import placement
-from culet.scene.lamps import BoxLamp
+from culet.scene.backdrop import Backdrop, GradientBackdrop, PlainBackdrop
+from culet.scene.emitters import BoxLamp, boxes, discs
 from culet.scene.model import Scene
-from culet.scene.room import FLOOR_Y
-from culet.scene.studio import (
-    Backdrop,
-    GradientBackdrop,
-    PlainBackdrop,
-    StudioFloor,
-    boxes_of,
-    round_lamps_of,
-)
+from culet.scene.room import FLOOR_Y, StudioFloor
 
 Array = NDArray[np.float64]
 
 
 def set_studio(p: NDArray[np.void], scene: Scene, shape: Shape | None, width: int, height: int) -> None:
     """Fill in what the scene has of it."""
-    lamps, boxes = round_lamps_of(scene.environment), boxes_of(scene.environment)
+    lamps, soft_boxes = discs(scene.shown_lamps), boxes(scene.shown_lamps)
     for number, lamp in enumerate(lamps):
         p["lamp"][number] = _unit(lamp.direction)
         p["lamp_rim"][number], p["lamp_slope"][number] = disc_edge(lamp.half_angle_degrees, lamp.softness)
         p["lamp_radiance"][number] = lamp.radiance
-    for number, box in enumerate(boxes):
+    for number, box in enumerate(soft_boxes):
         _set_box(p, number, box)
-    p["lamps"], p["boxes"] = len(lamps), len(boxes)
+    p["lamps"], p["boxes"] = len(lamps), len(soft_boxes)
     if scene.head is not None:
         p["has_head"] = True
         p["head"] = towards_observer(scene)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
+from culet.scene.emitters import BoxLamp, RoundLamp
 from culet.scene.fields import Colour, Vector
-from culet.scene.lamps import BoxLamp, Lamp
 
 BOX_ELEVATION, BOX_TURN = 42.0, 45.0
 LOW_ELEVATION = 14.0
@@ -40,7 +40,7 @@ def boxes(
     """Soft boxes around the stone, brighter above than below."""
     return tuple(
         BoxLamp(
-            shape="box", direction=towards(BOX_TURN + 360 * k / count, BOX_ELEVATION), radiance=grey(radiance),
+            direction=towards(BOX_TURN + 360 * k / count, BOX_ELEVATION), radiance=grey(radiance),
             half_width_degrees=half_width, half_height_degrees=half_height, fade=fade, softness=0.4,
         )
         for k in range(count)
@@ -51,20 +51,20 @@ def low_boxes(radiance: float, *, count: int = 7) -> tuple[BoxLamp, ...]:
     """A ring of boxes just above the floor, with a quarter of it left dark between them."""
     return tuple(
         BoxLamp(
-            shape="box", direction=towards(360 * (k + 0.5) / count, LOW_ELEVATION), radiance=grey(radiance),
+            direction=towards(360 * (k + 0.5) / count, LOW_ELEVATION), radiance=grey(radiance),
             half_width_degrees=90 / count, half_height_degrees=12, softness=0.4,
         )
         for k in range(count)
     )  # fmt: skip
 
 
-def small_lamps(radiance: float, *, half_angle_degrees: float = 2.6, count: int = len(PLACES)) -> tuple[Lamp, ...]:
+def small_lamps(radiance: float, *, half_angle_degrees: float = 2.6, count: int = len(PLACES)) -> tuple[RoundLamp, ...]:
     """Warm and cold by turns, by a twentieth."""
     warm, cold = (
         (round(radiance * (1 + part), 3), radiance, round(radiance * (1 - part), 3)) for part in (0.05, -0.05)
     )
     return tuple(
-        Lamp(
+        RoundLamp(
             direction=towards(azimuth, elevation), half_angle_degrees=half_angle_degrees,
             radiance=warm if k % 2 else cold,
         )
@@ -73,5 +73,5 @@ def small_lamps(radiance: float, *, half_angle_degrees: float = 2.6, count: int 
 
 
 AMBIENT = grey(0.038)
-LAMPS: tuple[Lamp | BoxLamp, ...] = (*boxes(2.1), *low_boxes(1.1), *small_lamps(11))
+LAMPS: tuple[RoundLamp | BoxLamp, ...] = (*boxes(2.1), *low_boxes(1.1), *small_lamps(11))
 """The default light."""

@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 Coordinate = Annotated[float, Field(ge=-1e9, le=1e9)]
 Component = Annotated[float, Field(ge=0, le=1e6)]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
 Colour = tuple[Component, Component, Component]
+
+
+def _normalised(q: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    length = math.sqrt(sum(c * c for c in q))
+    if not length > 1e-6:
+        raise ValueError("a quaternion of length 0 is no orientation")
+    if abs(length - 1) < 1e-12:  # normalising again would change the last bit, and the scene with it
+        return q
+    w, x, y, z = (c / length for c in q)
+    return w, x, y, z
+
+
+Orientation = Annotated[tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterValidator(_normalised)]
+"""A unit quaternion w, x, y, z, from a stone's own axes to those of the world."""
+Pose = tuple[Vector, tuple[float, float, float, float]]
+"""Where a stone's centre of mass is (R), and how the stone is turned: a unit quaternion w, x, y, z."""
 Part = Annotated[float, Field(ge=0, le=1)]
 
 

@@ -9,9 +9,11 @@ from typing import Literal
 
 from culet.errors import NotFoundError
 from culet.scene import showcase
+from culet.scene.camera import Camera
 from culet.scene.legacy import LEGACY_DEFAULT
-from culet.scene.model import Camera, Plane, Scene
+from culet.scene.model import Scene
 from culet.scene.report_scenes import CLASSIC, classic, tinted
+from culet.scene.room import Plane
 
 Group = Literal["diamonds", "instruments", "coloured stones", "the report"]
 

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from culet.scene.legacy import LEGACY_DEFAULT
-from culet.scene.model import (
-    Camera,
-    DarkEnvironment,
-    Film,
-    LightEnvironment,
-    Optics,
-    Plane,
-    Scene,
-    Simulation,
-    StoneSettings,
-)
-from culet.scene.studio import NoBackdrop
+from culet.scene.backdrop import NoBackdrop
+from culet.scene.camera import Camera
+from culet.scene.film import Film
+from culet.scene.legacy import LEGACY_POINTS
+from culet.scene.model import SPIN, Scene
+from culet.scene.motion import Simulation
+from culet.scene.optics import Optics
+from culet.scene.room import Plane
+from culet.scene.sky import DarkEnvironment, LightEnvironment
+from culet.scene.stone import StoneSettings
 
 _CLASSIC_STONE = StoneSettings(
-    material="classic", absorption=(0.02, 0.02, 0.02), position=(0, 4, 0), orientation=(1, 0, 0, 0)
+    id="stone",
+    material="classic",
+    absorption=(0.02, 0.02, 0.02),
+    position=(0, 4, 0),
+    orientation=(1, 0, 0, 0),
+    spin=SPIN,
+    mass=2,
 )
 
 CLASSIC = Scene(
     stones=(_CLASSIC_STONE,),
     floor=Plane(kind="mirror"),
     walls=Plane(kind="mirror"),
-    lights=LEGACY_DEFAULT.lights,
+    emitters=LEGACY_POINTS,
     backdrop=NoBackdrop(),
     head=None,
     environment=DarkEnvironment(kind="dark"),

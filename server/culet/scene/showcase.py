@@ -3,72 +3,62 @@
 from __future__ import annotations
 
 from culet.scene.atelier import AMBIENT, boxes, grey, low_boxes, small_lamps, towards
+from culet.scene.backdrop import GradientBackdrop, NoBackdrop
+from culet.scene.camera import Camera, Head
+from culet.scene.emitters import AnyEmitter, BoxLamp
 from culet.scene.fields import Colour
-from culet.scene.lamps import BoxLamp
-from culet.scene.model import (
-    BrilliantCut,
-    Camera,
-    Environment,
-    Film,
-    ImageEnvironment,
-    MaterialName,
-    Optics,
-    Plane,
-    Scene,
-    Simulation,
-    StoneSettings,
-)
-from culet.scene.studio import GradientBackdrop, Head, NoBackdrop, StudioEnvironment, StudioFloor
+from culet.scene.film import Film
+from culet.scene.model import SPIN, Scene
+from culet.scene.optics import Optics
+from culet.scene.room import Plane, StudioFloor
+from culet.scene.sky import Environment, ImageEnvironment, StudioEnvironment
+from culet.scene.stone import BrilliantCut, MaterialName, StoneSettings
 
 WHITE = Scene(
     floor=StudioFloor(kind="studio", colour=grey(0.75), reflectance=0.1, shadow=0.6),
     backdrop=GradientBackdrop(kind="gradient", centre=(0.96, 0.965, 0.975), edge=(0.62, 0.635, 0.66)),
-    environment=StudioEnvironment(ambient=AMBIENT, lamps=(*boxes(1.9), *low_boxes(1.1), *small_lamps(11))),
+    environment=StudioEnvironment(ambient=AMBIENT),
+    emitters=(*boxes(1.9), *low_boxes(1.1), *small_lamps(11)),
 )
 FIRE = Scene(
     floor=StudioFloor(kind="studio", colour=grey(0.004)),
     backdrop=GradientBackdrop(kind="gradient", centre=(0.013, 0.013, 0.017), edge=(0.002, 0.002, 0.003)),
-    environment=StudioEnvironment(
-        ambient=grey(0.014), lamps=(*boxes(0.3), *low_boxes(0.2, count=5), *small_lamps(26, half_angle_degrees=3.6))
-    ),
+    environment=StudioEnvironment(ambient=grey(0.014)),
+    emitters=(*boxes(0.3), *low_boxes(0.2, count=5), *small_lamps(26, half_angle_degrees=3.6)),
     optics=Optics(bands=16),
     film=Film(exposure=1.6),
 )
 """Sixteen wavelengths, so that rainbows are smooth."""
 FALLING = Scene(
     floor=StudioFloor(kind="studio", colour=grey(0.063)),
-    environment=StudioEnvironment(
-        ambient=grey(0.032),
-        lamps=(*boxes(3.2, half_width=18, half_height=18), *low_boxes(1.8), *small_lamps(11)),
-    ),
-    stones=(StoneSettings(position=(-0.6, 1.5, 0)),),
+    environment=StudioEnvironment(ambient=grey(0.032)),
+    emitters=(*boxes(3.2, half_width=18, half_height=18), *low_boxes(1.8), *small_lamps(11)),
+    stones=(StoneSettings(position=(-0.6, 1.5, 0), velocity=(0.8, 1.5, 0), spin=(1.5, 5, -2)),),
     camera=Camera(position=(0, 7.2, 12), target=(0, 0, 0), fov_degrees=17),
-    simulation=Simulation(velocity=(0.8, 1.5, 0), spin=(1.5, 5, -2)),
 )
 
 _FACE_UP_CAMERA = Camera(kind="orthographic", position=(0, 12.5, 0), target=(0, 0.5, 0), up=(0, 0, -1), height=2.4)
 """Straight down; rays are parallel, as in the instruments of the trade."""
 
 
-def _face_up(environment: Environment, **more: object) -> Scene:
+def _face_up(environment: Environment, emitters: tuple[AnyEmitter, ...] = (), **more: object) -> Scene:
     """The table level and above, seen straight down."""
-    stone = StoneSettings(position=(0, 0.5, 0), orientation=(1, 0, 0, 0))
-    return Scene(stones=(stone,), environment=environment, camera=_FACE_UP_CAMERA).model_copy(update=more)
+    stone = StoneSettings(position=(0, 0.5, 0), orientation=(1, 0, 0, 0), spin=SPIN)
+    scene = Scene(stones=(stone,), environment=environment, emitters=emitters, camera=_FACE_UP_CAMERA)
+    return scene.model_copy(update=more)
 
 
 FACE_UP = _face_up(
-    StudioEnvironment(
-        ambient=grey(0.06),
-        lamps=(
-            *(
-                BoxLamp(
-                    shape="box", direction=towards(22.5 + 45 * k, 50), radiance=grey(1.25), half_width_degrees=14.5,
-                    half_height_degrees=26, fade=0.2, softness=0.3,
-                )
-                for k in range(8)
-            ),
-            *small_lamps(14, half_angle_degrees=2.2, count=10),
+    StudioEnvironment(ambient=grey(0.06)),
+    (
+        *(
+            BoxLamp(
+                direction=towards(22.5 + 45 * k, 50), radiance=grey(1.25), half_width_degrees=14.5,
+                half_height_degrees=26, fade=0.2, softness=0.3,
+            )
+            for k in range(8)
         ),
+        *small_lamps(14, half_angle_degrees=2.2, count=10),
     ),
     head=Head(half_angle_degrees=13),
     floor=StudioFloor(kind="studio", colour=grey(0.02), reflectance=0, shadow=0),
@@ -90,19 +80,18 @@ IDEAL_SCOPE = _instrument("ideal-scope")
 
 
 def _coloured(
-    material: MaterialName, size_mm: float, crown: float, pavilion: float, resting_y: float, exposure: float
+    material: MaterialName, millimetres: float, crown: float, pavilion: float, resting_y: float, exposure: float
 ) -> Scene:
     """Brilliant's angles of a diamond would leave a window in it: a steeper cut of its own, on white."""
     cut = BrilliantCut(table_percent=55, crown_degrees=crown, pavilion_degrees=pavilion)
     ground: Colour = grey(0.2)
     return Scene(
-        stones=(StoneSettings(material=material, size_mm=size_mm, cut=cut, position=(0, resting_y, 0)),),
+        millimetres=millimetres,
+        stones=(StoneSettings(material=material, cut=cut, position=(0, resting_y, 0), spin=SPIN),),
         floor=StudioFloor(kind="studio", colour=grey(0.5), reflectance=0.1, shadow=0.6),
         backdrop=GradientBackdrop(kind="gradient", centre=(0.86, 0.865, 0.88), edge=(0.5, 0.51, 0.53)),
-        environment=StudioEnvironment(
-            ambient=ground,
-            lamps=(*boxes(2.3, half_width=17, half_height=17), *low_boxes(1.8), *small_lamps(10, count=8)),
-        ),
+        environment=StudioEnvironment(ambient=ground),
+        emitters=(*boxes(2.3, half_width=17, half_height=17), *low_boxes(1.8), *small_lamps(10, count=8)),
         film=Film(exposure=exposure),
     )
 

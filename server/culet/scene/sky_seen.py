@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from culet.scene.backdrop import Backdrop, NoBackdrop
 from culet.scene.fields import Model
-from culet.scene.model import Environment, Floor, Plane, Scene
-from culet.scene.studio import Backdrop, NoBackdrop, StudioFloor
+from culet.scene.model import Scene
+from culet.scene.room import Floor, Plane, StudioFloor
+from culet.scene.sky import SKIES_WITHOUT_LAMPS, Environment
 
 
 class Surroundings(Model):
@@ -22,10 +24,12 @@ class Surroundings(Model):
 def under(scene: Scene, environment: Environment) -> Scene:
     """The scene under that sky, without a backdrop.
 
-    A studio's floor goes as well: a panorama has a ground of its own; the report's skies have none, and are seen in the
-    report's mirror.
+    A studio's lamps and floor go as well: a sky has light of its own, and a panorama a ground. The report's skies have
+    none, and are seen in the report's mirror; two of them show no lamps, which stay.
     """
     changes: dict[str, object] = {"environment": environment, "backdrop": NoBackdrop()}
+    if environment.kind not in SKIES_WITHOUT_LAMPS:
+        changes["emitters"] = scene.points
     if isinstance(scene.floor, StudioFloor):
         changes["floor"] = Plane(kind="none" if environment.kind == "image" else "mirror")
     return scene.model_copy(update=changes)

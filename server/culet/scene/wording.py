@@ -27,6 +27,16 @@ _WHOLE = {
 }
 """By pydantic's type of the finding, with its own numbers. Others say it well enough, in the words below."""
 
+SINCE_2 = {
+    "lights": "`emitters` of shape `point`",
+    "lamps": "the scene's `emitters`",
+    "size_mm": "the scene's `millimetres`",
+    "mass": "a `mass` for each stone",
+    "spin": "a `spin` for each stone",
+    "velocity": "a `velocity` for each stone",
+}
+"""What took the place of fields that only version 1 knew."""
+
 _PHRASES = {
     "Value error, ": "",
     "Input should be a valid ": "expected a ",
@@ -61,6 +71,8 @@ def unknown_field(location: tuple[int | str, ...], root: type[BaseModel]) -> str
     if not known:
         return "unknown field"
     name = str(location[-1])
+    if name in SINCE_2 and name not in known:
+        return f"unknown field; version 2 of the scene has {SINCE_2[name]}"
     close = difflib.get_close_matches(name, known, n=1) or [other for other in known if other.startswith(name)]
     return f"unknown field; did you mean `{close[0]}`?" if close else f"unknown field; there are: {', '.join(known)}"
 

@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from culet.scene.model import Simulation as Law
+from culet.scene.motion import Simulation as Law
 from culet.simulation.bodies import REST, Body, BodyState
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState, Touch, Triple
 from culet.simulation.surfaces import FLOOR, Surface
@@ -113,10 +114,11 @@ class Alone:
         self._one.restore({name: value for name, value in saved.items() if name != "held"})
         self._held = bool(saved.get("held"))
 
-    def _settings(self) -> Law:
+    def _settings(self) -> SimulationSettings:
         body, law, scale = self._body, self._law, self._body.scale
-        return law.model_copy(
-            update={
+        return SimulationSettings.model_construct(
+            **{name: getattr(law, name) for name in Law.model_fields}
+            | {
                 "mass": body.mass,
                 "velocity": _times(body.velocity, 1 / scale),
                 "spin": body.spin,

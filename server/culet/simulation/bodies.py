@@ -8,7 +8,7 @@ from typing import Self
 
 from culet.errors import InputError
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as Law
+from culet.scene.motion import Simulation as Law
 from culet.simulation.rotation import normalised
 from culet.simulation.state import Quaternion, Triple
 

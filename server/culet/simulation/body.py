@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from culet.errors import InputError
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.floor import sphere_gap
 from culet.simulation.hull import Hull, hull_of
 from culet.simulation.inertia import InertiaKind, inertia_tensor
 from culet.simulation.principal_axes import PrincipalAxis, principal_axes
 from culet.simulation.rotation import rotate, rotate_back
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, RigidState, Triple
 from culet.simulation.surfaces import FLOOR, Surface
 

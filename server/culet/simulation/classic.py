@@ -28,11 +28,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from culet.scene.model import Simulation as SimulationSettings
 from culet.scene.room import FLOOR_Y
 from culet.simulation.body import RigidBody
 from culet.simulation.floor import BOUNDING_RADIUS, sphere_gap
 from culet.simulation.rotation import euler_step, rotate_back
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import RigidState, Touch, Triple
 
 SLEEP_SPEED = 1e-4

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Pose, StoneSettings
+from culet.scene.fields import Pose
 from culet.scene.room import FLOOR_Y
+from culet.scene.stone import StoneSettings
 from culet.simulation.drop import STANDING
 from culet.simulation.rotation import normalised, product, rotate, rotate_back
 from culet.simulation.state import Quaternion, Triple

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation import classic, rigid
 from culet.simulation.body import RigidBody
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import RigidState, Touch
 
 

@@ -32,7 +32,7 @@ class Path:
     """N states, the start first; the arrays' first axis is the step."""
 
     settings: dict[str, Any]
-    """The scene's `simulation`, as JSON."""
+    """The scene's `simulation` with the stone's own mass, spin, velocity, restitution and friction, as JSON."""
     step: NDArray[np.int64]
     """(N,)"""
     time: Floats
@@ -85,7 +85,7 @@ def record(stage: Stage, seconds: float, progress: Progress | None = None) -> Pa
         raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
     count = _whole_steps(seconds, scene.simulation.time_step)
     simulation = Simulation.of(stage)
-    path = _empty_path(scene.simulation.model_dump(mode="json"), count + 1)
+    path = _empty_path(simulation.settings.model_dump(mode="json"), count + 1)
     for index in range(count + 1):
         if index:
             simulation.step()

@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import TOUCH, Contact, closing_speed, contacts
 from culet.simulation.contact_step import contact_step, slid
@@ -23,6 +22,7 @@ from culet.simulation.flight import fly
 from culet.simulation.free_rotation import INTEGRATORS, Integrator
 from culet.simulation.impact import impact
 from culet.simulation.motion import Motion, centre_gap, gaps, kinetic_energy, pushed_out, stopped, velocities
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import RigidState, Touch
 from culet.simulation.support import is_supported
 

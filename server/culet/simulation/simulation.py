@@ -6,15 +6,15 @@ import math
 from dataclasses import replace
 from typing import Any, Self
 
-from culet.errors import InputError
+from culet.errors import InputError, SceneError
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as SimulationSettings
 from culet.simulation.body import RigidBody
 from culet.simulation.drop import drop_position
 from culet.simulation.impulses import impulse_at
 from culet.simulation.models import MODELS
 from culet.simulation.motion import Motion, speed
 from culet.simulation.rotation import normalised, slerp
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.snapshot import read_snapshot, write_snapshot
 from culet.simulation.state import Quaternion, RigidState, Touch, Triple
 from culet.simulation.surfaces import FLOOR, Surface, surfaces_of
@@ -58,8 +58,12 @@ class Simulation:
     @classmethod
     def of(cls, stage: Stage) -> Self:
         """At the start of the stage's stone, between the surfaces of the scene."""
-        scene, (stone,), (shape,) = stage.scene, stage.scene.stones, stage.shapes
-        return cls(scene.simulation, shape, stone.position, stone.orientation, surfaces_of(scene))
+        scene, stone = stage.scene, stage.scene.only_stone()
+        if stone is None:
+            raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
+        (shape,) = stage.shapes
+        settings = SimulationSettings.of(scene, stone, shape)
+        return cls(settings, shape, stone.position, stone.orientation, surfaces_of(scene))
 
     @property
     def settled(self) -> bool:

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 
 from culet.errors import InputError
-from culet.scene.model import scene_error
+from culet.scene.refusal import scene_error
 from culet.simulation.state import RigidState
 
 Number = Annotated[float, Field(strict=True, ge=-1e30, le=1e30)]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from culet.errors import InputError, TooLargeError
-from culet.scene.model import Simulation as Law
+from culet.scene.motion import Simulation as Law
 from culet.simulation.bodies import Body, BodyState
 from culet.simulation.body import angular_momentum_of, inertia_of
 from culet.simulation.principal_axes import principal_axes

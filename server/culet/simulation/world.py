@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any, TypeVar, assert_never
 
 from culet.errors import InputError
-from culet.scene.model import Simulation as Law
+from culet.scene.motion import Simulation as Law
 from culet.simulation.alone import Alone
 from culet.simulation.bodies import Body, BodyState, Pose, WorldState
 from culet.simulation.drop import DROP_HEIGHT, STANDING

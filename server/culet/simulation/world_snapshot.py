@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, NamedTuple, Self
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictStr, ValidationError, model_validator
 
 from culet.errors import InputError
-from culet.scene.model import scene_error
+from culet.scene.refusal import scene_error
 from culet.simulation.bodies import BodyState, WorldState
 from culet.simulation.snapshot import Count, Number
 

@@ -8,25 +8,24 @@ import trimesh
 
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
-from culet.scene.legacy import LEGACY_DEFAULT
-from culet.scene.model import (
-    Camera,
-    GradientEnvironment,
-    IndexMaterial,
-    Optics,
-    Plane,
-    Scene,
-    StoneSettings,
-)
+from culet.scene.camera import Camera
+from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, LEGACY_POINTS
+from culet.scene.model import Scene
+from culet.scene.optics import Optics
+from culet.scene.room import Plane
+from culet.scene.sky import GradientEnvironment
+from culet.scene.stone import IndexMaterial, StoneSettings
 from culet.stage import NOTHING, Library, Stage
 
-_STONE = StoneSettings(material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0))
+_STONE = StoneSettings(
+    id="stone", material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0)
+)
 
 CHECKER = LEGACY_DEFAULT.model_copy(
     update={
         "stones": (_STONE,),
         "floor": Plane(kind="matte"),
-        "lights": (),
+        "emitters": (),
         "environment": GradientEnvironment(kind="gradient", bottom=(0.9, 0.9, 1), top=(0.2, 0.3, 0.6)),
         "camera": Camera(position=(0, 2.2, 3.2), target=(0, 0, 0), fov_degrees=45),
         "optics": Optics(max_bounces=64),
@@ -34,16 +33,14 @@ CHECKER = LEGACY_DEFAULT.model_copy(
 )
 """The main job at its plainest: a brilliant of three indices over a checker without lights, 64 bounces."""
 
-_LIGHTS = LEGACY_DEFAULT.lights
-
 RING = "ring"
 """In place of the id of an upload."""
 
 CASES: dict[str, Scene] = {
     "checker": CHECKER,
     "checker, 256 bounces": CHECKER.model_copy(update={"optics": Optics()}),
-    "checker, both lights": CHECKER.model_copy(update={"lights": _LIGHTS}),
-    "mirror, both lights": CHECKER.model_copy(update={"lights": _LIGHTS, "floor": Plane(kind="mirror")}),
+    "checker, both lights": CHECKER.model_copy(update={"emitters": LEGACY_POINTS}),
+    "mirror, both lights": CHECKER.model_copy(update={"emitters": LEGACY_POINTS, "floor": Plane(kind="mirror")}),
     "default": Scene(),
     "legacy default": LEGACY_DEFAULT,
     "legacy default, 8 bands": LEGACY_DEFAULT.model_copy(update={"optics": Optics(bands=8)}),
@@ -81,9 +78,12 @@ FEATURE_CASES: dict[str, tuple[Scene, Scene]] = {
     "walls": (BARE, BARE.model_copy(update={"walls": Plane(kind="matte")})),
     "lights": (
         BARE.model_copy(update={"floor": Plane(kind="matte")}),
-        BARE.model_copy(update={"floor": Plane(kind="matte"), "lights": _LIGHTS}),
+        BARE.model_copy(update={"floor": Plane(kind="matte"), "emitters": LEGACY_POINTS}),
     ),
-    "sky": (BARE, BARE.model_copy(update={"environment": LEGACY_DEFAULT.environment})),
+    "sky": (
+        BARE,
+        BARE.model_copy(update={"environment": LEGACY_DEFAULT.environment, "emitters": LEGACY_LAMPS}),
+    ),
     "dispersion": (BARE, BARE.model_copy(update={"stones": CHECKER.stones})),
     "absorption": (
         BARE,

@@ -162,7 +162,7 @@ def governor(
     preset: Preset = None,
     seconds: Annotated[float, typer.Option(min=5, help="Of the stone that falls in a scene that stays.")] = 60,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 1280,
-    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels, likewise.")] = 720,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 720,
     exactness: Annotated[float, typer.Option(min=0, max=1, help="Of the balance: 0 many frames, 1 good ones.")] = 0.5,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every frame's header.")

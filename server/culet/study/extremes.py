@@ -23,7 +23,8 @@ from culet.rendering.chains import GROUPS, chain_table, is_spectral
 from culet.rendering.features import Geometry, features_of
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
-from culet.scene.model import Scene, StoneSettings
+from culet.scene.model import Scene
+from culet.scene.stone import StoneSettings
 from culet.stage import Library, Stage
 
 Array = NDArray[np.float64]
@@ -213,12 +214,15 @@ EXTREMES = (
     Extreme(
         "light inside the stone",
         brilliant,
-        scene={"floor": {"kind": "matte"}, "lights": [{"position": [0, 0.01, 0], "colour": [1, 1, 1]}]},
+        scene={
+            "floor": {"kind": "matte"},
+            "emitters": [{"shape": "point", "position": [0, 0.01, 0], "colour": [1, 1, 1]}],
+        },
         brightest=0.9 * 1.2,  # the lighter albedo in all the light that there is, which is more than the sky
     ),
     Extreme("light at the stone's vertex", brilliant,
-            scene={"floor": {"kind": "matte"}, "lights": [{"position": brilliant().vertices[0].tolist(),
-                                                           "colour": [1, 1, 1]}]},
+            scene={"floor": {"kind": "matte"}, "emitters": [{"shape": "point", "colour": [1, 1, 1],
+                                                             "position": brilliant().vertices[0].tolist()}]},
             brightest=0.9 * 1.2),
 )  # fmt: skip
 
@@ -236,7 +240,7 @@ def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3)
         scene = legacy(
             {
                 "floor": {"kind": "none"},
-                "lights": [],
+                "emitters": [],
                 "environment": {"kind": "constant"},
                 **extreme.scene,
                 "camera": camera,

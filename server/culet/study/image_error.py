@@ -10,7 +10,7 @@ from skimage import color, metrics
 
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import tone_map
-from culet.scene.model import Film
+from culet.scene.film import Film
 from culet.study.radiance_error import Image
 
 _lab: Any = color.rgb2lab  # scikit-image has types for a part of itself only

@@ -8,7 +8,8 @@ from itertools import product
 from typing import NamedTuple
 
 from culet.rendering.features import Geometry, features_of
-from culet.scene.model import Optics, Scene
+from culet.scene.model import Scene
+from culet.scene.optics import Optics
 from culet.stage import Stage
 from culet.study.report import Knob
 

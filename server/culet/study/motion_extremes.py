@@ -18,9 +18,9 @@ from culet.errors import CuletError
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene.legacy import legacy
-from culet.scene.model import Simulation as Settings
 from culet.simulation.motion import Motion, kinetic_energy, pushed_out
 from culet.simulation.rotation import rotate
+from culet.simulation.settings import SimulationSettings as Settings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR, WALLS, Surface
@@ -201,7 +201,9 @@ def mesh_of_nan() -> object:
 
 
 def _read(**settings: object) -> Callable[[], object]:
-    return lambda: legacy({"simulation": settings})
+    of_stones = {name: value for name, value in settings.items() if name in ("mass", "spin")}
+    laws = {name: value for name, value in settings.items() if name not in of_stones}
+    return lambda: legacy({"simulation": laws, "stones": [of_stones]})
 
 
 REFUSED: Mapping[str, Callable[[], object]] = {

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as Settings
 from culet.scene.room import FLOOR_Y
 from culet.simulation.rotation import IDENTITY, rotate
+from culet.simulation.settings import SimulationSettings as Settings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
 from culet.study.report import Knob

@@ -12,7 +12,7 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
-from culet.scene.model import Film
+from culet.scene.film import Film
 from culet.study.image_error import as_shown
 
 LEAST, MOST = 1e-3, 1.0

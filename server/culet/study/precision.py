@@ -21,9 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.rendering.renderer import Renderer
-from culet.scene.legacy import legacy
-from culet.scene.model import GradientEnvironment, Plane, Scene
-from culet.scene.studio import StudioEnvironment
+from culet.scene.emitters import PointLight
+from culet.scene.legacy import LEGACY_LAMPS, legacy
+from culet.scene.model import Scene
+from culet.scene.room import Plane
+from culet.scene.sky import GradientEnvironment
 from culet.stage import Stage
 
 Array = NDArray[np.float64]
@@ -46,11 +48,11 @@ SIZE = 640, 360
 FARTHER: Mapping[str, float] = {"mirrors all around, absorption": 5e-6}
 """PERTURBATION of scenes where light takes a way several times as long, from mirror to mirror."""
 
-_BARE: Settings = {"floor": {"kind": "none"}, "lights": []}
+_BARE: Settings = {"floor": {"kind": "none"}, "emitters": []}
 SCENES: Mapping[str, Settings] = {
     "legacy default": {},
     "matte floor, lights": {"floor": {"kind": "matte"}},
-    "matte floor, no lights": {"floor": {"kind": "matte"}, "lights": []},
+    "matte floor, no lights": {"floor": {"kind": "matte"}, "emitters": [lamp.model_dump() for lamp in LEGACY_LAMPS]},
     "stone alone, gradient": {**_BARE, "environment": {"kind": "gradient"}},
     "stone alone, half": {**_BARE, "environment": {"kind": "half"}},
     "mirrors all around, absorption": {
@@ -164,15 +166,15 @@ def _perturbed(scene: Scene, random: np.random.Generator, most: float) -> Settin
 def _alone(scene: Scene) -> Scene:
     nothing = Plane(kind="none")
     sky = GradientEnvironment(kind="gradient")
-    return scene.model_copy(update={"floor": nothing, "walls": nothing, "lights": (), "environment": sky})
+    return scene.model_copy(update={"floor": nothing, "walls": nothing, "emitters": (), "environment": sky})
 
 
 def _softened(scene: Scene) -> Scene:
-    sky = scene.environment
-    if not isinstance(sky, StudioEnvironment):
-        return scene
-    lamps = tuple(lamp.model_copy(update={"softness": 1.0}) for lamp in sky.lamps)
-    return scene.model_copy(update={"environment": sky.model_copy(update={"lamps": lamps})})
+    emitters = tuple(
+        emitter if isinstance(emitter, PointLight) else emitter.model_copy(update={"softness": 1.0})
+        for emitter in scene.emitters
+    )
+    return scene.model_copy(update={"emitters": emitters})
 
 
 def table(single: Renderer, double: Renderer) -> Iterator[str]:

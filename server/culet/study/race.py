@@ -17,7 +17,9 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from culet.scene.model import GradientEnvironment, Optics, Plane
+from culet.scene.optics import Optics
+from culet.scene.room import Plane
+from culet.scene.sky import GradientEnvironment
 from culet.stage import Stage
 from culet.study.cases import CHECKER
 from culet.study.convergence import resting_error, time_to

@@ -15,11 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from culet.geometry.shape import MassProperties, Shape
-from culet.scene.model import Simulation as Settings
 from culet.simulation.body import RigidBody
 from culet.simulation.free_rotation import INTEGRATORS
 from culet.simulation.models import MODELS
 from culet.simulation.rotation import IDENTITY
+from culet.simulation.settings import SimulationSettings as Settings
 from culet.simulation.state import Quaternion
 from culet.study.convergence import fit_order
 from culet.study.journal import Journal

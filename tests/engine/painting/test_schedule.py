@@ -11,12 +11,12 @@ from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
 from culet.geometry.mesh import shape_from_mesh
 from culet.rendering.renderer import Renderer
-from culet.scene import Light, Scene
+from culet.scene import PointLight, Scene
 from engine.peer import TETRAHEDRON
 from shared.stages import staged
 
 SCENE = Scene()
-LAMP = Light(position=(1, 2, 3), colour=(1, 1, 1))
+LAMP = PointLight(position=(1, 2, 3), colour=(1, 1, 1))
 STAGE = staged(SCENE, shape_from_mesh(TETRAHEDRON, "off"))
 RENDERER = Renderer()
 
@@ -87,7 +87,7 @@ def test_a_reduced_picture_is_drawn_in_full_when_things_have_settled() -> None:
 
 def test_a_change_a_new_size_or_motion_make_it_due_again() -> None:
     changed, resized, falling = (painted(live(), final=True) for _ in range(3))
-    changed.session.change(STAGE.showing(SCENE.model_copy(update={"lights": (LAMP,)})))
+    changed.session.change(STAGE.showing(SCENE.model_copy(update={"emitters": (LAMP,)})))
     resized.size = (32, 32)
     falling.session.set_falling(True)
     for picture in (changed, resized, falling):
@@ -100,7 +100,7 @@ def test_what_could_not_be_rendered_is_tried_again_only_when_it_changed() -> Non
     picture = live()
     picture.refuse(picture.session.shown)
     assert next_of([picture], now=100) is None
-    picture.session.change(STAGE.showing(SCENE.model_copy(update={"lights": (LAMP,)})))
+    picture.session.change(STAGE.showing(SCENE.model_copy(update={"emitters": (LAMP,)})))
     assert next_of([picture], now=100) is picture
 
 

@@ -17,7 +17,7 @@ DEAREST: dict[str, Any] = {
 """One frame of 64 x 64 pixels takes some 10 s of two cores."""
 CHEAP: dict[str, Any] = {
     "floor": {"kind": "none"},
-    "lights": [],
+    "emitters": [],
     "environment": {"kind": "dark"},
     "simulation": {"sleeping": False},
 }

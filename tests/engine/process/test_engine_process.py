@@ -26,7 +26,7 @@ UNKNOWN = "f" * 32
 PLAIN: dict[str, Any] = {
     "environment": {"kind": "dark"},
     "floor": {"kind": "none"},
-    "lights": [],
+    "emitters": [],
     "optics": {"max_bounces": 4},
 }
 """A scene that takes next to no time."""

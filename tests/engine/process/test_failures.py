@@ -30,7 +30,7 @@ from culet_protocol.messages import SessionEvent
 from engine.peer import Peer, Watcher
 
 REFUSED: dict[str, Any] = {"environment": {"kind": "half"}}
-GOOD: dict[str, Any] = {"environment": {"kind": "dark"}, "floor": {"kind": "none"}, "lights": []}
+GOOD: dict[str, Any] = {"environment": {"kind": "dark"}, "floor": {"kind": "none"}}
 
 
 class FailingRenderer:

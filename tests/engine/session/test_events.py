@@ -75,15 +75,15 @@ def test_each_light_moves_alone(target: Any, number: int) -> None:  # noqa: ANN4
     subject = session()
     before = subject.scene
     moved = after(subject, messages.Translate(target=target, right=0.5, up=0))
-    assert math.dist(moved.lights[number].position, before.lights[number].position) == pytest.approx(0.5)
-    assert moved.lights[1 - number] == before.lights[1 - number]
-    assert moved.lights[number].colour == before.lights[number].colour
+    assert math.dist(moved.points[number].position, before.points[number].position) == pytest.approx(0.5)
+    assert moved.points[1 - number] == before.points[1 - number]
+    assert moved.points[number].colour == before.points[number].colour
     assert moved.camera == before.camera
 
 
 def test_a_light_that_is_not_there_cannot_be_moved() -> None:
-    subject = session(lights=[])
-    with pytest.raises(InputError, match="0 lights, no light_2") as caught:
+    subject = session(emitters=[])
+    with pytest.raises(InputError, match="0 point lights, no light_2") as caught:
         after(subject, messages.Orbit(target="light_2", yaw=1, pitch=0))
     assert caught.value.field == "target"
 
@@ -262,8 +262,8 @@ def test_another_shape_goes_where_the_patch_says() -> None:
     [
         {"stones": [{"position": [0, 3, 0]}]},
         {"stones": [{"orientation": [1, 0, 0, 0]}]},
-        {"simulation": {"spin": [0, 9, 0]}},
-        {"simulation": {"velocity": [1, 0, 0]}},
+        {"stones": {"stone": {"spin": [0, 9, 0]}}},
+        {"stones": {"stone": {"velocity": [1, 0, 0]}}},
     ],
 )
 @pytest.mark.parametrize("falls", [True, False])

@@ -11,6 +11,7 @@ from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.scene import Scene
+from culet.scene.motion import Simulation as SimulationLaws
 from culet.stage import NOTHING, Stage
 from culet_protocol.messages import PatchScene
 from engine.peer import EngineProcess, connected
@@ -26,8 +27,11 @@ def falling(scene: dict[str, Any] | None = None) -> Session:
     return session
 
 
-def patch(session: Session, **simulation: object) -> None:
-    events.apply(session, PatchScene(patch={"simulation": simulation}), NOTHING)
+def patch(session: Session, **settings: object) -> None:
+    """Laws of motion, and what is the stone's own."""
+    own = {name: value for name, value in settings.items() if name not in SimulationLaws.model_fields}
+    laws = {name: value for name, value in settings.items() if name not in own}
+    events.apply(session, PatchScene(patch={"simulation": laws, "stones": {"stone": own}}), NOTHING)
 
 
 def motion(session: Session) -> Any:  # noqa: ANN401
@@ -37,9 +41,9 @@ def motion(session: Session) -> Any:  # noqa: ANN401
 
 def velocities(session: Session) -> list[float]:
     """Linear, R/s, and angular, rad/s."""
-    simulation, mass = session.motion.simulation, session.scene.simulation.mass
+    simulation = session.motion.simulation
     assert simulation is not None
-    state = simulation.state
+    state, mass = simulation.state, simulation.settings.mass
     omega = simulation.body.angular_velocity(state)
     return [*(p / mass for p in state.momentum), *omega]
 
@@ -88,7 +92,7 @@ def test_a_pause_is_kept_and_the_same_settings_are_no_change() -> None:
 def test_the_same_change_at_the_same_step_gives_the_same_path_at_any_frame_rate(change: dict[str, object]) -> None:
     paths = []
     for frames in (1, 3, 40):
-        session = falling({"simulation": {"velocity": [1, -4, 0]}})  # it bounces after the change
+        session = falling({"stones": [{"position": [0, 1, 0], "velocity": [1, -4, 0]}]})  # it bounces after the change
         for frame in range(1, frames + 1):
             session.advance(24.5 * STEP * frame / frames)
         patch(session, **change)
@@ -124,7 +128,7 @@ def test_a_stone_at_rest_wakes_just_if_the_change_moves_it() -> None:
     assert session.pose() != resting
 
 
-@pytest.mark.parametrize("start", [{"simulation": {"spin": [0, 8, 0]}}, {"stones": [{"position": [0, 2, 0]}]}])
+@pytest.mark.parametrize("start", [{"stones": {"stone": {"spin": [0, 8, 0]}}}, {"stones": [{"position": [0, 2, 0]}]}])
 def test_a_stone_that_has_come_to_rest_is_dropped_again_from_another_start(start: dict[str, Any]) -> None:
     session, now = at_rest()
     events.apply(session, PatchScene(patch=start), NOTHING)
@@ -155,7 +159,7 @@ async def test_a_falling_stone_hovers_when_gravity_is_turned_off_and_everybody_h
     engine: EngineProcess,
 ) -> None:
     async with connected(engine) as (peer, watch):
-        session = await peer.open(DROP | {"simulation": {"velocity": [0, -0.5, 0]}})
+        session = await peer.open({"stones": [{"position": [0, 1, 0], "velocity": [0, -0.5, 0]}]})
         await peer.demand()
         watcher = watch(session)
         await peer.control("toggle_fall")
@@ -186,7 +190,6 @@ def is_weightless(told: dict[str, Any]) -> bool:
         ({"rolling_resistance": 2}, "rolling_resistance"),
         ({"integrator": "leapfrog"}, "integrator"),
         ({"model": "soft"}, "model"),
-        ({"spin": [1, 2]}, "spin"),
         ({"bounciness": 1}, "bounciness"),
     ],
 )

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from culet.engine.session.picking import struck_point
 from culet.engine.session.session import Session
 from culet.errors import InputError
 from culet.geometry.load import shape_of
@@ -21,33 +18,6 @@ STONE = shape_of(SCENE.stones[0], {})
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 AHEAD = Camera(position=(0, 0, 5), target=(0, 0, 0), fov_degrees=90)
 """At distance 5 half the picture's height is 5 R."""
-
-
-def test_a_line_of_sight_strikes_the_facet_in_front() -> None:
-    point = struck_point(AHEAD, STONE, (0, 0, 0), UPRIGHT, 0.02, 0.01)
-    assert point is not None
-    slopes = [point[0] / (5 - point[2]), point[1] / (5 - point[2])]
-    assert slopes == pytest.approx([0.02, 0.01], rel=1e-12)
-    distances = STONE.planes[:, :3] @ np.array(point) - STONE.planes[:, 3]
-    assert distances.max() == pytest.approx(0, abs=1e-12)
-    assert point[2] > 0.5  # the near side
-
-
-@pytest.mark.parametrize("at", [(0.3, 0.0), (0.0, 0.5), (-2.0, 0.0)])
-def test_a_line_of_sight_past_the_stone_strikes_nothing(at: tuple[float, float]) -> None:
-    assert struck_point(AHEAD, STONE, (0, 0, 0), UPRIGHT, *at) is None
-
-
-def test_a_stone_behind_the_camera_is_not_struck() -> None:
-    assert struck_point(AHEAD, STONE, (0, 0, 9), UPRIGHT, 0, 0) is None
-    hollow = replace(STONE, convex=False)
-    assert struck_point(AHEAD, hollow, (0, 0, 9), UPRIGHT, 0, 0) is None
-
-
-def test_a_stone_that_is_not_convex_is_struck_on_its_sphere() -> None:
-    point = struck_point(AHEAD, replace(STONE, convex=False), (0, 0, 0), UPRIGHT, 0, 0)
-    assert point == pytest.approx((0, 0, 1))
-    assert struck_point(AHEAD, replace(STONE, convex=False), (0, 0, 0), UPRIGHT, 0.3, 0) is None
 
 
 def test_a_push_moves_a_paused_stone_by_that_speed_and_lets_time_go_on() -> None:

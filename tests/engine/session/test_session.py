@@ -28,7 +28,7 @@ def test_the_step_grows_by_one_with_every_change_and_only_then() -> None:
     first = session.shown
     session.change(session.stage)
     assert session.shown is first
-    session.change(session.stage.showing(session.scene.model_copy(update={"lights": ()})))
+    session.change(session.stage.showing(session.scene.model_copy(update={"emitters": ()})))
     assert session.shown.step == first.step + 1
     session.advance(5)
     session.advance(6)

@@ -53,7 +53,7 @@ class Setting:
     cutoff: float
     """At least, whatever the scene says."""
     max_bounces: int
-    """At most, likewise."""
+    """At most, whatever the scene says."""
     cost: float
     """Time over that of the first rung, measured."""
     error: float

@@ -22,20 +22,20 @@ class SettingErrors:
     """
 
     scales: tuple[float, ...]
-    """Of width and height, ascending; cut-offs and bounces likewise."""
+    """Of width and height. Scales, cut-offs and bounces are ascending."""
     cutoffs: tuple[float, ...]
     max_bounces: tuple[int, ...]
     shown_errors: Grid
     """(scales, cutoffs, max_bounces), of what is shown, 0 to 1."""
     radiance_errors: Grid
-    """Likewise, of the linear radiance."""
+    """(scales, cutoffs, max_bounces), of the linear radiance."""
 
     def shown(self, scale: float, cutoff: float, max_bounces: int) -> float:
         """NaN beyond the settings that were measured."""
         return self._at(self.shown_errors, scale, cutoff, max_bounces)
 
     def radiance(self, scale: float, cutoff: float, max_bounces: int) -> float:
-        """Likewise."""
+        """NaN beyond the settings that were measured."""
         return self._at(self.radiance_errors, scale, cutoff, max_bounces)
 
     def _at(self, errors: Grid, scale: float, cutoff: float, max_bounces: int) -> float:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Plan
 from culet.engine.painting.renderer import Picture
-from culet.engine.painting.whereabouts import whereabouts
+from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
-from culet.scene.model import Optics
+from culet.scene.optics import Optics
 from culet_protocol.frame import Codec, Flags, Frame
 
 
@@ -101,10 +101,10 @@ class LiveFrame:
         ).pack()
 
     def _unseen(self) -> Flags:
-        """Where the stone is, if it is nowhere in the picture."""
+        """Where the nearest stone is, if no stone is in the picture."""
         height, width, _ = self.rgb.shape
         scene = self.shown.scene
-        return whereabouts(scene.camera, scene.stones[0].position, width / height) if scene.stones else Flags.NONE
+        return whereabouts(scene.camera, [Ball(stone.position) for stone in scene.stones], width / height)
 
     def _flags(self, frontier: bool) -> Flags:
         flags = {

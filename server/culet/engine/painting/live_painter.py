@@ -117,7 +117,7 @@ class LivePainter:
         """As many samples more as the picture has."""
         picture, shown = live.picture, live.painted
         assert picture is not None  # noqa: S101 - of a picture that wants to be refined
-        assert shown is not None  # noqa: S101 - likewise
+        assert shown is not None  # noqa: S101 - of such a picture too
         samples = min(picture.samples, REST_SAMPLES - picture.samples)
         work = FrameWork(
             Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, samples=samples,

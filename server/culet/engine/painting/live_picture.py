@@ -15,11 +15,10 @@ from culet.engine.painting.renderer import Picture
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Session, Shown
 from culet_protocol.messages import Balance
+from culet_protocol.sizes import LIVE_SIZE
 
 NATIVE_RATE = 30.0
 """Frames per second for viewers that only subscribe, and cannot say what they take."""
-NATIVE_SIZE = (960, 540)
-"""Pixels, for the same viewers."""
 
 REST_SAMPLES = 16
 """Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
@@ -88,7 +87,7 @@ class LivePicture:
     subscription ends with its subscriber, however that ends."""
     rate: float = 0.0
     """Frames per second that the gateway's viewers can take; 0 if it has none."""
-    size: tuple[int, int] = NATIVE_SIZE
+    size: tuple[int, int] = LIVE_SIZE
     state: State = State.BLANK
     picture: Picture | None = None
     """That can be refined."""

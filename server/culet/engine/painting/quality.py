@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from culet.engine.governing.governor import Governor, read_ladder
 from culet.engine.painting.frame_work import FrameWork, Kind
-from culet.scene.model import Optics
+from culet.scene.optics import Optics
 from culet_protocol.messages import Balance
 
 DEAREST_SECONDS = 2.0

@@ -1,8 +1,9 @@
-"""On which side of the picture the stone is when the camera does not see it: what an empty picture does not say."""
+"""On which side of the picture the stones are when the camera sees none: what an empty picture does not say."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,23 +11,45 @@ from culet.engine.session.viewpoint import axes, half_height
 from culet.scene import Camera, Vector
 from culet_protocol.frame import Flags
 
+BESIDE = ((Flags.RIGHT, Flags.LEFT), (Flags.ABOVE, Flags.BELOW))
+"""Beyond the picture's edges: the side of a positive distance from the middle and of a negative one, across and up."""
 
-def whereabouts(camera: Camera, position: Vector, aspect: float) -> Flags:
-    """The sides of the picture (width by height) beyond which the whole of a stone there is; none if it may be seen.
 
-    As Cohen and Sutherland's outcodes, with the stone's circumscribed ball, whose radius is the unit of length, for a
-    point: where only the ball reaches into the picture the stone counts as seen. Behind the camera there are no sides.
+class Ball(NamedTuple):
+    """The ball about a stone, in R."""
+
+    position: Vector
+    radius: float = 1.0
+
+
+def whereabouts(camera: Camera, stones: Sequence[Ball], aspect: float) -> Flags:
+    """The sides of the picture (width by height) beyond which the nearest stone is; none if a stone may be seen.
+
+    As Cohen and Sutherland's outcodes, with the ball about a stone for a point: where only the ball reaches into the
+    picture the stone counts as seen. Behind the camera there are no sides. The nearest stone is the one whose ball is
+    nearest to the camera.
     """
-    right, up, forward = axes(camera)
-    to_stone = np.array(position, float) - np.array(camera.position, float)
-    x, y, depth = (float(to_stone @ axis) for axis in (right, up, forward))
-    half, parallel = half_height(camera), camera.kind == "orthographic"
-    if depth < -1 and not parallel:
+    if not stones:
+        return Flags.NONE
+    offsets = np.array([ball.position for ball in stones]) - np.array(camera.position, float)
+    radii = np.array([ball.radius for ball in stones])
+    along = offsets @ np.array(axes(camera)).T  # to the right, up and forward of the picture
+    half = half_height(camera)
+    reaches, depths = np.array((half * aspect, half)), along[:, 2]
+    if camera.kind == "orthographic":
+        behind = np.zeros(len(stones), bool)
+        beyond = np.abs(along[:, :2]) - reaches
+    else:
+        behind = depths < -radii
+        # To the planes through the eye and the picture's edges: (across - depth reach) / sqrt(1 + reach^2).
+        beyond = (np.abs(along[:, :2]) - depths[:, None] * reaches) / np.sqrt(1 + reaches**2)
+    outside = beyond > radii[:, None]
+    if not (behind | outside.any(axis=1)).all():
+        return Flags.NONE
+    nearest = int(np.argmin(np.linalg.norm(offsets, axis=1) - radii))
+    if behind[nearest]:
         return Flags.BEHIND
     sides = Flags.NONE
-    edges = ((y, half, Flags.ABOVE, Flags.BELOW), (x, half * aspect, Flags.RIGHT, Flags.LEFT))
-    for across, reach, side, other in edges:
-        # The distance to the plane through the eye and that edge: (across - depth reach) / sqrt(1 + reach^2).
-        if abs(across) > reach + 1 if parallel else abs(across) - depth * reach > math.hypot(1, reach):
-            sides |= side if across > 0 else other
+    for axis in np.flatnonzero(outside[nearest]):
+        sides |= BESIDE[axis][0 if along[nearest, axis] > 0 else 1]
     return sides

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, ValidationError
 
 from culet.errors import CuletError, InputError
-from culet.scene.model import scene_error
+from culet.scene.refusal import scene_error
 from culet_protocol import engine as protocol
 
 

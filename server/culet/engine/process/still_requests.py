@@ -18,9 +18,7 @@ from culet.errors import InputError
 from culet.scene import Scene
 from culet.stage import Library, Stage
 from culet_protocol.engine import Render
-
-STILL_SIZE = (640, 360)
-"""Pixels of a still that names no size."""
+from culet_protocol.sizes import STILL_SIZE
 
 
 class StillRequests:

@@ -17,7 +17,7 @@ HANG_SECONDS = 20.0
 """Of standing still. Pieces of rendering take 0.1 s, on a loaded machine some more; shorter, and a machine that is busy
 with something else for a while would lose its engine, longer, and viewers wait."""
 COMPILER_SECONDS = 150.0
-"""Likewise, while a compiler is at work: a program takes 3 s of a core, and more where many share it."""
+"""Of standing still while a compiler is at work: a program takes 3 s of a core, and more where many share it."""
 BEAT_SECONDS = 0.5
 
 

@@ -8,11 +8,12 @@ from pydantic import ValidationError
 
 from culet.engine.session import viewpoint
 from culet.engine.session.history import Past
-from culet.engine.session.merge_patch import merge_patch
 from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
-from culet.scene import Camera, Light, Plane, Scene
-from culet.scene.model import DarkEnvironment, LightEnvironment
+from culet.scene import Camera, Plane, Scene
+from culet.scene.emitters import PointLight
+from culet.scene.patch import patched
+from culet.scene.sky import DarkEnvironment, LightEnvironment
 from culet.scene.sky_seen import Surroundings, back_under, under
 from culet.simulation.lying import on_the_floor
 from culet.stage import Library, Sky, Stage
@@ -69,7 +70,7 @@ def past_stage(past: Past, session: Session, library: Library) -> Stage:
 
 
 def own_sky(sky: Sky) -> Sky:
-    """The other sky than the light one: that of a scene, or, if that is light itself, the dark."""
+    """The sky that a switch from the light sky goes to: the scene's own sky, or the dark if that is the light."""
     return Sky(DarkEnvironment(kind="dark")) if sky.environment.kind == "light" else sky
 
 
@@ -113,9 +114,10 @@ def _with_light_moved(
     scene: Scene, event: messages.Orbit | messages.Translate | messages.Dolly, target: Target
 ) -> Scene:
     number = {"light_1": 0, "light_2": 1}[target]
-    if number >= len(scene.lights):
-        raise InputError(f"target: the scene has {len(scene.lights)} lights, no {target}", "target")
-    light = scene.lights[number]
+    points = scene.points
+    if number >= len(points):
+        raise InputError(f"target: the scene has {len(points)} point lights, no {target}", "target")
+    light = points[number]
     match event:
         case messages.Orbit():
             position = viewpoint.orbit_light(light.position, event.yaw, event.pitch)
@@ -125,9 +127,9 @@ def _with_light_moved(
             position = viewpoint.shift_light(light.position, scene.camera, 0, 0, event.forward)
         case _:
             assert_never(event)
-    lights = list(scene.lights)
-    lights[number] = Light(position=position, colour=light.colour)
-    return scene.model_copy(update={"lights": tuple(lights)})
+    moved = PointLight(position=position, colour=light.colour)
+    emitters = tuple(moved if emitter is light else emitter for emitter in scene.emitters)
+    return scene.model_copy(update={"emitters": emitters})
 
 
 def _with_mirror_toggled(scene: Scene) -> Scene:
@@ -159,11 +161,11 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
     """Apply a merge patch to the scene as it is now, and to the camera that a reset goes back to."""
     before = session.scene
     document = before.model_dump(mode="json")
-    after = Scene.read(merge_patch(document, patch))
+    after = Scene.read(patched(document, patch))
     home = session.home
     if "camera" in patch:
         at_home = document | {"camera": home.model_dump(mode="json")}
-        home = Scene.read(merge_patch(at_home, patch)).camera
+        home = Scene.read(patched(at_home, patch)).camera
     stage = stage_for(after, session, library)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
     if stage.shapes != session.stage.shapes:
@@ -179,7 +181,7 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
 
 def _start(scene: Scene) -> object:
     """Where and how the stone starts: a patch of anything else leaves it where it is."""
-    return _poses(scene), scene.simulation.velocity, scene.simulation.spin
+    return _poses(scene), [(stone.velocity, stone.spin) for stone in scene.stones]
 
 
 def _poses(scene: Scene) -> object:

@@ -10,6 +10,7 @@ from culet.engine.session.snapshot import LARGEST_FRACTION
 from culet.errors import InputError
 from culet.scene import Scene
 from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
+from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, Triple
 from culet.stage import Stage
 
@@ -72,7 +73,7 @@ class Motion:
         """Go on from where the stone is by the scene's settings; InputError, and nothing changed, if it cannot."""
         was_moving = self.moving
         if self.simulation is not None:
-            self.simulation.adjust(scene.simulation)
+            self.simulation.adjust(SimulationSettings.of(scene, scene.stones[0], self.simulation.body.shape))
             self.simulation.surround(surfaces_of(scene))
         if scene.simulation.time_step != self.clock.time_step:
             self.clock = _clock(scene.simulation.time_step, self.fraction)

@@ -1,10 +1,13 @@
-"""What is under a point of the picture."""
+"""Which stone is under a point of the picture, and where the line of sight strikes that stone."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from culet.engine.session.viewpoint import axes, half_height
 from culet.geometry.shape import Shape
@@ -12,41 +15,95 @@ from culet.scene import Camera, Vector
 from culet.simulation.rotation import rotate_back
 from culet.simulation.state import Quaternion, Triple
 
+Array = NDArray[np.float64]
 
-def struck_point(
-    camera: Camera, shape: Shape, position: Vector, orientation: Quaternion, x: float, y: float
-) -> Triple | None:
-    """Where the line of sight through a point of the picture enters the stone, in the world; None if it passes by.
 
-    x to the right and y up, from the picture's centre, in halves of its height. A stone that is not convex is taken to
-    be its bounding sphere.
+class Placed(NamedTuple):
+    """A stone where it is."""
+
+    name: str
+    """The stone's id."""
+    shape: Shape
+    scale: float
+    """R: the radius of the ball about the stone."""
+    position: Vector
+    """R."""
+    orientation: Quaternion
+
+
+class Struck(NamedTuple):
+    """What a line of sight meets first."""
+
+    name: str
+    """The stone's id."""
+    point: Triple
+    """R, in the world."""
+
+
+def struck(camera: Camera, stones: Iterable[Placed], x: float, y: float) -> Struck | None:
+    """The stone whose surface the line of sight through a point of the picture enters first; None if there is none.
+
+    x to the right and y up, from the picture's centre, in halves of its height. A stone that the camera is inside of is
+    not struck.
     """
-    right, up, forward = axes(camera)
-    eye = np.array(camera.position, float) - np.array(position, float)
-    half = half_height(camera)
-    if camera.kind == "orthographic":
-        sight, eye = forward, eye + half * (x * right + y * up)
-    else:
-        sight = forward + half * (x * right + y * up)
-        sight /= np.linalg.norm(sight)
-    if not shape.convex:
-        along = float(eye @ sight)
-        inside = along * along - float(eye @ eye) + 1
-        if inside < 0:
-            return None
-        distance = -along - math.sqrt(inside)
-    else:
-        start, way = (np.array(rotate_back(orientation, (v[0], v[1], v[2]))) for v in (eye.tolist(), sight.tolist()))
-        normals, offsets = shape.planes[:, :3], shape.planes[:, 3]
-        towards, room = normals @ way, offsets - normals @ start
-        if (room[towards == 0] < 0).any():
-            return None
-        crossings = room[towards != 0] / towards[towards != 0]
-        entering = towards[towards != 0] < 0
-        distance = float(crossings[entering].max(initial=-math.inf))
-        if distance > float(crossings[~entering].min(initial=math.inf)):
-            return None
-    if distance <= 0 and camera.kind == "pinhole":
+    eye, sight = _line_of_sight(camera, x, y)
+    behind = 0.0 if camera.kind == "pinhole" else -math.inf  # parallel rays come from infinitely far
+    nearest, found = math.inf, None
+    for stone in stones:
+        distance = _distance(eye, sight, stone, behind)
+        if behind < distance < nearest:
+            nearest, found = distance, stone.name
+    if found is None:
         return None
-    hit = eye + distance * sight + np.array(position, float)
-    return (float(hit[0]), float(hit[1]), float(hit[2]))
+    hit = eye + nearest * sight
+    return Struck(found, (float(hit[0]), float(hit[1]), float(hit[2])))
+
+
+def _line_of_sight(camera: Camera, x: float, y: float) -> tuple[Array, Array]:
+    """A point of it (R), and its direction (of length 1), both in the world."""
+    right, up, forward = axes(camera)
+    eye, half = np.array(camera.position, float), half_height(camera)
+    if camera.kind == "orthographic":
+        return eye + half * (x * right + y * up), forward
+    sight = forward + half * (x * right + y * up)
+    return eye, sight / np.linalg.norm(sight)
+
+
+def _distance(eye: Array, sight: Array, stone: Placed, behind: float) -> float:
+    """R along the line to where it enters the stone beyond `behind`; infinite if the line passes by."""
+    offset = eye - np.array(stone.position, float)
+    along = float(offset @ sight)
+    if float(offset @ offset) - along * along > stone.scale**2:  # the line passes by the ball about the stone
+        return math.inf
+    start, way = (np.array(rotate_back(stone.orientation, (v[0], v[1], v[2]))) for v in (offset / stone.scale, sight))
+    shape = stone.shape
+    distance = _into_planes(start, way, shape.planes) if shape.convex else _into_triangles(start, way, shape, behind)
+    return distance * stone.scale
+
+
+def _into_planes(start: Array, way: Array, planes: Array) -> float:
+    """Along a line to where it enters the intersection of half-spaces; the slab method (Kay and Kajiya 1986)."""
+    towards, room = planes[:, :3] @ way, planes[:, 3] - planes[:, :3] @ start
+    if (room[towards == 0] < 0).any():
+        return math.inf
+    crossings, entering = room[towards != 0] / towards[towards != 0], towards[towards != 0] < 0
+    distance = float(crossings[entering].max(initial=-math.inf))
+    return math.inf if distance > float(crossings[~entering].min(initial=math.inf)) else distance
+
+
+def _into_triangles(start: Array, way: Array, shape: Shape, behind: float) -> float:
+    """Along a line to the first triangle beyond `behind` that it meets from outside (Moeller and Trumbore 1997); a line
+    through an edge meets the triangles on both of its sides."""
+    corners = shape.vertices[shape.triangles]
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    across = np.cross(way, second)
+    facing = np.einsum("ij,ij->i", first, across)
+    entering = facing > 0
+    first, second, across, facing = first[entering], second[entering], across[entering], facing[entering]
+    offset = start - corners[entering, 0]
+    u = np.einsum("ij,ij->i", offset, across) / facing
+    beside = np.cross(offset, first)
+    v = beside @ way / facing
+    distances = np.einsum("ij,ij->i", second, beside) / facing
+    met = (u >= 0) & (v >= 0) & (u + v <= 1) & (distances > behind)
+    return float(distances[met].min(initial=math.inf))

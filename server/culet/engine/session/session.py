@@ -14,7 +14,7 @@ from typing import Any
 
 from culet.engine.session.history import History, Past
 from culet.engine.session.motion import Motion
-from culet.engine.session.picking import struck_point
+from culet.engine.session.picking import Placed, struck
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
@@ -139,12 +139,13 @@ class Session:
         if self.motion.simulation is None:
             raise InputError("expected a scene with a stone, got none: nothing can be pushed")
         state = self.motion.simulation.state
-        point = struck_point(self.scene.camera, self.stage.shapes[0], state.position, state.orientation, x, y)
-        if point is None:
+        stones = [Placed("", shape, 1.0, state.position, state.orientation) for shape in self.stage.shapes]
+        met = struck(self.scene.camera, stones, x, y)
+        if met is None:
             return
         right_axis, up_axis, _ = axes(self.scene.camera)
         a, b, c = (right * right_axis + up * up_axis).tolist()
-        self.motion.push(point, (a, b, c))
+        self.motion.push(met.point, (a, b, c))
         self._show()
 
     def reset_stone(self) -> None:

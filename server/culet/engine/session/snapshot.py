@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from culet.errors import InputError
 from culet.scene import Camera, Environment
-from culet.scene.model import scene_error
+from culet.scene.refusal import scene_error
 from culet.scene.sky_seen import Surroundings
 from culet_protocol.messages import BALANCED, Exactness
 

@@ -57,7 +57,7 @@ def from_rec709(encoded: Rows) -> Rows:
 CICP_TRANSFERS: dict[int, Transfer] = {
     1: from_rec709, 6: from_rec709, 14: from_rec709, 15: from_rec709, 8: _unchanged, 13: from_srgb,
 }  # fmt: skip
-"""Likewise."""
+"""By their numbers in ITU-T H.273, too."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,15 @@ from culet.study.report import Point
 MARKS = "<!-- culet study contacts: begin -->", "<!-- culet study contacts: end -->"
 """What is between them in docs/simulation.md is written by `culet study contacts --into`."""
 
+CASES = tuple(f"{case.name}: " for case in extreme.EXTREMES)
+MEASURES = {
+    "overlap at any time, R (at most)": "overlap",
+    "at the end, R (at most)": "overlap at the end",
+    "rise of energy, of that at the start (at most)": "rise of energy",
+    "left at, R/s (at most)": "speed after a step",
+}
+"""What a column holds, and what the claims call it. Each case is finite and nothing falls through the floor, too."""
+
 Trial = Callable[[], Iterator[Finding]]
 
 
@@ -49,11 +58,27 @@ def measured(folder: Path, tell: Callable[[str], object], *, quick: bool, fresh:
 
 
 def written(findings: Sequence[Finding]) -> str:
-    """The table in Markdown; of heaps of one size the worst seed."""
+    """Two tables in Markdown: the claims, of heaps of one size the worst seed's, and the extremes."""
+    found = worst(findings)
+    extremes = [finding for finding in found if finding.claim.startswith(CASES)]
     lines = ["| claim | measured | at most | held |", "|---|---|---|---|"]
-    lines += [finding.row() for finding in worst(findings)]
+    lines += [finding.row() for finding in found if finding not in extremes]
+    lines += ["", f"| case | {' | '.join(MEASURES)} | held |", f"|---|{'---|' * len(MEASURES)}---|"]
+    for case in extreme.EXTREMES:
+        own = {
+            finding.claim.removeprefix(f"{case.name}: "): finding
+            for finding in extremes
+            if finding.claim.startswith(f"{case.name}: ")
+        }
+        cells = [_cell(own.get(name)) for name in MEASURES.values()]
+        held = all(finding.held for finding in own.values())
+        lines.append(f"| {case.name} | {' | '.join(cells)} | {'yes' if held else '**no**'} |")
     lines += ["", f"Measured on {processor()}, {commit()}, {dt.datetime.now(dt.UTC):%Y-%m-%d}."]
     return "\n".join(lines) + "\n"
+
+
+def _cell(finding: Finding | None) -> str:
+    return "" if finding is None else f"{max(finding.value, 0):.1g} ({finding.limit:.2g})"
 
 
 def worst(findings: Iterable[Finding]) -> list[Finding]:

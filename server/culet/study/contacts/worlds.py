@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull
 
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.shape import Shape
-from culet.scene.model import Simulation as Law
+from culet.scene.motion import Simulation as Law
 from culet.simulation.bodies import Body, BodyState
 from culet.simulation.rotation import IDENTITY, normalised, rotate
 from culet.simulation.state import Quaternion, Triple

@@ -1,0 +1,35 @@
+/** What the server offers to choose from, and what it says of an upload: the types of its answers. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+
+/** Something that a scene can name. */
+export interface Catalogued {
+  name: string;
+  summary: string;
+}
+
+export interface Preset extends Catalogued {
+  /** What people call it. */
+  title: string;
+  group: string;
+  /** Address of a small picture. */
+  thumbnail: string;
+  scene: JsonObject;
+}
+
+export interface Material extends Catalogued {
+  /** It absorbs by a spectrum of its own. */
+  coloured: boolean;
+}
+
+/** An uploaded mesh or sky: its id for the scene, and sentences about it for the user. */
+export interface Upload {
+  id: string;
+  findings: string[];
+}
+
+/** A cut of /api/cuts: `proportions` is the JSON schema of each. */
+export interface CutKind {
+  name: string;
+  proportions: JsonObject;
+}

@@ -1,0 +1,29 @@
+import { describe, expect, it } from "vitest";
+import { hasStone, stoneOf, stonePatch, stonesOf } from "./stones";
+
+const RUBY = { id: "ruby", cut: "brilliant", material: "ruby" };
+const GLASS = { id: "glass", cut: "brilliant", material: { ior: [1.5, 1.5, 1.5] } };
+const SCENE = { stones: [RUBY, GLASS] };
+
+describe("a stone", () => {
+  it("is found by its id, or is the first", () => {
+    expect(stoneOf(SCENE)).toBe(RUBY);
+    expect(stoneOf(SCENE, "glass")).toBe(GLASS);
+    expect(stoneOf(SCENE, "gone")).toEqual({});
+    expect([hasStone(SCENE), hasStone({ stones: [] }), hasStone(null)]).toEqual([true, false, false]);
+  });
+
+  it("is changed by its id alone, so that the others stay", () => {
+    expect(stonePatch(SCENE, { material: "quartz" })).toEqual({ stones: { ruby: { material: "quartz" } } });
+    expect(stonePatch(SCENE, { scale: 2 }, "glass")).toEqual({ stones: { glass: { scale: 2 } } });
+  });
+
+  it("is made where there was none", () => {
+    expect(stonePatch({ stones: [] }, { mesh: "m1" })).toEqual({ stones: { stone: { cut: "brilliant", mesh: "m1" } } });
+    expect(stonePatch(null, { mesh: "m1" })).toEqual({ stones: { stone: { cut: "brilliant", mesh: "m1" } } });
+  });
+});
+
+it.each([null, {}, { stones: null }, { stones: {} }])("there are no stones in %j", (scene) => {
+  expect(stonesOf(scene)).toEqual([]);
+});

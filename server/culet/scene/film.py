@@ -1,0 +1,34 @@
+"""From light to picture: how pixels are sampled, and what becomes of radiance on a screen."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from culet.scene.fields import Model
+
+
+class Sampling(Model):
+    """How each pixel is sampled; the first sample is the pixel's centre."""
+
+    filter: Literal["box", "tent"] = Field(
+        "box", description="Reconstruction: box averages the pixel, tent reaches to its neighbours' centres."
+    )
+
+    samples_per_pixel: Annotated[int, Field(ge=1, le=65536)] = 1
+
+
+class Film(Model):
+    """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
+
+    exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
+    tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(
+        "neutral",
+        description="srgb: IEC 61966-2-1; neutral: as it is up to 0.8, above that a shoulder towards white, then srgb; "
+        "filmic: a curve on the luminance that keeps hues, then srgb; "
+        "classic: (1.2 L)^1.2 as in the report; none: linear. What is above 1 is clipped.",
+    )
+    gamut: Literal["desaturate", "clip"] = Field(
+        "desaturate", description="What becomes of spectral colours that no screen has: towards grey, or clipped."
+    )
