@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, assert_never
 
-from culet.engine.library.uploads import MESH, SKY, UploadStore
+from culet.engine.library.upload_store import MESH, SKY, UploadStore
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.process.in_use import sky_bytes, uploads_in_use
