@@ -14,7 +14,7 @@ from typing import Any
 
 from culet.engine.session.history import History, Past
 from culet.engine.session.motion import Motion
-from culet.engine.session.picking import Placed, struck
+from culet.engine.session.picking import placed, struck
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
@@ -130,6 +130,11 @@ class Session:
         self.motion.toggle_fall()
         self._show()
 
+    def pick(self, x: float, y: float) -> str | None:
+        """The id of the stone that is seen at a point of the picture (halves of its height); None if there is none."""
+        met = struck(self.scene.camera, placed(self.shown.stage), x, y)
+        return None if met is None else met.name
+
     def push(self, x: float, y: float, right: float, up: float) -> None:
         """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.
 
@@ -137,9 +142,7 @@ class Session:
         """
         if self.motion.simulation is None:
             raise InputError("expected a scene with a stone, got none: nothing can be pushed")
-        state = self.motion.simulation.state
-        stones = [Placed("", shape, 1.0, state.position, state.orientation) for shape in self.stage.shapes]
-        met = struck(self.scene.camera, stones, x, y)
+        met = struck(self.scene.camera, placed(self.shown.stage), x, y)
         if met is None:
             return
         right_axis, up_axis, _ = axes(self.scene.camera)
