@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from culet.engine.session import viewpoint
 from culet.engine.session.history import Past
+from culet.engine.session.picking import placed
 from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
 from culet.scene import Camera, Plane, Scene
@@ -86,15 +87,25 @@ def _move(session: Session, event: messages.Orbit | messages.Translate | message
     session.change(session.stage.showing(scene))
 
 
-def _look_at_stone(session: Session) -> None:
-    if not session.shown.scene.stones:
-        raise InputError("expected a scene with a stone, got none: there is nothing to look at")
-    camera, position = session.scene.camera, session.shown.scene.stones[0].position
+def _look_at_stone(session: Session, name: str | None = None) -> None:
+    """Look at the stone of that id, or at all stones."""
+    stones = [stone for stone in placed(session.shown.stage) if name in (None, stone.name)]
+    if not stones:
+        raise _no_stone(session.scene, name, "there is nothing to look at")
+    centre, radius = viewpoint.ball_about([(stone.position, stone.scale) for stone in stones])
     try:
-        scene = session.scene.model_copy(update={"camera": viewpoint.look_at(camera, position)})
+        scene = session.scene.model_copy(update={"camera": viewpoint.look_at(session.scene.camera, centre, radius)})
     except ValidationError as error:
         raise InputError(f"the stone is beyond where a camera can be: {error.errors()[0]['msg']}") from error
     session.change(session.stage.showing(scene))
+
+
+def _no_stone(scene: Scene, name: str | None, consequence: str) -> InputError:
+    """For an event that needs a stone, or the stone of that id."""
+    if name is None or not scene.stones:
+        return InputError(f"expected a scene with a stone, got none: {consequence}", None if name is None else "stone")
+    ids = ", ".join(repr(stone.id) for stone in scene.stones)
+    return InputError(f"stone: expected the id of a stone ({ids}), got {name!r}", "stone")
 
 
 def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:
