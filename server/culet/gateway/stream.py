@@ -122,7 +122,7 @@ class _Stream:
                 task.cancel()
             results = await asyncio.gather(*tasks, return_exceptions=True)
         if sender in done and reader not in done:
-            # A close waits, as a send does, for room that who does not read never makes.
+            # A close waits, as a send does, for room that a viewer makes by reading; some viewers never read.
             with contextlib.suppress(RuntimeError, TimeoutError):
                 async with asyncio.timeout(SEND_SECONDS):
                     await self._websocket.close(*self._reason())

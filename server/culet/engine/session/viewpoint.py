@@ -49,7 +49,7 @@ def dolly(camera: Camera, forward: float) -> Camera:
 
 
 def ball_about(balls: Sequence[tuple[Vector, float]]) -> tuple[Vector, float]:
-    """Centre and radius (R) of a ball that holds balls, each given by its own; at most sqrt 3 times the least radius."""
+    """Centre and radius (R) of a ball that holds balls given by theirs, at most sqrt 3 times as large as need be."""
     if len(balls) == 1:  # to the bit
         return balls[0]
     centres, radii = np.array([centre for centre, _ in balls]), np.array([[radius] for _, radius in balls])
