@@ -83,6 +83,20 @@ def test_a_stone_of_another_size_is_struck_where_its_own_surface_is() -> None:
     assert struck(AHEAD, [at((0, 0, 0), scale=2)], 0.3, 0) is not None, "which passes by a stone of scale 1"
 
 
+def test_of_a_stone_that_reaches_behind_the_camera_the_part_in_front_is_struck() -> None:
+    """Two brilliants a third as large, before and behind the camera, as one shape that is not convex."""
+    before, behind = 0.3 * STONE.vertices - (0, 0, 0.7), 0.3 * STONE.vertices + (0, 0, 0.7)
+    pair = replace(
+        HOLLOW,
+        vertices=np.concatenate([before, behind]),
+        triangles=np.concatenate([STONE.triangles, STONE.triangles + len(before)]),
+    )
+    camera = Camera(position=(0, 0, 0), target=(0, 0, -1))
+    met = struck(camera, [Placed("pair", pair, 1.0, (0, 0, 0), UPRIGHT)], 0, 0)
+    assert met is not None
+    assert -0.7 < met.point[2] < -0.4
+
+
 def test_planes_and_triangles_of_one_solid_are_struck_alike() -> None:
     """Two ways that have nothing in common but the line; measured 3e-15."""
     random, struck_at_all = np.random.default_rng(7), 0
