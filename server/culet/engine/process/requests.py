@@ -65,14 +65,16 @@ class Requests:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
-                return described(await self.sessions.open(request)), None
+                return await described(await self.sessions.open(request)), None
             case protocol.CloseSession():
                 self.sessions.close(request.session)
                 return {}, None
             case protocol.GetSession():
-                return described(self.sessions.get(request.session)), None
+                return await described(self.sessions.get(request.session)), None
             case protocol.ListSessions():
-                clients = [described(live) | {"client": self.sessions.client(live)} for live in self.sessions]
+                clients = [
+                    await described(live) | {"client": self.sessions.client(live)} for live in list(self.sessions)
+                ]
                 return {"sessions": clients}, None
             case protocol.Control():
                 return await self._control(request), None
@@ -114,7 +116,7 @@ class Requests:
         session = self.sessions.get(request.session).session
         apply = partial(events.apply, session, request.event, self._library)
         try:
-            async with session.lock:
+            async with session.lock, session.motion.still():
                 if request.event.type in LONG_EVENTS:
                     await asyncio.to_thread(apply)
                 else:

@@ -50,7 +50,7 @@ def apply(session: Session, event: SessionEvent, library: Library) -> None:
             session.balance = event
         case messages.SetScene():
             stage = stage_for(Scene.read(event.scene), session, library)
-            session.replace_stones(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
+            session.replace(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
         case _:
             assert_never(event)
 
@@ -167,14 +167,4 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
         home = Scene.read(patched(at_home, patch)).camera
     stage = stage_for(after, session, library)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
-    if stage.shapes != session.stage.shapes:
-        session.replace_stones(stage, home=home, sky=sky)
-    elif _start(after) != _start(before):
-        session.start_anew(stage, home=home, sky=sky)
-    else:
-        session.change(stage, home=home, sky=sky)
-
-
-def _start(scene: Scene) -> object:
-    """Where and how the stone starts: a patch of anything else leaves it where it is."""
-    return [(stone.position, stone.orientation, stone.velocity, stone.spin) for stone in scene.stones]
+    session.change(stage, home=home, sky=sky)
