@@ -18,7 +18,7 @@ from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
 from culet.engine.process.still_requests import StillRequests
-from culet.engine.session import events
+from culet.engine.session import events, questions
 from culet.errors import InputError
 from culet.optics.sky_files.picture import SkyPicture
 from culet.stage import Library
@@ -78,6 +78,8 @@ class Requests:
                 return {"sessions": clients}, None
             case protocol.Control():
                 return await self._control(request), None
+            case protocol.Ask():
+                return await self._ask(request), None
             case protocol.Demand():
                 return self._demand(request), None
             case protocol.Render():
@@ -125,6 +127,11 @@ class Requests:
         finally:
             self._painter.wake()
         return {"step": session.shown.step, "falling": session.motion.falling}
+
+    async def _ask(self, request: protocol.Ask) -> dict[str, Any]:
+        session = self.sessions.get(request.session).session
+        async with session.lock:
+            return questions.answer(session, request.question).model_dump(mode="json")
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
         live = self.sessions.get(request.session)
