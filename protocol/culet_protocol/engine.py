@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from culet_protocol.messages import BALANCED, Exactness, Message, SessionEvent
+from culet_protocol.messages import BALANCED, Exactness, Message, Question, SessionEvent
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "webp", "exr"]
@@ -59,6 +59,14 @@ class Control(Message):
     type: Literal["control"] = "control"
     session: SessionId
     event: Annotated[SessionEvent, Field(discriminator="type")]
+
+
+class Ask(Message):
+    """Ask about a session's picture; the reply is the question's answer."""
+
+    type: Literal["ask"] = "ask"
+    session: SessionId
+    question: Annotated[Question, Field(discriminator="type")]
 
 
 class Demand(Message):
@@ -153,6 +161,7 @@ Request = (
     | GetSession
     | ListSessions
     | Control
+    | Ask
     | Demand
     | Render
     | PutMesh

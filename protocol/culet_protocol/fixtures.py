@@ -112,6 +112,8 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.PatchScene(patch={"camera": {"fov_degrees": 30}}),
     messages.SetScene(scene={}),
     messages.Balance(exactness=0.75, pinned=True),
+    messages.Pick(number=3, x=0.25, y=-0.125),
+    messages.Outline(stone="stone", step=42),
     messages.Resize(width=1280, height=720),
     messages.Visibility(visible=False),
     messages.Ack(sequence=7),
@@ -130,6 +132,8 @@ NOTICES: tuple[messages.Message, ...] = (
     ),
     messages.Engine(status="down"),
     messages.Pong(time=1234.5),
+    messages.Picked(number=3, stone=None),
+    messages.Outlined(stone="stone", step=42, points=(0.5, 0.25, -0.5, 0.25, 0, -0.75)),
 )
 
 REFUSED_CONTROL = {

@@ -38,6 +38,8 @@ def typescript_type(schema: Schema) -> str:
     if "anyOf" in schema:
         return " | ".join(typescript_type(option) for option in schema["anyOf"])
     kind = schema.get("type", "")
+    if kind == "array" and "items" in schema:
+        return f"{typescript_type(schema['items'])}[]"
     try:
         return TYPES[kind]
     except KeyError:

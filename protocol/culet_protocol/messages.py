@@ -140,6 +140,24 @@ class Balance(Message):
     pinned: bool
 
 
+class Pick(Message):
+    """Asks which stone the picture shows at a point (x to the right and y up, from its centre, in halves of its
+    height); the answer, a `picked`, has the same number."""
+
+    type: Literal["pick"] = "pick"
+    number: Annotated[int, Field(ge=0, le=0xFFFFFFFF)]
+    x: PicturePoint
+    y: PicturePoint
+
+
+class Outline(Message):
+    """Asks where the picture of a step, of a frame's header, shows a stone; the answer is an `outlined`."""
+
+    type: Literal["outline"] = "outline"
+    stone: Annotated[str, Field(max_length=64)]
+    step: Annotated[int, Field(ge=0, le=2**53)]
+
+
 class Resize(Message):
     """The size that this viewer would like, in device pixels."""
 
@@ -175,10 +193,13 @@ SessionEvent = (
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 
+Question = Pick | Outline
+"""What one viewer asks about the session's picture: the engine's answer is for that viewer alone."""
+
 ViewerEvent = Resize | Visibility | Ack | Ping
 """What concerns one viewer only, and ends at the gateway."""
 
-ControlEvent = Annotated[SessionEvent | ViewerEvent, Field(discriminator="type")]
+ControlEvent = Annotated[SessionEvent | Question | ViewerEvent, Field(discriminator="type")]
 
 
 class Hello(Message):
@@ -240,8 +261,37 @@ class Pong(Message):
     time: float
 
 
-Notice = Annotated[Hello | State | Snapshot | Viewers | Problem | Engine | Pong, Field(discriminator="type")]
+class Picked(Message):
+    """The answer to a Pick: the id of the stone that is there, or null."""
 
-control_event: TypeAdapter[SessionEvent | ViewerEvent] = TypeAdapter(ControlEvent)
+    type: Literal["picked"] = "picked"
+    number: int
+    stone: str | None
+
+
+class Outlined(Message):
+    """The answer to an Outline: x and y of each corner of the stone's outline in turn, as a Pick has them.
+
+    Without corners there is no such stone, or it is not all in front of the camera. A stone that is not convex has the
+    outline of its hull.
+    """
+
+    type: Literal["outlined"] = "outlined"
+    stone: str
+    step: int
+    points: tuple[float, ...]
+
+
+Answer = Picked | Outlined
+"""What a Question is answered by."""
+
+Notice = Annotated[
+    Hello | State | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined, Field(discriminator="type")
+]
+
+control_event: TypeAdapter[SessionEvent | Question | ViewerEvent] = TypeAdapter(ControlEvent)
 session_event: TypeAdapter[SessionEvent] = TypeAdapter(Annotated[SessionEvent, Field(discriminator="type")])
-notice: TypeAdapter[Hello | State | Snapshot | Viewers | Problem | Engine | Pong] = TypeAdapter(Notice)
+answer: TypeAdapter[Answer] = TypeAdapter(Annotated[Answer, Field(discriminator="type")])
+notice: TypeAdapter[Hello | State | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined] = TypeAdapter(
+    Notice
+)

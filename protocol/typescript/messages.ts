@@ -136,6 +136,28 @@ export interface Balance {
   pinned: boolean;
 }
 
+/**
+ * Asks which stone the picture shows at a point (x to the right and y up, from its centre, in halves of its
+ * height); the answer, a `picked`, has the same number.
+ */
+export interface Pick {
+  type: "pick";
+  /** integer, 0 to 4294967295 */
+  number: number;
+  /** -100 to 100 */
+  x: number;
+  /** -100 to 100 */
+  y: number;
+}
+
+/** Asks where the picture of a step, of a frame's header, shows a stone; the answer is an `outlined`. */
+export interface Outline {
+  type: "outline";
+  stone: string;
+  /** integer, 0 to 9.00719925474099e+15 */
+  step: number;
+}
+
 /** The size that this viewer would like, in device pixels. */
 export interface Resize {
   type: "resize";
@@ -179,6 +201,8 @@ export type ControlEvent =
   | PatchScene
   | SetScene
   | Balance
+  | Pick
+  | Outline
   | Resize
   | Visibility
   | Ack
@@ -241,7 +265,27 @@ export interface Pong {
   time: number;
 }
 
-export type Notice = Hello | State | Snapshot | Viewers | Problem | Engine | Pong;
+/** The answer to a Pick: the id of the stone that is there, or null. */
+export interface Picked {
+  type: "picked";
+  number: number;
+  stone: string | null;
+}
+
+/**
+ * The answer to an Outline: x and y of each corner of the stone's outline in turn, as a Pick has them.
+ *
+ * Without corners there is no such stone, or it is not all in front of the camera. A stone that is not convex has the
+ * outline of its hull.
+ */
+export interface Outlined {
+  type: "outlined";
+  stone: string;
+  step: number;
+  points: number[];
+}
+
+export type Notice = Hello | State | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined;
 
 /** What each field of a notice may be. */
 export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {
@@ -258,4 +302,6 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
   problem: { code: ["string"], message: ["string"], field: ["string", "null", "absent"] },
   engine: { status: ["down", "up"] },
   pong: { time: ["number"] },
+  picked: { number: ["integer"], stone: ["string", "null"] },
+  outlined: { stone: ["string"], step: ["integer"], points: ["array"] },
 };

@@ -104,12 +104,13 @@ async def test_a_snapshot_of_a_motion_that_no_stone_has_ends_nobody_elses(
     gateway: Gateway, wrong: dict[str, Any]
 ) -> None:
     snapshot = await snapshot_of(gateway, LIVELY)
-    state = snapshot["simulation"]["state"] | wrong
+    saved = snapshot["simulation"]["saved"]
+    state = saved["state"] | wrong
     hostile = snapshot | {
         "falling": True,
         "step": 2**63 - 1,
         "sequence": 2**63 - 1,
-        "simulation": snapshot["simulation"] | {"state": state, "previous": state},
+        "simulation": snapshot["simulation"] | {"saved": saved | {"state": state, "previous": state}},
     }
     made = await gateway.http.post("/api/sessions", json={"id": UNKNOWN, "scene": LIVELY, "snapshot": hostile})
     assert made.status_code in (201, 422), made.text

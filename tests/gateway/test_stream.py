@@ -20,7 +20,7 @@ from culet.gateway.stream import MAX_CONTROL_BYTES
 from culet.scene import Scene
 from culet_protocol.close import CloseCode
 from culet_protocol.frame import Flags
-from culet_protocol.messages import Balance, Orbit, Ping, ResetStone, Resize, ToggleFall, Visibility
+from culet_protocol.messages import Balance, Orbit, Outline, Pick, Ping, ResetStone, Resize, ToggleFall, Visibility
 from gateway.running import FOREIGN, PATIENCE, SIZE, Endpoints, Gateway, eventually, gateway_before
 
 
@@ -92,6 +92,22 @@ async def test_a_viewer_that_never_acknowledges_gets_its_window_and_delays_nobod
         await stuck.say(Ping(time=1))
         await stuck.notice("pong")
     assert len(stuck.frames) == WINDOW
+
+
+async def test_a_question_about_the_picture_is_answered_to_who_asked(gateway: Gateway) -> None:
+    session = await gateway.session({"stones": [{"id": "ruby"}]})
+    async with gateway.viewer(session) as curious, gateway.viewer(session) as other:
+        frame = await curious.final()
+        await curious.say(Pick(number=9, x=0, y=0))
+        picked = await curious.notice("picked")
+        assert (picked["number"], picked["stone"]) == (9, "ruby")
+        await curious.say(Outline(stone="ruby", step=frame.step))
+        outlined = await curious.notice("outlined")
+        assert (outlined["stone"], outlined["step"]) == ("ruby", frame.step)
+        assert len(outlined["points"]) >= 6
+        await other.say(Ping(time=3))
+        await other.notice("pong")
+        assert not {"picked", "outlined"} & {told["type"] for told in other.notices}
 
 
 async def test_nobody_watching_means_nothing_rendered(gateway: Gateway) -> None:

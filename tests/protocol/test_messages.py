@@ -10,7 +10,16 @@ from pydantic import ValidationError
 
 from culet_protocol import SUBPROTOCOL, VERSION, close
 from culet_protocol.fixtures import CONTROL_EVENTS, FIXTURES, NOTICES, REFUSED_CONTROL, REFUSED_NOTICES
-from culet_protocol.messages import Orbit, Resize, SessionEvent, ViewerEvent, control_event, notice, session_event
+from culet_protocol.messages import (
+    Orbit,
+    Question,
+    Resize,
+    SessionEvent,
+    ViewerEvent,
+    control_event,
+    notice,
+    session_event,
+)
 
 GOLDEN: dict[str, Any] = json.loads((FIXTURES / "messages.json").read_text())
 
@@ -27,7 +36,7 @@ def test_a_golden_notice_survives_the_way_there_and_back(message: dict[str, Any]
 
 def test_there_is_a_golden_message_of_every_type() -> None:
     types = {type(event) for event in CONTROL_EVENTS}
-    assert types == {*get_args(SessionEvent), *get_args(ViewerEvent)}
+    assert types == {*get_args(SessionEvent), *get_args(Question), *get_args(ViewerEvent)}
     mapping = notice.json_schema()["discriminator"]["mapping"]
     assert [entry["type"] for entry in GOLDEN["notices"]] == [message.model_dump()["type"] for message in NOTICES]
     assert {entry["type"] for entry in GOLDEN["notices"]} == set(mapping)

@@ -57,16 +57,23 @@ def lowest(pose: Pose, shape: Shape) -> float:
 @pytest.mark.parametrize("name", [*CUTS, *OTHERS])
 def test_another_shape_touches_the_floor_and_looks_as_if_it_lay_there(name: str, brilliant: Shape) -> None:
     shape = (CUTS | OTHERS)[name]()
-    position, orientation = pose = on_the_floor(DEFAULT, shape, brilliant)
+    position, orientation = pose = on_the_floor(DEFAULT, shape, DEFAULT, brilliant)
     assert lowest(pose, shape) == pytest.approx(FLOOR_Y, abs=1e-12)
     assert position[::2] == DEFAULT.position[::2]
     assert slope_degrees(orientation, lowest_facet(shape, orientation)) <= LYING_DEGREES
 
 
+def test_a_smaller_stone_lies_where_the_larger_one_did(brilliant: Shape) -> None:
+    small = DEFAULT.model_copy(update={"scale": 0.5})
+    (x, y, z), orientation = on_the_floor(small, brilliant, DEFAULT, brilliant)
+    assert (x, z, orientation) == (*DEFAULT.position[::2], DEFAULT.orientation)
+    assert y - FLOOR_Y == pytest.approx((DEFAULT.position[1] - FLOOR_Y) / 2, abs=1e-6)
+
+
 @pytest.mark.parametrize("name", CUTS)
 def test_another_brilliant_is_not_turned(name: str, brilliant: Shape) -> None:
     """Or it would jump under the slider."""
-    _, orientation = on_the_floor(DEFAULT, CUTS[name](), brilliant)
+    _, orientation = on_the_floor(DEFAULT, CUTS[name](), DEFAULT, brilliant)
     assert orientation == DEFAULT.orientation
 
 
@@ -86,7 +93,7 @@ def test_what_is_laid_down_rests_there(name: str) -> None:
 def test_a_stone_that_was_set_on_its_culet_stays_upright(brilliant: Shape) -> None:
     standing = at((0.25, FLOOR_Y - float(brilliant.vertices[:, 1].min()), 0), UPRIGHT)
     shape = cut(pavilion_degrees=46)()
-    _, orientation = pose = on_the_floor(standing, shape, brilliant)
+    _, orientation = pose = on_the_floor(standing, shape, standing, brilliant)
     assert orientation == UPRIGHT
     assert lowest(pose, shape) == pytest.approx(FLOOR_Y, abs=1e-12)
 
@@ -94,7 +101,7 @@ def test_a_stone_that_was_set_on_its_culet_stays_upright(brilliant: Shape) -> No
 @pytest.mark.parametrize("height", [-1.2, 0.0, 3.0])
 def test_a_stone_in_the_air_or_deep_in_the_floor_stays(brilliant: Shape, height: float) -> None:
     pose = (0.0, height, 0.0), DEFAULT.orientation
-    assert on_the_floor(at(*pose), stones.skew_block(), brilliant) == pose
+    assert on_the_floor(at(*pose), stones.skew_block(), at(*pose), brilliant) == pose
 
 
 def test_a_body_lies_on_no_facet_that_its_weight_is_beside() -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from culet.errors import SolverUnavailableError
-from culet.simulation.solver import build, library
+from culet.simulation.solver import build, interface, library
 from culet.simulation.solver.build import BuildError, compilers, library_name
 
 
@@ -61,3 +63,29 @@ def test_another_source_is_another_library(tmp_path: Path, monkeypatch: pytest.M
     (tmp_path / "world.c").write_text("int culet;")
     monkeypatch.setattr(build, "SOURCES", tmp_path)
     assert library_name() != before
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_the_sources_compile_without_a_warning(compiler: str) -> None:
+    found = next((each for each in compilers() if Path(each).name.startswith(compiler)), None)
+    if found is None:
+        pytest.skip(f"there is no {compiler}")
+    strict = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wpedantic", "-Werror", "-fsyntax-only")
+    command = [found, *strict, *map(str, build.SOURCES.glob("*.c"))]
+    assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
+
+
+def test_python_knows_the_structures_as_the_header_has_them(tmp_path: Path) -> None:
+    structures = {
+        "CuletLaw": interface.Law, "CuletHull": interface.Hull, "CuletBody": interface.Properties,
+        "CuletState": interface.State, "CuletTouch": interface.Touch,
+    }  # fmt: skip
+    sizes = "".join(f'printf("%zu ", sizeof({name}));' for name in structures)
+    numbers = 'printf("%d %d %d", CULET_INTERFACE, CULET_MAX_VERTICES, CULET_MAX_SURFACES);'
+    program = tmp_path / "sizes.c"
+    program.write_text(f'#include <stdio.h>\n#include "culet_solver.h"\nint main(void) {{ {sizes}{numbers} }}\n')
+    compiler = next(compilers())
+    subprocess.run([compiler, "-I", str(build.SOURCES), str(program), "-o", str(tmp_path / "sizes")], check=True)
+    told = subprocess.run([tmp_path / "sizes"], capture_output=True, text=True, check=True).stdout.split()
+    expected = [*map(ctypes.sizeof, structures.values()), interface.VERSION, interface.MAX_VERTICES]
+    assert [int(number) for number in told] == [*expected, interface.MAX_SURFACES]

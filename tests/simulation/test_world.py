@@ -179,6 +179,16 @@ def test_what_a_removed_stone_carried_falls(box: Shape) -> None:
     assert moving.state.bodies[0].position[1] == pytest.approx(height - height_of(box), abs=1e-4)
 
 
+def test_what_stood_on_a_stone_that_is_moved_away_falls(box: Shape) -> None:
+    bodies = [standing("low", box, IDENTITY), standing("high", box, IDENTITY, gap=height_of(box))]
+    moving = world(bodies, restitution=0)
+    advance(moving, 2)
+    assert moving.settled
+    moving.move("low", (9.0, 0.0, 0.0), IDENTITY)
+    advance(moving, 2)
+    assert moving.state.bodies[1].position[1] == pytest.approx(bodies[0].position[1], abs=1e-4)
+
+
 def test_sleepers_wake_when_gravity_friction_or_surfaces_change(box: Shape) -> None:
     moving = world([standing("one", box, IDENTITY), Body("two", box, (5.0, 0.0, 0.0), IDENTITY)])
     advance(moving, 4)
@@ -213,9 +223,12 @@ def test_a_held_stone_stops_another_and_does_not_move(box: Shape) -> None:
     low, high = moving.state.bodies
     assert low.position == (0.0, 3.0, 0.0)
     assert high.position[1] == pytest.approx(3 + height_of(box), abs=1e-4)
+    assert high.asleep
     moving.hold("low", held=False)
     advance(moving, 4)
-    assert moving.state.bodies[0].position[1] < 0
+    low, high = moving.state.bodies
+    assert low.position[1] < 0
+    assert high.position[1] < 1
 
 
 def test_a_moved_stone_is_there_and_jumps_in_no_picture(box: Shape) -> None:

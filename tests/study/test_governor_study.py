@@ -15,8 +15,8 @@ from command_line import invoke
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
-from culet.study import governor
-from culet.study.governor import Measured, Play, Recorder
+from culet.study import governor_study as governor
+from culet.study.governor_study import Measured, Play, Recorder
 from culet.study.motion_record import Change, Seen
 from culet_protocol.engine import Control
 from culet_protocol.frame import Codec, Flags, Frame

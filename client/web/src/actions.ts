@@ -9,7 +9,8 @@ export const STEP = 0.5;
 export type Effect =
   | { kind: "select"; target: Target }
   | { kind: "send"; event: (target: Target) => SessionEvent }
-  | { kind: "download"; format: Format };
+  | { kind: "download"; format: Format }
+  | { kind: "stones"; command: "remove" | "putBack" };
 
 export interface Action {
   name: string;
@@ -62,6 +63,15 @@ export const ACTIONS: readonly Action[] = [
   plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
   plain("sky", "L", "Light sky, or the scene's own", "toggle_environment"),
   plain("walls", "W", "Walls", "toggle_walls"),
+  {
+    name: "remove_stone",
+    label: "Remove the stone",
+    key: "delete",
+    code: "Delete",
+    repeats: false,
+    effect: { kind: "stones", command: "remove" },
+  },
+  letter("put_back_stone", "Z", "Take a removal back", { kind: "stones", command: "putBack" }),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
 ];
 
@@ -70,6 +80,7 @@ const KEY_NAMES: Record<string, string> = {
   arrowright: "\u2192",
   arrowup: "\u2191",
   arrowdown: "\u2193",
+  delete: "Del",
 };
 
 /** "Reset the camera  [F]" */

@@ -5,6 +5,8 @@ import type {
   ControlEvent,
   Dolly,
   Orbit,
+  Outline,
+  Pick,
   Ping,
   Push,
   Resize,
@@ -18,4 +20,4 @@ export type { ControlEvent, Dolly, Orbit, Push, Translate };
 export type Target = NonNullable<Orbit["target"]>;
 
 /** What changes the session, for all its viewers. */
-export type SessionEvent = Exclude<ControlEvent, Ack | Ping | Resize | Visibility>;
+export type SessionEvent = Exclude<ControlEvent, Ack | Outline | Pick | Ping | Resize | Visibility>;

@@ -19,6 +19,11 @@ export class Fingers {
     if (this.at.size < 2) this.at.set(id, { x, y });
   }
 
+  /** How many are down. */
+  get count(): number {
+    return this.at.size;
+  }
+
   up(id: number): void {
     this.at.delete(id);
   }
@@ -55,11 +60,17 @@ const PUSH = 6;
 /** R/s: the most that one blow gives. */
 const PUSH_LIMIT = 10;
 
+/** A place, css pixels from the picture's upper left corner, in halves of its height from its centre, y up. */
+export function placeOf(x: number, y: number, width: number, height: number): { x: number; y: number } {
+  const half = Math.max(height, 1) / 2;
+  return { x: (x - width / 2) / half, y: (height / 2 - y) / half };
+}
+
 /** A drag that began at (x, y), css pixels from the picture's upper left corner, as a blow at that place. */
 export function pushBy(x: number, y: number, dx: number, dy: number, width: number, height: number): Push {
   const half = Math.max(height, 1) / 2;
   const blow = (pixels: number) => Math.max(-PUSH_LIMIT, Math.min(PUSH_LIMIT, (PUSH * pixels) / half));
-  return { type: "push", x: (x - width / 2) / half, y: (height / 2 - y) / half, right: blow(dx), up: blow(-dy) };
+  return { type: "push", ...placeOf(x, y, width, height), right: blow(dx), up: blow(-dy) };
 }
 
 /** R for a doubling of the distance between two fingers. */

@@ -1,6 +1,6 @@
 /** The page: finds or makes a session, then connects keys, fingers, panel and picture to it. */
 
-import { CloseCode } from "@culet/protocol/messages";
+import { CloseCode, type Outline, type Pick } from "@culet/protocol/messages";
 import { type Action, actionNamed } from "./actions";
 import {
   Banner,
@@ -14,11 +14,14 @@ import {
   WAITING_LONG,
 } from "./banner";
 import type { Preset, Upload } from "./catalogue";
+import { ChosenStone } from "./chosen-stone";
 import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { framed, framingPatch } from "./framing";
+import { placeOf } from "./gestures";
 import { listenToKeys } from "./keys";
 import { Meter } from "./meter";
+import { OutlineView } from "./outline-view";
 import { element } from "./page";
 import { Panel } from "./panel";
 import { listenToPointers } from "./pointer-input";
@@ -30,7 +33,8 @@ import { Screen } from "./screen";
 import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
-import { stonePatch } from "./stones";
+import { StoneCommands } from "./stone-commands";
+import { idsOf, stonePatch } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
@@ -59,9 +63,28 @@ let viewer: Viewer | null = null;
 /** Where the stone is, if the picture does not show it. */
 let elsewhere: string | null = null;
 
+const outline = new OutlineView(element("outline", SVGSVGElement), canvas);
+const chosen = new ChosenStone({
+  ask: (question: Pick | Outline) => viewer?.ask(question),
+  chosen: (id) => viewer?.choose(id),
+  outline: (points) => {
+    const frame = viewer?.lastFrame;
+    if (points && frame) outline.show(points, frame);
+    else outline.hide();
+  },
+});
+const stones = new StoneCommands({
+  state: () => viewer?.state ?? INITIAL,
+  send: (event) => viewer?.send(event),
+  choose: (id) => chosen.choose(id),
+  tell: problem,
+});
+
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
+  stones: { choose: (id) => chosen.choose(id), add: () => stones.add(), scatter: () => stones.scatter() },
+  removals: () => stones.removals,
   saveTarga: () => attempt(() => savePicture("tga")),
   saveScene: () => attempt(saveScene),
   openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
@@ -78,11 +101,16 @@ listenToPointers(
   canvas,
   () => viewer?.state.target ?? INITIAL.target,
   (event) => viewer?.send(event),
+  (x, y) => {
+    const at = placeOf(x, y, canvas.clientWidth, canvas.clientHeight);
+    if (idsOf(viewer?.state.scene ?? null).length > 1) chosen.pick(at.x, at.y);
+  },
 );
 
 function perform({ effect }: Action): void {
   if (effect.kind === "download") attempt(() => savePicture(effect.format));
   else if (!viewer) problem("There is no session yet.");
+  else if (effect.kind === "stones") stones[effect.command]();
   else if (effect.kind === "select") viewer.select(effect.target);
   else viewer.send(effect.event(viewer.state.target));
 }
@@ -117,6 +145,7 @@ async function saveScene(): Promise<void> {
 async function openScene(file: File): Promise<void> {
   const scene = parseScene(await file.text(), file.name);
   panel.choices.forgetSky();
+  stones.forget();
   viewer?.send({ type: "set_scene", scene });
 }
 
@@ -136,7 +165,10 @@ async function openMesh(file: File): Promise<void> {
   const mesh = await read(file, rest.uploadMesh);
   files.keep(mesh.id, file, rest.uploadMesh);
   toasts.finding([`${file.name}:`, ...mesh.findings].join("\n"));
-  viewer?.send({ type: "patch_scene", patch: stonePatch(viewer.state.scene, { mesh: mesh.id }) });
+  viewer?.send({
+    type: "patch_scene",
+    patch: stonePatch(viewer.state.scene, { mesh: mesh.id }, viewer.state.stone ?? undefined),
+  });
 }
 
 async function openSky(file: File): Promise<void> {
@@ -150,6 +182,7 @@ async function openSky(file: File): Promise<void> {
 
 function choosePreset({ scene }: Preset): void {
   panel.choices.forgetSky();
+  stones.forget();
   viewer?.send({ type: "set_scene", scene: framed(scene, window.innerWidth / window.innerHeight) });
 }
 
@@ -209,7 +242,8 @@ async function leaveIfUnknown(id: string): Promise<void> {
 }
 
 function stateChanged(before: ViewState, after: ViewState): void {
-  panel.update(after);
+  chosen.there(idsOf(after.scene));
+  panel.update(viewer?.state ?? after);
   fallButton.update(after);
   meter.update(after);
   const change = describeChange(before, after);
@@ -231,10 +265,12 @@ function watch(id: string): void {
       elsewhere = whereabouts.after(frame, arrival.time);
       if (viewer) showBanner(viewer.stream.connection);
       meter.take(frame, arrival);
+      chosen.shown(frame.step, arrival.time);
     },
     size: () => screen.size,
     connection: connectionChanged,
     state: stateChanged,
+    answer: (answer) => chosen.heard(answer),
     lacking: () => attempt(giveFilesAgain),
     problem,
   });

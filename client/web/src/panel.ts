@@ -9,10 +9,15 @@ import { ChoicePanel } from "./choice-panel";
 import { CutPanel } from "./cut-panel";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
+import { type StoneActions, StonePanel } from "./stone-panel";
+import { withFirst } from "./stones";
 import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
 
 export interface PanelActions {
   perform: (action: Action) => void;
+  stones: Omit<StoneActions, "perform">;
+  /** How many stones this viewer may put back. */
+  removals: () => number;
   saveTarga: () => void;
   saveScene: () => void;
   openScene: () => void;
@@ -30,6 +35,7 @@ const NARROW = 640;
 export class Panel {
   readonly choices: ChoicePanel;
   readonly fall: FallPanel;
+  private readonly stones: StonePanel;
   private readonly cut: CutPanel;
   private readonly gui: GUI;
   private readonly files: GUI;
@@ -42,6 +48,8 @@ export class Panel {
     this.actions = actions;
     this.gui = new GUI({ container, title: "culet", injectStyles: false });
     this.addMoves();
+    const { perform, stones } = actions;
+    this.stones = new StonePanel(this.gui.addFolder("Stones"), { perform, ...stones });
     const surroundings = this.addSwitches();
     this.cut = new CutPanel(this.gui.addFolder("Cut").close(), actions.patch);
     this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);
@@ -63,9 +71,11 @@ export class Panel {
     const falling = state.falling && !state.asleep;
     Object.assign(this.shown, { target, falling, mirror, light, walls });
     for (const display of this.displays) display.updateDisplay();
-    this.fall.update(state);
-    this.cut.update(state);
-    this.choices.update(state);
+    this.stones.update(state, this.actions.removals());
+    const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
+    this.fall.update(chosen);
+    this.cut.update(chosen);
+    this.choices.update(chosen);
   }
 
   addCut(cut: CutKind): void {

@@ -3,15 +3,22 @@
 import type { SessionEvent, Target } from "./events";
 import { Fingers, orbitBy, pinchBy, pushBy, wheelBy } from "./gestures";
 
+/** Css pixels: by so little a finger moves that only taps. */
+const STILL = 6;
+
 export function listenToPointers(
   canvas: HTMLCanvasElement,
   targetNow: () => Target,
   send: (event: SessionEvent) => void,
+  /** A click or tap, css pixels from the canvas' upper left corner. */
+  click: (x: number, y: number) => void,
 ): void {
   const fingers = new Fingers();
   let pending: { target: Target; yaw: number; pitch: number; forward: number } | null = null;
 
   /** Where a push began, css pixels; it is given when the pointer goes up. */
+  /** A pointer that went down alone and has not been moved since. */
+  let still: { id: number; x: number; y: number } | null = null;
   let push: { id: number; x: number; y: number } | null = null;
 
   function flush(): void {
@@ -40,9 +47,11 @@ export function listenToPointers(
       push = { id: event.pointerId, x: event.offsetX, y: event.offsetY };
       return;
     }
+    still = fingers.count === 0 ? { id: event.pointerId, x: event.offsetX, y: event.offsetY } : null;
     fingers.down(event.pointerId, event.clientX, event.clientY);
   });
   canvas.addEventListener("pointermove", (event) => {
+    if (still && Math.hypot(event.offsetX - still.x, event.offsetY - still.y) > STILL) still = null;
     const motion = fingers.move(event.pointerId, event.clientX, event.clientY);
     if (!motion) return;
     const side = Math.min(canvas.clientWidth, canvas.clientHeight);
@@ -50,6 +59,7 @@ export function listenToPointers(
     add(turn.yaw, turn.pitch, pinchBy(motion.spread, targetNow()).forward);
   });
   canvas.addEventListener("pointerup", (event) => {
+    if (still?.id === event.pointerId) click(still.x, still.y);
     if (push?.id !== event.pointerId) return;
     const { x, y } = push;
     send(pushBy(x, y, event.offsetX - x, event.offsetY - y, canvas.clientWidth, canvas.clientHeight));
@@ -57,6 +67,7 @@ export function listenToPointers(
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
     canvas.addEventListener(end, (event) => {
       fingers.up(event.pointerId);
+      if (still?.id === event.pointerId) still = null;
       if (push?.id === event.pointerId) push = null;
     });
   }

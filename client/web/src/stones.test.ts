@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { hasStone, stoneOf, stonePatch, stonesOf } from "./stones";
+import { hasStone, idsOf, stoneOf, stonePatch, stonesOf, withFirst } from "./stones";
 
 const RUBY = { id: "ruby", cut: "brilliant", material: "ruby" };
 const GLASS = { id: "glass", cut: "brilliant", material: { ior: [1.5, 1.5, 1.5] } };
@@ -21,6 +21,19 @@ describe("a stone", () => {
   it("is made where there was none", () => {
     expect(stonePatch({ stones: [] }, { mesh: "m1" })).toEqual({ stones: { stone: { cut: "brilliant", mesh: "m1" } } });
     expect(stonePatch(null, { mesh: "m1" })).toEqual({ stones: { stone: { cut: "brilliant", mesh: "m1" } } });
+  });
+});
+
+describe("the chosen stone", () => {
+  it("is the first for the panel, and so the one that is changed", () => {
+    const seen = withFirst(SCENE, "glass");
+    expect(idsOf(seen)).toEqual(["glass", "ruby"]);
+    expect(stonePatch(seen, { scale: 2 })).toEqual({ stones: { glass: { scale: 2 } } });
+    expect(idsOf(SCENE)).toEqual(["ruby", "glass"]);
+  });
+
+  it.each([null, "gone"])("%s changes nothing", (id) => {
+    expect(withFirst(SCENE, id)).toBe(SCENE);
   });
 });
 

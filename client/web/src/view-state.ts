@@ -7,6 +7,8 @@ import { part, text } from "./json";
 export interface ViewState {
   target: Target;
   scene: JsonObject | null;
+  /** The id of the stone that this viewer has chosen. */
+  stone: string | null;
   falling: boolean;
   /** It came to rest and sleeps: nothing moves, though it was told to fall. */
   asleep: boolean;
@@ -24,6 +26,7 @@ export interface ViewState {
 export const INITIAL: ViewState = {
   target: "camera",
   scene: null,
+  stone: null,
   falling: false,
   asleep: false,
   mirror: false,
@@ -70,6 +73,7 @@ export const TARGET_NAMES: Record<Target, string> = { camera: "camera", light_1:
 export function describeChange(before: ViewState, after: ViewState): string {
   const said: string[] = [];
   if (before.target !== after.target) said.push(`moving the ${TARGET_NAMES[after.target]}`);
+  if (before.stone !== after.stone) said.push(after.stone === null ? "no stone chosen" : `${after.stone} chosen`);
   if (before.scene && after.scene) {
     if (motion(before) !== motion(after)) said.push(motion(after));
     if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");

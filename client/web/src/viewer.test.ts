@@ -24,6 +24,7 @@ beforeEach(() => {
     size: () => ({ width: 640, height: 360 }),
     connection: () => {},
     state: () => {},
+    answer: () => undefined,
     lacking: () => problems.push("lacking"),
     problem: (text) => problems.push(text),
   });

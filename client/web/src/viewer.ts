@@ -1,7 +1,7 @@
 /** One session on this page: stream, frames and state together. */
 
 import type { Frame } from "@culet/protocol/frame";
-import type { ControlEvent, JsonObject, Notice } from "@culet/protocol/messages";
+import type { ControlEvent, JsonObject, Notice, Outlined, Picked } from "@culet/protocol/messages";
 import type { Target } from "./events";
 import type { Arrival } from "./frame-history";
 import { FramePlayer } from "./frame-player";
@@ -15,6 +15,8 @@ export interface ViewerListener {
   size: () => Size;
   connection: (connection: Connection) => void;
   state: (before: ViewState, after: ViewState) => void;
+  /** A question of this viewer is answered. */
+  answer: (answer: Picked | Outlined) => void;
   /** A new render process lacks what the session needs. */
   lacking: () => void;
   /** `about`: the field of the scene that was refused, if it was that. */
@@ -67,6 +69,15 @@ export class Viewer {
     this.become({ ...this.state, target });
   }
 
+  choose(stone: string | null): void {
+    this.become({ ...this.state, stone });
+  }
+
+  /** As `send`, of what needs no complaint if it cannot be sent. */
+  ask(event: ControlEvent): void {
+    this.stream.send(event);
+  }
+
   private connected(connection: Connection): void {
     if (connection.status === "open") {
       this.resize(this.listener.size());
@@ -81,7 +92,8 @@ export class Viewer {
 
   private heard(notice: Notice): void {
     if (notice.type === "hello" || notice.type === "engine") this.player.forget();
-    if (notice.type === "snapshot") this.snapshot = notice.snapshot;
+    if (notice.type === "picked" || notice.type === "outlined") this.listener.answer(notice);
+    else if (notice.type === "snapshot") this.snapshot = notice.snapshot;
     else if (notice.type === "problem") {
       this.ended ||= notice.code === "session_closed";
       if (notice.code === "session_lost") this.listener.lacking();

@@ -54,7 +54,7 @@ def _with_mesh(scene: Scene, shape: Shape) -> Scene:
 
     placed = scene.only_stone() or Scene().stones[0]
     named = scene.model_copy(update={"stones": (placed.model_copy(update={"mesh": FILE}),)})
-    return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, shape_of(placed, {})))
+    return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, placed, shape_of(placed, {})))
 
 
 def _mesh(file: Path) -> Shape:

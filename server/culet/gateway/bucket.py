@@ -1,7 +1,8 @@
 """How often somebody may ask for something: a bucket that fills with time, and one such bucket for each client.
 
 The bucket is kept as one time, that at which it would be full (the generic cell rate algorithm, ITU-T I.371 annex A).
-It may be overdrawn once: who asks for something dear waits for it afterwards, so that nothing is too dear to be had.
+It may be overdrawn once: a client that asks for something dear waits for it afterwards, so that nothing is too dear to
+be had.
 """
 
 from __future__ import annotations

@@ -14,6 +14,10 @@ class Holdings:
         """Nobody holds anything."""
         self._amounts: Counter[str | None] = Counter()
 
+    def __len__(self) -> int:
+        """Clients that hold something."""
+        return len(self._amounts)
+
     def of(self, client: str | None) -> int:
         """What the client holds; None stands for all whose client is not known."""
         return self._amounts[client]

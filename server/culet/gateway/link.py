@@ -304,7 +304,7 @@ class EngineLink:
                 self.lose(f"the render process was silent for {silence:g} s")
 
     def lose(self, reason: str) -> None:
-        """The engine is gone, says who knows."""
+        """The caller knows that the engine is gone, and says why."""
         if not self.ready.is_set():
             return
         log.warning("%s", reason)

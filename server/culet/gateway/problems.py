@@ -17,7 +17,7 @@ from culet.errors import CuletError, InputError
 from culet.gateway.departure import ClientLeftError
 from culet.scene.refusal import field_of
 from culet.scene.wording import at_its_tag, expected
-from culet_protocol.messages import PatchScene, SessionEvent, SetScene, ViewerEvent
+from culet_protocol.messages import PatchScene, Question, SessionEvent, SetScene, ViewerEvent
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_AFTER_SECONDS = "2"
@@ -65,7 +65,7 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     return {**known, "default": {"description": "Another error", "content": content}}
 
 
-def check_numbers(event: SessionEvent | ViewerEvent) -> None:
+def check_numbers(event: SessionEvent | Question | ViewerEvent) -> None:
     """`finite` of those events whose fields hold any JSON."""
     if isinstance(event, PatchScene):
         finite(event.patch)

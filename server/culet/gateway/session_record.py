@@ -17,7 +17,7 @@ from culet_protocol.sizes import LIVE_SIZE
 SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
 EVENTS_UNDER_WAY = 8
-"""Events of one session that the engine has not answered; more wait with who sent them."""
+"""Events of one session that the engine has not answered; more events wait with their senders."""
 
 
 class SessionRecord:

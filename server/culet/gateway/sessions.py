@@ -23,7 +23,17 @@ from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
 from culet.gateway.viewer import Standing, Viewer
 from culet_protocol import engine as to_engine
-from culet_protocol.messages import Engine, Message, Problem, SessionEvent, Snapshot, Viewers
+from culet_protocol.messages import (
+    Answer,
+    Engine,
+    Message,
+    Problem,
+    Question,
+    SessionEvent,
+    Snapshot,
+    Viewers,
+    answer,
+)
 
 TICK_SECONDS = 0.25
 """Between looks at what viewers can take, and at sessions that nobody uses."""
@@ -145,6 +155,10 @@ class Sessions:
     async def apply(self, session: SessionRecord, event: SessionEvent) -> dict[str, Any]:
         """Have the engine apply an event."""
         return await self._ask(session, to_engine.Control(session=session.id, event=event))
+
+    async def ask(self, session: SessionRecord, question: Question) -> Answer:
+        """What the engine answers to a question about the session's picture."""
+        return answer.validate_python(await self._ask(session, to_engine.Ask(session=session.id, question=question)))
 
     async def describe(self, session: SessionRecord) -> dict[str, Any]:
         """What the engine says of the session now."""

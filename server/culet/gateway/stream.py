@@ -33,6 +33,7 @@ from culet_protocol.messages import (
     Ping,
     Pong,
     Problem,
+    Question,
     Resize,
     SessionEvent,
     ViewerEvent,
@@ -122,7 +123,7 @@ class _Stream:
                 task.cancel()
             results = await asyncio.gather(*tasks, return_exceptions=True)
         if sender in done and reader not in done:
-            # A close waits, as a send does, for room that who does not read never makes.
+            # A close waits, as a send does, for room that a viewer makes by reading; some viewers never read.
             with contextlib.suppress(RuntimeError, TimeoutError):
                 async with asyncio.timeout(SEND_SECONDS):
                     await self._websocket.close(*self._reason())
@@ -200,11 +201,11 @@ class _Stream:
             except InputError as error:
                 self._refuse("unusable_input", str(error), error.field)
                 continue
-            if isinstance(event, SessionEvent):
+            if isinstance(event, SessionEvent | Question):
                 self._messages.spend(EVENT_COST - 1, time.monotonic())
                 await self._session.room.acquire()
                 # Not awaited: events travel in order on the engine's socket without waiting for each other.
-                task = asyncio.create_task(self._apply(event))
+                task = asyncio.create_task(self._bring(event))
                 self._under_way.add(task)
                 task.add_done_callback(self._done)
             else:
@@ -247,9 +248,13 @@ class _Stream:
         self._under_way.discard(task)
         self._session.room.release()
 
-    async def _apply(self, event: SessionEvent) -> None:
+    async def _bring(self, event: SessionEvent | Question) -> None:
+        """To the engine."""
         try:
-            await self._gateway.sessions.apply(self._session, event)
+            if isinstance(event, SessionEvent):
+                await self._gateway.sessions.apply(self._session, event)
+            else:
+                self._viewer.tell(await self._gateway.sessions.ask(self._session, event))
         except InputError as error:
             self._refuse("unusable_input", str(error), error.field)
         except CuletError as error:

@@ -9,7 +9,19 @@ from typing import Literal, assert_never
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.credit import Credit
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Engine, Hello, Message, Notice, Pong, Problem, Snapshot, State, Viewers
+from culet_protocol.messages import (
+    Engine,
+    Hello,
+    Message,
+    Notice,
+    Outlined,
+    Picked,
+    Pong,
+    Problem,
+    Snapshot,
+    State,
+    Viewers,
+)
 
 NOTICES_WAITING = 256
 """A viewer that has so many unread ones does not read at all."""
@@ -97,7 +109,7 @@ class Viewer:
                 key = type(notice)
             case Problem():
                 key = notice
-            case Pong() | Hello():
+            case Pong() | Hello() | Picked() | Outlined():
                 self._numbers += 1
                 key = self._numbers
             case _:

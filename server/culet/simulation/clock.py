@@ -70,6 +70,10 @@ class FixedStepClock:
         """Give up so many of the steps that were due."""
         self.dropped += steps * self.time_step
 
+    def lose(self, seconds: float) -> None:
+        """Let so much real time pass unused."""
+        self.dropped += seconds
+
     def restart(self) -> None:
         """Forget the time put by, as after a pause."""
         self._put_by = 0.0

@@ -15,6 +15,7 @@ from culet.scene.stone import StoneSettings
 from culet.simulation.drop import STANDING
 from culet.simulation.rotation import normalised, product, rotate, rotate_back
 from culet.simulation.state import Quaternion, Triple
+from culet.stage import Stage
 
 LYING_DEGREES = 10.0
 """A stone looks as if it lay on a facet that is level to this. The default stone's is by 5.4 degrees: its pose was
@@ -24,26 +25,39 @@ DOWN: Triple = (0.0, -1.0, 0.0)
 Array = NDArray[np.float64]
 
 
-def on_the_floor(stone: StoneSettings, shape: Shape, before: Shape) -> Pose:
-    """The pose of a stone of that shape which stands as the shape before stood in that place.
+def put_down(stage: Stage, before: Stage) -> Stage:
+    """The stage with each stone `on_the_floor` that has another shape or scale than before, and the same pose."""
+    known = {stone.id: (stone, shape) for stone, shape in zip(before.scene.stones, before.shapes, strict=True)}
+    poses = []
+    for stone, shape in zip(stage.scene.stones, stage.shapes, strict=True):
+        old, old_shape = known.get(stone.id, (stone, shape))
+        stayed = (stone.position, stone.orientation) == (old.position, old.orientation)
+        other = shape is not old_shape or stone.scale != old.scale
+        put = stayed and other
+        poses.append(on_the_floor(stone, shape, old, old_shape) if put else (stone.position, stone.orientation))
+    return stage.posed(poses)
+
+
+def on_the_floor(stone: StoneSettings, shape: Shape, old: StoneSettings, old_shape: Shape) -> Pose:
+    """The pose of a stone of that shape and scale which stands as the old one stood in its place.
 
     It touches the floor. What lay on a facet lies on one: if the new shape does not by itself, it is turned as little
     as it can be. What stood on a corner or an edge is not turned. What was in the air, or deep in the floor, stays.
     """
     position, orientation = stone.position, stone.orientation
-    if abs(position[1] - resting_height(before, orientation)) > STANDING:
+    if abs(position[1] - resting_height(old_shape, orientation, old.scale)) > STANDING:
         return position, orientation
     facet = lowest_facet(shape, orientation)
-    lay = slope_degrees(orientation, lowest_facet(before, orientation)) <= LYING_DEGREES
+    lay = slope_degrees(orientation, lowest_facet(old_shape, orientation)) <= LYING_DEGREES
     if lay and slope_degrees(orientation, facet) > LYING_DEGREES:
         orientation = laid(orientation, facet)
     x, _, z = position
-    return (x, resting_height(shape, orientation), z), orientation
+    return (x, resting_height(shape, orientation, stone.scale), z), orientation
 
 
-def resting_height(shape: Shape, orientation: Quaternion) -> float:
+def resting_height(shape: Shape, orientation: Quaternion, scale: float = 1.0) -> float:
     """y of the centre of a stone whose lowest corner touches the floor, R."""
-    return FLOOR_Y - float((shape.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
+    return FLOOR_Y - scale * float((shape.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
 
 
 def lowest_facet(shape: Shape, orientation: Quaternion) -> Triple:

@@ -252,9 +252,7 @@ class World:
         """Poses `fraction` (0 to 1) of the way from the previous state to the current one."""
         if not 0 <= fraction <= 1:
             raise InputError(f"a fraction of a step is between 0 and 1; got {fraction}", "fraction")
-        return tuple(
-            _between(start, end, fraction) for start, end in zip(self.previous.bodies, self.state.bodies, strict=True)
-        )
+        return between(self.previous, self.state, fraction)
 
     def energy(self) -> float:
         """Kinetic and potential energy, mass R^2/s^2; the latter is 0 with all centres 1 R above the floor."""
@@ -335,6 +333,11 @@ class World:
         self.state = replace(self.state, bodies=self._now())
         if self.at_start:
             self.previous = self.state
+
+
+def between(previous: WorldState, state: WorldState, fraction: float) -> tuple[Pose, ...]:
+    """Poses of the same bodies `fraction` (0 to 1) of the way from one state to another."""
+    return tuple(_between(start, end, fraction) for start, end in zip(previous.bodies, state.bodies, strict=True))
 
 
 def _between(start: BodyState, end: BodyState, fraction: float) -> Pose:

@@ -169,7 +169,7 @@ def governor(
     ] = None,
 ) -> None:
     """Let a stone fall again and again, then change things around it: what does a viewer get, and how soon."""
-    from culet.study.governor import described, document, measure, rate_of
+    from culet.study.governor_study import described, document, measure, rate_of
 
     with errors_in_one_line():
         stage, size = read_stage(scene, preset, None, None), (width, height)

@@ -6,9 +6,9 @@ import io
 import pytest
 from PIL import Image
 
-from culet.engine.library import uploads
+from culet.engine.library import upload_store
 from culet.engine.library.upload_process import Room
-from culet.engine.library.uploads import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore
+from culet.engine.library.upload_store import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError

@@ -16,10 +16,11 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
-from culet.engine.painting.live_picture import REST_SAMPLES, SETTLE_SECONDS, LivePicture, Simulating
+from culet.engine.painting.live_picture import REST_SAMPLES, SETTLE_SECONDS, LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.session.session import Session
+from culet.engine.session.stepper import Steps
 from culet.engine.session.viewpoint import orbit
 from culet.optics.panoramas import Panorama
 from culet.scene import Scene
@@ -149,6 +150,19 @@ class TimedPicture:
         )
 
 
+class AtOnce:
+    """Takes the steps that are due when a frame is begun: they take no time of a world."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+
+    def keep_going(self, steps: Steps) -> None:
+        steps.run(self._world.now)
+
+    def stop(self) -> None:
+        """There is nothing to stop."""
+
+
 Play = Callable[..., asyncio.Future[None]]
 
 
@@ -163,7 +177,7 @@ async def play() -> AsyncIterator[Play]:
                 painter = Painter(
                     world, thread, StillQueue(1, 2**25),
                     send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"",
-                    still_seconds=math.inf, clock=lambda: world.now,
+                    still_seconds=math.inf, stepper=AtOnce(world), clock=lambda: world.now,
                 )  # fmt: skip
                 painter.pictures["a"] = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
                 painters[id(world)] = painter
@@ -178,9 +192,7 @@ async def play() -> AsyncIterator[Play]:
 
 
 async def done(live: LivePicture) -> None:
-    """Simulating and encoding take no time of these worlds."""
-    if isinstance(live.making, Simulating):
-        await live.making.task
+    """Encoding takes no time of these worlds."""
     if live.outgoing.latest is not None:
         await live.outgoing.latest
 
@@ -368,7 +380,7 @@ async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_i
             painter = Painter(
                 world, thread, StillQueue(1, 2**25),
                 send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"",
-                still_seconds=math.inf, clock=partial(getattr, world, "now"),
+                still_seconds=math.inf, stepper=AtOnce(world), clock=partial(getattr, world, "now"),
             )  # fmt: skip
             sessions = [cheap, world.session] if company else [cheap]
             for session in sessions:

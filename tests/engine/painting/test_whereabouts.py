@@ -62,6 +62,9 @@ def test_of_several_stones_out_of_the_picture_the_nearest_is_told() -> None:
     assert whereabouts(SQUARE_ANGLE, [left, above, behind], 1) == Flags.ABOVE
     assert whereabouts(SQUARE_ANGLE, [left, behind], 1) == Flags.LEFT
     assert whereabouts(SQUARE_ANGLE, [behind], 1) == Flags.BEHIND
+    large = Ball((-70, 0, 0), 40)
+    assert whereabouts(SQUARE_ANGLE, [above, large], 1) == Flags.ABOVE, "30.6 R from the camera, the other 30.7"
+    assert whereabouts(SQUARE_ANGLE, [behind, large], 1) == Flags.LEFT, "though the one behind has the nearer centre"
     assert whereabouts(SQUARE_ANGLE, [], 1) == Flags.NONE
 
 

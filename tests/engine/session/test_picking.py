@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from culet.engine.session.picking import Placed, struck
+from culet.engine.session.picking import Placed, corners, placed, struck
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
-from culet.scene import Camera, StoneSettings, Vector
+from culet.scene import Camera, Scene, StoneSettings, Vector
+from culet.simulation.rotation import rotate
+from culet.stage import Stage
 
 STONE = shape_of(StoneSettings(), {})
 HOLLOW = replace(STONE, convex=False)
@@ -81,6 +83,20 @@ def test_a_stone_of_another_size_is_struck_where_its_own_surface_is() -> None:
     assert struck(AHEAD, [at((0, 0, 0), scale=2)], 0.3, 0) is not None, "which passes by a stone of scale 1"
 
 
+def test_of_a_stone_that_reaches_behind_the_camera_the_part_in_front_is_struck() -> None:
+    """Two brilliants a third as large, before and behind the camera, as one shape that is not convex."""
+    before, behind = 0.3 * STONE.vertices - (0, 0, 0.7), 0.3 * STONE.vertices + (0, 0, 0.7)
+    pair = replace(
+        HOLLOW,
+        vertices=np.concatenate([before, behind]),
+        triangles=np.concatenate([STONE.triangles, STONE.triangles + len(before)]),
+    )
+    camera = Camera(position=(0, 0, 0), target=(0, 0, -1))
+    met = struck(camera, [Placed("pair", pair, 1.0, (0, 0, 0), UPRIGHT)], 0, 0)
+    assert met is not None
+    assert -0.7 < met.point[2] < -0.4
+
+
 def test_planes_and_triangles_of_one_solid_are_struck_alike() -> None:
     """Two ways that have nothing in common but the line; measured 3e-15."""
     random, struck_at_all = np.random.default_rng(7), 0
@@ -101,6 +117,23 @@ def test_planes_and_triangles_of_one_solid_are_struck_alike() -> None:
                 struck_at_all += 1
                 assert math.dist(by_planes.point, by_triangles.point) < 1e-9
     assert struck_at_all > 100
+
+
+def test_corners_are_turned_enlarged_and_moved_as_their_stone() -> None:
+    orientation = (0.5, -0.5, 0.5, 0.5)
+    found = corners(Placed("stone", STONE, 2.5, (1.0, -2.0, 3.0), orientation))
+    assert len(found) == len(STONE.vertices)
+    for corner, vertex in zip(found.tolist(), STONE.vertices.tolist(), strict=True):
+        x, y, z = rotate(orientation, (vertex[0], vertex[1], vertex[2]))
+        assert corner == pytest.approx([1 + 2.5 * x, -2 + 2.5 * y, 3 + 2.5 * z], abs=1e-12)
+
+
+def test_the_stones_of_a_stage_are_placed_as_its_scene_has_them() -> None:
+    scene = Scene.read({"stones": [{"id": "a", "position": [0, 1, 0]}, {"id": "b", "scale": 2, "position": [5, 1, 0]}]})
+    first, second = placed(Stage.of(scene))
+    assert (first.name, first.scale, first.position) == ("a", 1, (0, 1, 0))
+    assert (second.name, second.scale, second.position) == ("b", 2, (5, 1, 0))
+    assert first.shape is not None
 
 
 def test_nothing_is_struck_where_there_is_nothing() -> None:

@@ -8,16 +8,11 @@ import pytest
 
 from culet.engine.session.session import Session
 from culet.errors import InputError
-from culet.geometry.load import shape_of
-from culet.scene import Camera, Scene
+from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.stage import Stage
 
 SCENE = LEGACY_DEFAULT
-STONE = shape_of(SCENE.stones[0], {})
-UPRIGHT = (1.0, 0.0, 0.0, 0.0)
-AHEAD = Camera(position=(0, 0, 5), target=(0, 0, 0), fov_degrees=90)
-"""At distance 5 half the picture's height is 5 R."""
 
 
 def test_a_push_moves_a_paused_stone_by_that_speed_and_lets_time_go_on() -> None:
@@ -46,6 +41,15 @@ def test_a_push_wakes_a_stone_that_rests_without_a_jump_in_time() -> None:
     assert session.shown.moving
     session.advance(now + 1000)
     assert session.shown.simulation_time == pytest.approx(time, abs=0.01)
+
+
+def test_what_is_seen_at_a_point_of_the_picture_is_picked_by_its_id_and_nothing_is_changed() -> None:
+    session = Session("0" * 32, Stage.of(SCENE))
+    shown = session.shown
+    assert session.pick(0, 0) == SCENE.stones[0].id
+    assert session.pick(5, 5) is None
+    assert session.shown is shown
+    assert Session("0" * 32, Stage.of(Scene(stones=()))).pick(0, 0) is None
 
 
 def test_a_push_past_the_stone_changes_nothing() -> None:

@@ -128,16 +128,15 @@ class Processor:
 
     def __init__(self, session: Session, seconds_a_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now, self.steps = 0.0, 0
-        simulation = session.motion.simulation
-        assert simulation is not None
-        step = simulation.step
+        world = session.motion.world
+        step = world.step
 
         def costly() -> None:
             self.now += seconds_a_step
             self.steps += 1
             step()
 
-        monkeypatch.setattr(simulation, "step", costly)
+        monkeypatch.setattr(world, "step", costly)
         monkeypatch.setattr(session.motion, "_timer", lambda: self.now)
 
 
@@ -176,11 +175,9 @@ def test_steps_that_a_frame_has_time_for_are_all_taken(monkeypatch: pytest.Monke
 def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     session, _ = costly_fall(0.03, 1 / 30, monkeypatch)
     alone = Session(NAME, STAGE)
-    assert session.motion.simulation is not None
-    assert alone.motion.simulation is not None
-    for _ in range(session.motion.simulation.state.step):
-        alone.motion.simulation.step()
-    assert session.motion.simulation.state == alone.motion.simulation.state
+    for _ in range(session.motion.world.state.step):
+        alone.motion.world.step()
+    assert session.motion.world.state == alone.motion.world.state
 
 
 def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,7 +190,7 @@ def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeyp
         def failing() -> None:
             raise ZeroDivisionError
 
-        monkeypatch.setattr(one.motion.simulation, "step", failing)
+        monkeypatch.setattr(one.motion.world, "step", failing)
         if one is restored:  # it begins to count time with its first frame
             one.advance(200)
         with pytest.raises(ZeroDivisionError):

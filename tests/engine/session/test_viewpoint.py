@@ -66,6 +66,21 @@ def test_a_camera_too_near_for_a_whole_stone_steps_back_to_where_its_ball_touche
     assert viewpoint.look_at(near, (1, 2, 3)).position == pytest.approx((1, 2, 5), abs=1e-14)  # measured 9e-16
 
 
+def test_a_camera_too_near_for_a_larger_stone_steps_back_farther() -> None:
+    near = Camera(position=(0, 0, 0.5), target=(0, 0, 0), fov_degrees=60)
+    assert viewpoint.look_at(near, (1, 2, 3), 2.5).position == pytest.approx((1, 2, 8), abs=1e-14)
+    flat = near.model_copy(update={"kind": "orthographic", "height": 3.0})
+    assert viewpoint.look_at(flat, (1, 2, 3), 2.5).height == 5
+
+
+def test_the_ball_about_balls_holds_them_all_and_that_about_one_is_that_one() -> None:
+    assert viewpoint.ball_about([((1, 2, 3), 0.5)]) == ((1, 2, 3), 0.5)
+    balls = [((0.0, 0.0, 0.0), 1.0), ((6.0, 0.0, 0.0), 2.0), ((0.0, 5.0, -1.0), 0.3)]
+    centre, radius = viewpoint.ball_about(balls)
+    assert max(math.dist(centre, middle) + own for middle, own in balls) == pytest.approx(radius, rel=1e-12)
+    assert viewpoint.ball_about(balls[:2]) == ((3.5, 0, 0), 4.5), "touches both"
+
+
 def test_translation_moves_camera_and_target_alike_across_the_line_of_sight() -> None:
     moved = viewpoint.translate(OBLIQUE, 2, -1)
     shift = np.subtract(moved.position, OBLIQUE.position)

@@ -104,7 +104,7 @@ class LiveFrame:
         """Where the nearest stone is, if no stone is in the picture."""
         height, width, _ = self.rgb.shape
         scene = self.shown.scene
-        return whereabouts(scene.camera, [Ball(stone.position) for stone in scene.stones], width / height)
+        return whereabouts(scene.camera, [Ball(stone.position, stone.scale) for stone in scene.stones], width / height)
 
     def _flags(self, frontier: bool) -> Flags:
         flags = {

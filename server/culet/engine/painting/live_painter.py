@@ -1,26 +1,33 @@
-"""Live frames and their refinements: simulated on threads of their own, drawn in pieces on the render thread."""
+"""Live frames and their refinements, drawn in pieces on the render thread; the stepper moves what they show."""
 
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from typing import Protocol
 
 from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_sender import FrameSender
 from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, proceed
-from culet.engine.painting.live_picture import NEVER, REST_SAMPLES, LivePicture, Preparing, Simulating
+from culet.engine.painting.live_picture import NEVER, REST_SAMPLES, LivePicture, Preparing
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
 from culet.engine.painting.renderer import ALONE_SECONDS, Renderer
 from culet.engine.painting.shares import Account, Shares
+from culet.engine.session.motion import Motion
 from culet.engine.session.session import Session, Shown
 from culet.errors import CuletError
 
-SIMULATE_THREADS = 4
-"""As many stones whose steps take long do not keep the others from moving."""
+
+class Stepping(Protocol):
+    """Who takes the steps of motions; `culet.engine.session.stepper.Stepper` is one."""
+
+    def keep_going(self, steps: Motion) -> None:
+        """See to it that the steps of a motion are taken, from now on as long as there are any. Does not wait."""
+
+    def stop(self) -> None:
+        """Take no more steps."""
 
 
 class LivePainter:
@@ -32,6 +39,7 @@ class LivePainter:
         thread: RenderThread,
         shares: Shares,
         sender: FrameSender,
+        stepper: Stepping,
         *,
         share_of: Callable[[LivePicture], float],
         tell_problem: Callable[[Session, CuletError], None],
@@ -50,7 +58,7 @@ class LivePainter:
         self._wake = wake
         self._tally = tally
         self._now = clock
-        self._simulate_threads = ThreadPoolExecutor(SIMULATE_THREADS, "simulate")
+        self._stepper = stepper
 
     async def advance(self, live: LivePicture) -> None:
         """The next piece of a frame or of a refinement, begun if need be."""
@@ -62,41 +70,30 @@ class LivePainter:
             self._begin(live)
 
     def stop(self) -> None:
-        """Simulate nothing more."""
-        self._simulate_threads.shutdown(wait=False, cancel_futures=True)
+        """Move nothing more."""
+        self._stepper.stop()
 
     def _begin(self, live: LivePicture) -> None:
-        """Simulate up to now, while others are drawn: at the extremes a single step takes a second."""
+        """Choose what to draw: what is there now of the motion, which waits for no step, and goes on meanwhile."""
         account, now, settled = live.next_account, self._now(), live.settled
         if live.begun_at > NEVER and (due_at := live.due_at()) is not None:
             self._tally.durations.frame_wait.add(max(0.0, now - max(due_at, live.unwatched_at)))
         live.begin(now)
-        live.making = Simulating(asyncio.create_task(self._simulate(live, account, settled=settled)))
-
-    async def _simulate(self, live: LivePicture, account: Account, *, settled: bool) -> None:
         session = live.session
-        work: FrameWork | None = None
-        try:
-            async with session.lock:
-                begun_at = self._now()  # waiting for the lock is no work that the next frame has to do again
-                started = time.perf_counter()
-                try:
-                    await asyncio.get_running_loop().run_in_executor(
-                        self._simulate_threads, session.advance, begun_at, self._share_of(live)
-                    )
-                except Exception as error:  # one session's failure must not end the others'; its stone has stopped
-                    self._tell_problem(session, as_culet_error(error, CuletError, "simulating"))
-                simulate_seconds = time.perf_counter() - started
-                self._shares.charge(account, self._now() - begun_at, self._now())
-                shown = session.shown
-                session.remember(shown)
-            if not live.current or live.picture is None or settled:  # or the simulation has not moved on
-                work = self._planned(live, shown, account, begun_at, simulate_seconds)
-        except Exception as error:  # as above
-            self._refuse(live, session.shown, error)
-        finally:
-            live.making = work
-            self._wake()
+        if (problem := session.motion.take_problem()) is not None:  # the stones have stopped
+            self._tell_problem(session, as_culet_error(problem, CuletError, "simulating"))
+        if session.motion.look_on(now, self._share_of(live)):
+            self._stepper.keep_going(session.motion)
+        session.look(now)
+        shown = session.shown
+        session.remember(shown)
+        simulated = session.motion.take_spent()
+        self._shares.charge(account, simulated, now)
+        if not live.current or live.picture is None or settled:  # or the motion has not gone on
+            try:
+                live.making = self._planned(live, shown, account, now, simulated)
+            except Exception as error:  # one session's failure must not end the others'
+                self._refuse(live, shown, error)
 
     def _planned(
         self, live: LivePicture, shown: Shown, account: Account, begun_at: float, simulated: float

@@ -60,21 +60,14 @@ class State(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Simulating:
-    """The session's time is brought up to now, for the next frame."""
-
-    task: asyncio.Task[None]
-
-
-@dataclass(frozen=True, eq=False)
 class Preparing:
     """Programs and trees are made that the next picture needs."""
 
     task: asyncio.Task[None]
 
 
-Making = Simulating | Preparing | FrameWork
-"""What is under way: a next frame's simulation, then the frame itself, in between maybe what that needs."""
+Making = Preparing | FrameWork
+"""What is under way: a frame, or what it needs."""
 
 
 @dataclass(eq=False)
@@ -135,7 +128,7 @@ class LivePicture:
     @property
     def at_rest(self) -> bool:
         """Whether the picture is right until somebody changes something."""
-        return self.current and not self.session.motion.moving
+        return self.current and not self.session.shown.moving
 
     @property
     def settled(self) -> bool:

@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from culet.engine.painting import schedule
 from culet.engine.painting.counters import Counters, Durations, Tally
 from culet.engine.painting.frame_sender import FrameSender
-from culet.engine.painting.live_painter import LivePainter
+from culet.engine.painting.live_painter import LivePainter, Stepping
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
@@ -23,6 +23,7 @@ from culet.engine.painting.shares import Shares, share
 from culet.engine.painting.still import StillQueue
 from culet.engine.painting.still_painter import StillPainter
 from culet.engine.session.session import Session
+from culet.engine.session.stepper import Stepper
 from culet.errors import CuletError
 from culet.stage import Stage
 
@@ -40,6 +41,7 @@ class Painter:
         tell_problem: Callable[[str, CuletError], None],
         encode_still: Callable[[Picture, str], bytes],
         still_seconds: float,
+        stepper: Stepping | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`send` puts a frame on the wire, `tell_problem` tells of a session that could not go on; neither waits.
@@ -58,7 +60,7 @@ class Painter:
         self._sender = FrameSender(send, self._tell_problem, self.wake, tally, clock)
         self._still_painter = StillPainter(stills, renderer, thread, encode_still, still_seconds, tally, clock)
         self._live_painter = LivePainter(
-            renderer, thread, self._shares, self._sender,
+            renderer, thread, self._shares, self._sender, stepper or Stepper(clock=clock),
             share_of=self._share_of, tell_problem=self._tell_problem, wake=self.wake, tally=tally, clock=clock,
         )  # fmt: skip
 

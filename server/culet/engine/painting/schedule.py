@@ -1,7 +1,8 @@
 """What the one render thread does next: pure choices from what is due.
 
-Every session has its share of the thread's time (shares.py), whatever one of its frames costs: the next piece of work
-is of who has had least. A frame whose time has come competes with refinements and stills, which have a smaller weight.
+Every session has its share of the thread's time (shares.py), whatever one of its frames costs: the session that has had
+least of the time does the next piece of work. A frame whose time has come competes with refinements and stills, which
+have a smaller weight.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from culet.engine.painting.still import StillQueue
 def next_work(
     pictures: Iterable[LivePicture], stills: StillQueue, shares: Shares, now: float
 ) -> LivePicture | StillQueue | None:
-    """Who gets the next piece of the render thread's time; of those with equal claims who waits longest."""
+    """What gets the next piece of the render thread's time; of equal claims the one that has waited longest."""
     waiting: list[tuple[float, float, LivePicture | StillQueue]] = [
         (shares.start(picture.next_account), picture.begun_at, picture)
         for picture in pictures

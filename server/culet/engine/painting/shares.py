@@ -1,8 +1,8 @@
-"""Shares of the render thread's time: who is next, and how much of the time somebody can count on.
+"""Shares of the render thread's time: whose work is next, and how much of the time an owner of work can count on.
 
 Start-time fair queueing (P. Goyal, H. Vin and H. Cheng, SIGCOMM 1996): time goes by in units of service. A piece of
-work starts where the last one of its owner ended, or at the present if that is later, so that nobody
-saves up time by sleeping, and nobody who comes has to catch up. The earliest start is next.
+work starts where the last piece of its owner ended, or at the present if the present is later. So an owner saves up no
+time by sleeping, and a new owner has nothing to catch up with. The earliest start is next.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 MEMORY_SECONDS = 0.5
 """Over which the use of the render thread is averaged: longer than the interval of a slow session's frames, and short
-enough that who is left alone soon has all of the time."""
+enough that a session which is left alone soon has all of the time."""
 IDLE_USE = 1e-3
 """Part of the time below which somebody counts as idle."""
 
@@ -67,8 +67,8 @@ class Shares:
 
 
 def share(account: Account, others: Iterable[Account], now: float) -> float:
-    """The part of the time that somebody can have beside the others, 0 to 1: as much as each of those who want more,
-    and what those leave who want less (max-min fairness: D. Bertsekas and R. Gallager, Data Networks, 6.5)."""
+    """The part of the time that an owner can have beside the others, 0 to 1: as much as each owner that wants more, and
+    what is left by owners that want less (max-min fairness: D. Bertsekas and R. Gallager, Data Networks, 6.5)."""
     uses: dict[int, list[float]] = {}
     for other in others:
         if other.owner is not account.owner and (use := other.use(now)) > IDLE_USE:

@@ -128,8 +128,8 @@ class StillQueue:
             self._forget_clients()
 
     def _forget_clients(self) -> None:
-        """Of those who wait for nothing. One who has had more than others is remembered while those still wait, or it
-        could begin anew with every still."""
+        """Forget clients that wait for nothing. A client that has had more than others is remembered while the others
+        wait, or it could begin anew with every still."""
         waiting = {still.client for still in self._stills}
         self._accounts = {
             client: account

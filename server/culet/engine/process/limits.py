@@ -45,7 +45,10 @@ class Limits(Settings):
         description="Pixels of a live frame; one asked for larger is rendered so large, with the same aspect ratio.",
     )
     max_uploads: int = Field(
-        32, ge=1, description="Uploads of each kind, mesh or sky, that are kept besides those that sessions show."
+        128,
+        ge=1,
+        description="Uploads of each kind, mesh or sky, that are kept besides those that sessions show; a scene whose "
+        "64 stones are all uploads needs that many at least before it is opened.",
     )
     memory: ByteSize | None = Field(
         None,

@@ -1,7 +1,7 @@
 """The engine's memory: what holds how much of it, and the one budget that all of it stays within.
 
-Whoever holds memory says how much (`count`); what can be had back is named by whoever can give it (`give_back`). Who
-is about to take more reserves it first, which makes room or is refused. Nothing here allocates anything.
+A part that holds memory says how much (`count`). A part that can give memory back says so (`give_back`). A part that is
+about to take more memory reserves it first: the reservation makes room or is refused. Nothing here allocates anything.
 """
 
 from __future__ import annotations

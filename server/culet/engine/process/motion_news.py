@@ -51,7 +51,7 @@ class MotionNews:
 
     async def _tell_of(self, session: Session) -> None:
         try:
-            async with session.lock:  # or a step could be taken between the parts of the snapshot
+            async with session.lock, session.motion.still():
                 before, now = self._told.get(session, _Told()), _Told.of(session)
                 self._told[session] = now
                 if now.asleep != before.asleep:

@@ -154,10 +154,12 @@ def history_length(limits: Limits, budget: int) -> int:
     return max(1, min(limits.max_shown_states, int(HISTORY_SHARE * budget) // (SHOWN_BYTES * limits.max_sessions)))
 
 
-def described(live: LivePicture) -> dict[str, Any]:
+async def described(live: LivePicture) -> dict[str, Any]:
     """A session as the gateway is told of it."""
     session = live.session
-    return session.state(edited=False).model_dump(mode="json", exclude={"type", "edited"}) | {
+    async with session.motion.still():
+        state = session.state(edited=False)
+    return state.model_dump(mode="json", exclude={"type", "edited"}) | {
         "watched": live.watched,
         "step": session.shown.step,
         "simulation_time": session.shown.simulation_time,

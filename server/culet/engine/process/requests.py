@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, assert_never
 
 from culet.engine.library.upload_process import Buffer
-from culet.engine.library.uploads import MESH, SKY, UploadStore
+from culet.engine.library.upload_store import MESH, SKY, UploadStore
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.process.in_use import sky_bytes, uploads_in_use
@@ -19,7 +19,7 @@ from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
 from culet.engine.process.still_requests import StillRequests
-from culet.engine.session import events
+from culet.engine.session import events, questions
 from culet.errors import InputError
 from culet.optics.sky_files.picture import SkyPicture
 from culet.stage import Library
@@ -66,17 +66,21 @@ class Requests:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
-                return described(await self.sessions.open(request)), None
+                return await described(await self.sessions.open(request)), None
             case protocol.CloseSession():
                 self.sessions.close(request.session)
                 return {}, None
             case protocol.GetSession():
-                return described(self.sessions.get(request.session)), None
+                return await described(self.sessions.get(request.session)), None
             case protocol.ListSessions():
-                clients = [described(live) | {"client": self.sessions.client(live)} for live in self.sessions]
+                clients = [
+                    await described(live) | {"client": self.sessions.client(live)} for live in list(self.sessions)
+                ]
                 return {"sessions": clients}, None
             case protocol.Control():
                 return await self._control(request), None
+            case protocol.Ask():
+                return await self._ask(request), None
             case protocol.Demand():
                 return self._demand(request), None
             case protocol.Render():
@@ -115,7 +119,7 @@ class Requests:
         session = self.sessions.get(request.session).session
         apply = partial(events.apply, session, request.event, self._library)
         try:
-            async with session.lock:
+            async with session.lock, session.motion.still():
                 if request.event.type in LONG_EVENTS:
                     await asyncio.to_thread(apply)
                 else:
@@ -124,6 +128,11 @@ class Requests:
         finally:
             self._painter.wake()
         return {"step": session.shown.step, "falling": session.motion.falling}
+
+    async def _ask(self, request: protocol.Ask) -> dict[str, Any]:
+        session = self.sessions.get(request.session).session
+        async with session.lock:
+            return questions.answer(session, request.question).model_dump(mode="json")
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
         live = self.sessions.get(request.session)

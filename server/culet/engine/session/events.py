@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from culet.engine.session import viewpoint
 from culet.engine.session.history import Past
+from culet.engine.session.picking import placed
 from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
 from culet.scene import Camera, Plane, Scene
@@ -15,7 +16,7 @@ from culet.scene.emitters import PointLight
 from culet.scene.patch import patched
 from culet.scene.sky import DarkEnvironment, LightEnvironment
 from culet.scene.sky_seen import Surroundings, back_under, under
-from culet.simulation.lying import on_the_floor
+from culet.simulation.lying import put_down
 from culet.stage import Library, Sky, Stage
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent, Target
@@ -50,7 +51,7 @@ def apply(session: Session, event: SessionEvent, library: Library) -> None:
             session.balance = event
         case messages.SetScene():
             stage = stage_for(Scene.read(event.scene), session, library)
-            session.replace_stones(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
+            session.replace(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
         case _:
             assert_never(event)
 
@@ -87,15 +88,25 @@ def _move(session: Session, event: messages.Orbit | messages.Translate | message
     session.change(session.stage.showing(scene))
 
 
-def _look_at_stone(session: Session) -> None:
-    if not session.shown.scene.stones:
-        raise InputError("expected a scene with a stone, got none: there is nothing to look at")
-    camera, position = session.scene.camera, session.shown.scene.stones[0].position
+def _look_at_stone(session: Session, name: str | None = None) -> None:
+    """Look at the stone of that id, or at all stones."""
+    stones = [stone for stone in placed(session.shown.stage) if name in (None, stone.name)]
+    if not stones:
+        raise _no_stone(session.scene, name, "there is nothing to look at")
+    centre, radius = viewpoint.ball_about([(stone.position, stone.scale) for stone in stones])
     try:
-        scene = session.scene.model_copy(update={"camera": viewpoint.look_at(camera, position)})
+        scene = session.scene.model_copy(update={"camera": viewpoint.look_at(session.scene.camera, centre, radius)})
     except ValidationError as error:
         raise InputError(f"the stone is beyond where a camera can be: {error.errors()[0]['msg']}") from error
     session.change(session.stage.showing(scene))
+
+
+def _no_stone(scene: Scene, name: str | None, consequence: str) -> InputError:
+    """For an event that needs a stone, or the stone of that id."""
+    if name is None or not scene.stones:
+        return InputError(f"expected a scene with a stone, got none: {consequence}", None if name is None else "stone")
+    ids = ", ".join(repr(stone.id) for stone in scene.stones)
+    return InputError(f"stone: expected the id of a stone ({ids}), got {name!r}", "stone")
 
 
 def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:
@@ -168,22 +179,4 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
         home = Scene.read(patched(at_home, patch)).camera
     stage = stage_for(after, session, library)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
-    if stage.shapes != session.stage.shapes:
-        if _poses(after) == _poses(before):
-            before_shapes = session.stage.shapes
-            stage = stage.posed(map(on_the_floor, after.stones, stage.shapes, before_shapes))
-        session.replace_stones(stage, home=home, sky=sky)
-    elif _start(after) != _start(before):
-        session.start_anew(stage, home=home, sky=sky)
-    else:
-        session.change(stage, home=home, sky=sky)
-
-
-def _start(scene: Scene) -> object:
-    """Where and how the stone starts: a patch of anything else leaves it where it is."""
-    return _poses(scene), [(stone.velocity, stone.spin) for stone in scene.stones]
-
-
-def _poses(scene: Scene) -> object:
-    """Of the stones at the start."""
-    return [(stone.position, stone.orientation) for stone in scene.stones]
+    session.change(put_down(stage, session.stage), home=home, sky=sky)

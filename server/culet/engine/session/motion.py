@@ -1,153 +1,414 @@
-"""A session's stone in time: whether it falls, in fixed steps that follow a steady clock, and where it is shown."""
+"""A session's stones in time: whether they fall, in fixed steps that follow a steady clock, and where they are shown.
+
+Two sides use a motion. One takes the steps (`run`, in a thread of the stepper, or `advance`) and writes down the latest
+two states. The other shows what lies between them at a time (`seen`), and never waits for a step.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import asyncio
+import contextlib
+import threading
+from collections.abc import AsyncIterator, Callable, Mapping
+from dataclasses import dataclass
 from time import thread_time
-from typing import Any
+from typing import Any, Literal
 
 from culet.engine.session.snapshot import LARGEST_FRACTION
 from culet.errors import InputError
-from culet.scene import Scene
-from culet.simulation import Allowance, FixedStepClock, Pace, Simulation, surfaces_of
-from culet.simulation.settings import SimulationSettings
-from culet.simulation.state import Quaternion, Triple
+from culet.scene.fields import Pose
+from culet.simulation import Allowance, FixedStepClock, Pace
+from culet.simulation.bodies import Body, BodyState, WorldState
+from culet.simulation.clock import MAX_CATCH_UP
+from culet.simulation.staged import bodies_of, world_of
+from culet.simulation.state import Triple
+from culet.simulation.surfaces import surfaces_of
+from culet.simulation.world import World, between
 from culet.stage import Stage
+
+LATE = 1e-3
+"""Time steps after a step is due, when it is taken: however the sums of times are rounded, it is due by then."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lease:
+    """That somebody looks on, and so time goes on."""
+
+    since: float
+    """s, steady clock: when the first one looked on after a pause."""
+    until: float
+    """s, steady clock: as long as one look keeps time going."""
+    lost: float
+    """s since then, during which nobody looked on: they are not made up for."""
+    share: float
+    """Of the time that a session can have beside others."""
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """The latest states, and where between them time was when they were written down."""
+
+    names: tuple[str, ...]
+    """Of the stones, in the order of the states."""
+    previous: WorldState
+    state: WorldState
+    settled: bool
+    """All stones sleep in both."""
+    fraction: float
+    """From the previous state (0) to the later one (1)."""
+    time_step: float
+    """s"""
+    at: float
+    """s, steady clock, without what was lost: when the fraction was that."""
+    lease: Lease | None
+    """By which time goes on from there; None if it stands."""
+
+    def fraction_at(self, now: float, lease: Lease | None) -> float:
+        """Where between the states time is at `now`, by the lease that holds then; time waits at the later state."""
+        if self.lease is None or lease is None or self.lease.since != lease.since:
+            return self.fraction
+        ahead = min(now, lease.until) - lease.lost - self.at
+        return self.fraction if ahead <= 0 else min(self.fraction + ahead / self.time_step, 1.0)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Where the stones are at a time."""
+
+    poses: Mapping[str, Pose]
+    """By the ids of the stones."""
+    time: float
+    """s of simulation."""
+    moving: bool
+    """Whether time would change the poses."""
 
 
 class Motion:
-    """Mutable. A scene without a stone has a motion too, in which nothing ever moves."""
+    """Mutable. Whoever changes or saves a motion that may be running does so within `still`."""
 
     def __init__(self, stage: Stage, *, timer: Callable[[], float] = thread_time) -> None:
-        """A stone at rest where the scene has it. `timer` says how many seconds of the processor were taken."""
+        """The stones at rest where the scene has them. `timer` says how many seconds of the processor were taken."""
         self.falling = False
-        """Time goes on for the stone, should it not sleep."""
+        """Time goes on for the stones, should they not sleep."""
         self.pace = Pace()
+        self.problem: Exception | None = None
+        """Because of which the stones stopped, until somebody takes note of it."""
+        self.world = world_of(stage)
+        self.clock = FixedStepClock(self.world.law.time_step)
+        self._stage = stage
+        self._spent = 0.0
         self._timer = timer
         self._allowance = Allowance()
+        self._guard = threading.Lock()
+        self._lease: Lease | None = None
+        self._lost = 0.0
+        """s of it that are accounted for."""
+        self._followed: float | None = None
+        """When the lease began by which the last steps were taken."""
         self._advanced_at: float | None = None
-        """s, steady clock: up to when time was simulated. None: time begins with the next look at the clock."""
-        self.simulation = _simulation(stage)
-        """None without a stone."""
-        self.clock = _clock(stage.scene.simulation.time_step)
+        """s, steady clock, without what was lost: up to when time was simulated. None: time begins with the next
+        look."""
+        self._write_down()
 
-    def restore(self, simulation: dict[str, Any] | None, fraction: float, *, falling: bool) -> None:
-        """Go on from what another engine's `simulation` and clock were; InputError if that is no snapshot."""
+    def restore(self, snapshot: dict[str, Any] | None, fraction: float, *, falling: bool) -> None:
+        """Go on from what another engine's `snapshot` and clock were; InputError if that is no snapshot."""
         self.clock = _clock(self.clock.time_step, fraction)
-        self.falling = falling and self.simulation is not None
-        if self.simulation is not None and simulation is not None:
-            self.simulation.restore(simulation)
+        self.falling = falling and bool(self.world.bodies)
+        if snapshot is not None:
+            self.world = _in_order(self.world, snapshot.get("stones"))
+            self.world.restore(snapshot)
+        self._write_down()
+
+    @contextlib.asynccontextmanager
+    async def still(self) -> AsyncIterator[None]:
+        """No step is taken meanwhile. Waits for the steps that are being taken, without keeping the loop."""
+        if not self._guard.acquire(blocking=False):
+            taking = asyncio.get_running_loop().run_in_executor(None, self._guard.acquire)
+            try:
+                await asyncio.shield(taking)
+            except asyncio.CancelledError:
+                taking.add_done_callback(lambda _: self._guard.release())
+                raise
+        try:
+            yield
+        finally:
+            self._guard.release()
 
     @property
     def moving(self) -> bool:
-        """Whether time would change what is shown."""
-        return self.falling and self.simulation is not None and not self.asleep
+        """Whether time would change the poses."""
+        return self.falling and bool(self._instant.names) and not self._instant.settled
 
     @property
     def asleep(self) -> bool:
-        """Whether the stone has come to rest for good, unless somebody changes something."""
-        return self.simulation is not None and self.simulation.settled
+        """Whether all stones have come to rest for good, unless somebody changes something."""
+        return bool(self._instant.names) and self._instant.settled
 
     @property
     def fraction(self) -> float:
-        """How far the shown pose is from the last state but one to the last."""
+        """Of the step that is put by."""
         return self.clock.fraction
 
-    @property
-    def time(self) -> float:
-        """s of simulation, of the shown pose."""
-        if self.simulation is None:
-            return 0.0
-        before, after = self.simulation.previous.time, self.simulation.state.time
-        return before + (after - before) * self.fraction
+    def seen(self, now: float | None = None) -> Seen:
+        """Where the stones are at `now` (s, steady clock), or when the latest step was taken. From any thread."""
+        instant, lease = self._instant, self._lease
+        fraction = instant.fraction if now is None else instant.fraction_at(now, lease)
+        before, after = instant.previous.time, instant.state.time
+        poses = between(instant.previous, instant.state, fraction)
+        return Seen(
+            {name: (pose.position, pose.orientation) for name, pose in zip(instant.names, poses, strict=True)},
+            before + (after - before) * fraction,
+            self.moving,
+        )
 
-    def pose(self) -> tuple[Triple, Quaternion] | None:
-        """Position and orientation of the stone as shown."""
-        return None if self.simulation is None else self.simulation.interpolated(self.fraction)
+    def latest(self) -> Seen:
+        """Where the stones are at the latest step. From any thread."""
+        instant = self._instant
+        poses = {
+            name: (body.position, body.orientation)
+            for name, body in zip(instant.names, instant.state.bodies, strict=True)
+        }
+        return Seen(poses, instant.state.time, self.moving)
+
+    def states(self) -> dict[str, BodyState]:
+        """How each stone moves at the latest step, by its id. From any thread."""
+        return dict(zip(self._instant.names, self._instant.state.bodies, strict=True))
+
+    def motions(self) -> dict[str, Literal["paused", "falling", "asleep"]]:
+        """What each stone does, by its id. From any thread."""
+        instant, falling = self._instant, self.falling
+        return {
+            name: "asleep" if body.asleep else "falling" if falling and not body.held else "paused"
+            for name, body in zip(instant.names, instant.state.bodies, strict=True)
+        }
 
     def snapshot(self) -> dict[str, Any] | None:
         """What the scene and `fraction` do not say."""
-        return None if self.simulation is None else self.simulation.snapshot()
+        return self.world.snapshot() if self.world.bodies else None
 
-    def follow(self, scene: Scene) -> None:
-        """Go on from where the stone is by the scene's settings; InputError, and nothing changed, if it cannot."""
+    def follow(self, stage: Stage, states: Mapping[str, BodyState] | None = None) -> None:
+        """Go on by another stage: stones come and go, or are put elsewhere, and the others move on as they did.
+
+        A stone that comes begins as `states` has it by its id, or else at its start.
+
+        A stone is put to its start that has another one, or another shape or scale. If no stone goes on with the shape
+        that it had, all begin anew. InputError, and nothing changed, if the stones cannot be so.
+        """
+        if _moved_by(stage) == _moved_by(self._stage):
+            self._stage = stage
+            return
         was_moving = self.moving
-        if self.simulation is not None:
-            self.simulation.adjust(SimulationSettings.of(scene, scene.stones[0], self.simulation.body.shape))
-            self.simulation.surround(surfaces_of(scene))
-        if scene.simulation.time_step != self.clock.time_step:
-            self.clock = _clock(scene.simulation.time_step, self.fraction)
+        bodies = {body.name: body for body in bodies_of(stage)}
+        if any(body.name in bodies and _same_form(body, bodies[body.name]) for body in self.world.bodies):
+            self._adapt(stage, bodies, states or {})
+        else:
+            self.replace(stage)
+            for name, state in (states or {}).items():
+                self.world.remove(name)
+                self.world.add(bodies[name], state)
+        self._stage = stage
+        time_step = stage.scene.simulation.time_step
+        if time_step != self.clock.time_step:
+            self.clock = _clock(time_step, self.fraction)
         if not was_moving:
-            self.pause()  # the time that it rested is not made up for
+            self.pause()  # the time that they rested is not made up for
+        self._write_down()
 
-    def place(self, stage: Stage) -> None:
-        """Put a stone, or none, to where the scene has it; it falls on from there if one was falling."""
-        self.simulation = _simulation(stage)
-        self.pause()
-        self.clock.restart()
-
-    def reset(self) -> None:
-        """Put the stone back to where it started, and stop it."""
-        if self.simulation is not None:
-            self.simulation.reset()
+    def replace(self, stage: Stage) -> None:
+        """Begin anew with the stones of a stage, at rest where the scene has them."""
+        self.world = world_of(stage)
+        self._stage = stage
+        self.clock = FixedStepClock(stage.scene.simulation.time_step)
         self.stop()
 
+    def reset(self, name: str | None = None) -> None:
+        """Put all stones, or one, back to where they started, and stop them; InputError without that stone."""
+        self.world.reset(name)
+        if name is not None and self.moving and len(self.world.bodies) > 1:
+            self.world.hold(name, held=True)
+            self._write_down()
+        else:
+            self.stop()
+
     def set_falling(self, falling: bool) -> None:
-        """Start or pause free fall; InputError without a stone."""
-        simulation = self._stone("fall")
+        """Let time go on, or not; InputError without a stone."""
+        self._check_stones("fall")
         if falling:
-            simulation.prepare()
+            self.world.prepare()
         self.falling = falling
         self.pause()
+        self._write_down()
 
-    def toggle_fall(self) -> None:
-        """Start or pause free fall. A stone that sleeps, or has not moved yet, is dropped from where the scene has it,
-        and from above there if it stands on the floor. InputError without a stone."""
-        simulation, was_falling = self._stone("fall"), self.falling
-        if self.asleep or (simulation.at_start and not was_falling):
+    def toggle_fall(self, name: str | None = None) -> None:
+        """Start or pause the fall of all stones, or of one; InputError without any, or without that one.
+
+        Stones that all sleep, or of which none has moved yet, are dropped from where the scene has them, and from above
+        there if they stand on the floor. Of several, one is held where it is, or let go; one that sleeps is dropped.
+        """
+        self._check_stones("fall")
+        if name is not None and len(self.world.bodies) > 1:
+            self._toggle_one(name)
+            return
+        if name is not None:
+            self.world.number(name)
+        was_falling = self.falling
+        if self.asleep or (self.world.at_start and not was_falling):
             self.stop()
-            simulation.drop()
+            self.world.drop()
             was_falling = False
+        if not was_falling:
+            for body in self.world.bodies:
+                self.world.hold(body.name, held=False)
         self.set_falling(not was_falling)
 
-    def push(self, point: Triple, velocity: Triple) -> None:
-        """Strike the stone at a point of the world (R) so that its centre's velocity changes by `velocity` (R/s), and
-        let time go on. InputError without a stone, or if the blow is too strong."""
-        simulation, was_moving = self._stone("be pushed"), self.moving
-        a, b, c = (component * simulation.body.mass for component in velocity)
-        simulation.push((a, b, c), point)
+    def push(self, name: str, point: Triple, velocity: Triple) -> None:
+        """Strike a stone at a point of the world (R) so that its centre's velocity changes by `velocity` (R/s), and let
+        time go on. InputError without that stone, or if the blow is too strong."""
+        was_moving = self.moving
+        body = self.world.bodies[self.world.number(name)]
+        x, y, z = (component * body.mass for component in velocity)
+        self.world.push(name, (x, y, z), point)
         self.falling = True
         if not was_moving:
             self.pause()
+        self._write_down()
 
     def advance(self, now: float, share: float = 1.0) -> bool:
         """Simulate up to `now`, in seconds of a steady clock, in fixed steps; whether there was anything to move.
 
         Steps may take their part of the `share` of the time that the session can have beside others. Steps that take
-        too long are given up (`Allowance`). If one fails, the stone stops, and the error is raised.
+        too long are given up (`Allowance`). If one fails, the stones stop, and the error is raised.
         """
-        if self.simulation is None or not self.moving:
+        if not self.moving:
             return False
-        elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
-        self._advanced_at = now
-        try:
-            self._step(self.simulation, elapsed, share)
-        except Exception:
-            self.stop()
-            raise
+        self._advance_to(now, share)
         return True
+
+    def look_on(self, now: float, share: float) -> bool:
+        """Somebody sees the stones at `now`, so that steps are to be taken for MAX_CATCH_UP seconds from then; whether
+        there are any to take."""
+        if not self.moving:
+            return False
+        lease = self._lease
+        if lease is None:
+            self._lease = Lease(now, now + MAX_CATCH_UP, 0.0, share)
+        else:
+            self._lease = Lease(lease.since, now + MAX_CATCH_UP, lease.lost + max(now - lease.until, 0.0), share)
+        return True
+
+    def run(self, now: float) -> float | None:
+        """Take the steps that are due at `now` by the lease; when the next is due, or None if none will be.
+
+        If one fails, the stones stop, and `problem` says why.
+        """
+        if not self._guard.acquire(blocking=False):  # it is being changed, which may take seconds
+            return now + self.clock.time_step
+        try:
+            lease = self._lease
+            if lease is None or not self.moving:
+                return None
+            if lease.since != self._followed:
+                self._followed, self._advanced_at, self._lost = lease.since, lease.since, 0.0
+            lost, self._lost = lease.lost - self._lost, lease.lost
+            self.clock.lose(lost)
+            self.pace.passed(lost, self.clock.dropped)
+            end = min(now, lease.until)
+            try:
+                self._advance_to(end - lease.lost, lease.share)
+            except Exception as error:  # the stones have stopped
+                self.problem = error
+                return None
+            due = end + (1 - self.fraction + LATE) * self.clock.time_step
+            return due if due < lease.until else None  # the next run finds out whether all sleep
+        finally:
+            self._guard.release()
+
+    def take_spent(self) -> float:
+        """s of the processor that steps have taken since this was asked last."""
+        spent, self._spent = self._spent, 0.0
+        return spent
+
+    def take_problem(self) -> Exception | None:
+        """`problem`, which is known from then on."""
+        problem, self.problem = self.problem, None
+        return problem
 
     def pause(self) -> None:
         """Time that passes until the next look at the clock is not made up for, nor is any lost."""
-        self._advanced_at = None
+        self._advanced_at = self._lease = None
 
     def stop(self) -> None:
         """Nothing falls any more; what was put by of a step is forgotten."""
         self.falling = False
         self.pause()
         self.clock.restart()
+        self._write_down()
 
-    def _step(self, simulation: Simulation, elapsed: float, share: float) -> None:
+    def _adapt(self, stage: Stage, wanted: Mapping[str, Body], states: Mapping[str, BodyState]) -> None:
+        world, saved = self.world, self.world.snapshot()
+        bodies, surfaces, law = world.bodies, world.surfaces, world.law
+        anew = [body.name for body in bodies if body.name in wanted and _begins_anew(body, wanted[body.name])]
+        try:
+            world.adjust(stage.scene.simulation)
+            world.surround(surfaces_of(stage.scene))
+            for gone in [body.name for body in bodies if body.name not in wanted]:
+                world.remove(gone)
+            for body in wanted.values():
+                self._fit(body, states.get(body.name))
+            if len(anew) == len(wanted):
+                world.reset()
+                self.pause()
+                self.clock.restart()
+            else:
+                for name in anew:
+                    world.reset(name)
+        except Exception:
+            self.world = World(bodies, surfaces, law)
+            self.world.restore(saved)
+            self._write_down()
+            raise
+
+    def _fit(self, body: Body, state: BodyState | None) -> None:
+        """Make a stone of the world what it is to be, or add it in that state."""
+        old = next((each for each in self.world.bodies if each.name == body.name), None)
+        if old is None:
+            self.world.add(body, state)
+        elif not old.like(body) or _begins_anew(old, body):
+            self.world.change(body)
+
+    def _toggle_one(self, name: str) -> None:
+        world = self.world
+        now = world.state.bodies[world.number(name)]
+        if not self.falling:  # this one alone is to fall
+            for body in world.bodies:
+                world.hold(body.name, held=body.name != name)
+            if now.asleep or world.at_start:
+                world.drop(name)
+            self.set_falling(True)
+            return
+        if now.held:
+            world.hold(name, held=False)
+        elif now.asleep:
+            world.drop(name)
+        else:
+            world.hold(name, held=True)
+        self._write_down()
+
+    def _check_stones(self, verb: str) -> None:
+        if not self.world.bodies:
+            raise InputError(f"expected a scene with a stone, got none: nothing can {verb}")
+
+    def _advance_to(self, now: float, share: float) -> None:
+        elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
+        self._advanced_at = now
+        try:
+            self._step(elapsed, share)
+        except Exception:
+            self.stop()
+            raise
+        self._write_down()
+
+    def _step(self, elapsed: float, share: float) -> None:
         self._allowance.grow(elapsed, share)
         due = self.clock.advance(elapsed)
         for taken in range(due):
@@ -155,18 +416,49 @@ class Motion:
                 self.clock.drop(due - taken)
                 break
             begun = self._timer()
-            simulation.step()
-            self._allowance.spend(self._timer() - begun)
+            self.world.step()
+            seconds = self._timer() - begun
+            self._spent += seconds
+            self._allowance.spend(seconds)
         self.pace.passed(elapsed, self.clock.dropped)
 
-    def _stone(self, verb: str) -> Simulation:
-        if self.simulation is None:
-            raise InputError(f"expected a scene with a stone, got none: nothing can {verb}")
-        return self.simulation
+    def _write_down(self) -> None:
+        """The latest states, for those who look on."""
+        world = self.world
+        self._instant = Instant(
+            names=tuple(body.name for body in world.bodies),
+            previous=world.previous,
+            state=world.state,
+            settled=world.settled,
+            fraction=self.clock.fraction,
+            time_step=self.clock.time_step,
+            at=0.0 if self._advanced_at is None else self._advanced_at,
+            lease=self._lease,
+        )
 
 
-def _simulation(stage: Stage) -> Simulation | None:
-    return Simulation.of(stage) if stage.shapes else None
+def _moved_by(stage: Stage) -> object:
+    """What motion depends on."""
+    scene = stage.scene
+    return scene.stones, stage.shapes, scene.simulation, surfaces_of(scene), scene.millimetres
+
+
+def _same_form(one: Body, other: Body) -> bool:
+    return one.shape is other.shape and one.scale == other.scale
+
+
+def _begins_anew(old: Body, new: Body) -> bool:
+    """Whether a stone is to be put to its start."""
+    starts = [(body.position, body.orientation, body.velocity, body.spin) for body in (old, new)]
+    return starts[0] != starts[1] or not _same_form(old, new)
+
+
+def _in_order(world: World, names: object) -> World:
+    """The same bodies in the order of a snapshot's, if those are the same."""
+    bodies = {body.name: body for body in world.bodies}
+    if not isinstance(names, list) or sorted(map(str, names)) != sorted(bodies) or list(bodies) == names:
+        return world
+    return World([bodies[name] for name in names], world.surfaces, world.law)
 
 
 def _clock(time_step: float, fraction: float = 0.0) -> FixedStepClock:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from culet.engine.session.viewpoint import axes, half_height
 from culet.geometry.shape import Shape
 from culet.scene import Camera, Vector
-from culet.simulation.rotation import rotate_back
+from culet.simulation.rotation import rotate, rotate_back
 from culet.simulation.state import Quaternion, Triple
+from culet.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -38,6 +39,21 @@ class Struck(NamedTuple):
     """The stone's id."""
     point: Triple
     """R, in the world."""
+
+
+def placed(stage: Stage) -> list[Placed]:
+    """The stones of a stage where its scene has them."""
+    return [
+        Placed(stone.id, shape, stone.scale, stone.position, stone.orientation)
+        for stone, shape in zip(stage.scene.stones, stage.shapes, strict=True)
+    ]
+
+
+def corners(stone: Placed) -> Array:
+    """(V, 3) corners of a stone in the world, R."""
+    turn = np.array([rotate(stone.orientation, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))])
+    placed: Array = stone.scale * (stone.shape.vertices @ turn) + np.array(stone.position, float)
+    return placed
 
 
 def struck(camera: Camera, stones: Iterable[Placed], x: float, y: float) -> Struck | None:

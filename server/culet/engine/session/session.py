@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import thread_time
 from typing import Any
 
 from culet.engine.session.history import History, Past
-from culet.engine.session.motion import Motion
-from culet.engine.session.picking import Placed, struck
+from culet.engine.session.motion import Motion, Seen
+from culet.engine.session.picking import placed, struck
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
@@ -101,56 +101,56 @@ class Session:
     def change(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """Show this stage by its camera; `home` is where a reset takes the camera, by default where it was.
 
-        The stone goes on from where it is, by the scene's settings. `sky` is that of a stage with an environment of its
-        own. InputError, and nothing changed, if the stone cannot have these settings.
+        The stones go on as `Motion.follow` has it. `sky` is that of a stage with an environment of its own. InputError,
+        and nothing changed, if the stones cannot be so.
         """
-        self.motion.follow(stage.scene)
+        self.motion.follow(stage)
+        self._take(stage, home, sky)
+
+    def replace(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
+        """As `change`, but all stones begin anew: at rest where the scene has them."""
+        self.motion.replace(stage)
+        self._take(stage, home, sky)
+
+    def _take(self, stage: Stage, home: Camera | None, sky: Sky | None) -> None:
         self.stage = stage
         self.home = home or self.home
         self.sky = sky or self.sky
         self._show()
-
-    def start_anew(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
-        """As `change`, with the stone put to the scene's start, from where it falls at once if it was falling."""
-        self.motion.place(stage)
-        self.change(stage, home=home, sky=sky)
-
-    def replace_stones(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
-        """As `change`, with another stone, or none: at rest where the scene has it."""
-        self.motion.place(stage)
-        self.motion.stop()
-        self.change(stage, home=home, sky=sky)
 
     def set_falling(self, falling: bool) -> None:
         """Start or pause free fall; InputError if there is nothing to fall."""
         self.motion.set_falling(falling)
         self._show()
 
-    def toggle_fall(self) -> None:
+    def toggle_fall(self, name: str | None = None) -> None:
         """As `Motion.toggle_fall`."""
-        self.motion.toggle_fall()
+        self.motion.toggle_fall(name)
         self._show()
+
+    def pick(self, x: float, y: float) -> str | None:
+        """The id of the stone that is seen at a point of the picture (halves of its height); None if there is none."""
+        met = struck(self.scene.camera, placed(self.shown.stage), x, y)
+        return None if met is None else met.name
 
     def push(self, x: float, y: float, right: float, up: float) -> None:
         """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.
 
-        Time goes on, if the stone is hit. InputError if there is no stone, or the blow is too strong.
+        Time goes on, if a stone is hit. InputError if there is no stone, or the blow is too strong.
         """
-        if self.motion.simulation is None:
+        if not self.scene.stones:
             raise InputError("expected a scene with a stone, got none: nothing can be pushed")
-        state = self.motion.simulation.state
-        stones = [Placed("", shape, 1.0, state.position, state.orientation) for shape in self.stage.shapes]
-        met = struck(self.scene.camera, stones, x, y)
+        met = struck(self.scene.camera, placed(self._posed(self.motion.latest())), x, y)
         if met is None:
             return
         right_axis, up_axis, _ = axes(self.scene.camera)
         a, b, c = (right * right_axis + up * up_axis).tolist()
-        self.motion.push(met.point, (a, b, c))
+        self.motion.push(met.name, met.point, (a, b, c))
         self._show()
 
-    def reset_stone(self) -> None:
-        """Put the stone back to where the scene has it, and stop it."""
-        self.motion.reset()
+    def reset_stone(self, name: str | None = None) -> None:
+        """Put all stones, or one, back to where the scene has them, and stop them."""
+        self.motion.reset(name)
         self._show()
 
     def advance(self, now: float, share: float = 1.0) -> None:
@@ -211,12 +211,23 @@ class Session:
         stone = self.shown.scene.stones[0]
         return {"position": stone.position, "orientation": stone.orientation}
 
-    def _show(self) -> None:
-        look = self._look(step=self.shown.step)
-        if look != self.shown:
-            self.shown = self._look(step=self.shown.step + 1)
+    def look(self, now: float) -> None:
+        """Show where the stones are at `now`, in seconds of a steady clock; waits for no step.
 
-    def _look(self, step: int) -> Shown:
-        pose = self.motion.pose()
-        stage = self.stage if pose is None else self.stage.posed([pose])
-        return Shown(step, stage, self.motion.time, self.motion.moving)
+        Of stones that do not move nothing changes, not even the time shown: another time would be another picture, to
+        be drawn anew.
+        """
+        if self.motion.moving or self.shown.moving:
+            self._show(now)
+
+    def _show(self, now: float | None = None) -> None:
+        look = self._look(self.shown.step, now)
+        if look != self.shown:
+            self.shown = replace(look, step=self.shown.step + 1)
+
+    def _look(self, step: int, now: float | None = None) -> Shown:
+        seen = self.motion.seen(now)
+        return Shown(step, self._posed(seen), seen.time, seen.moving)
+
+    def _posed(self, seen: Seen) -> Stage:
+        return self.stage.posed(seen.poses[stone.id] for stone in self.scene.stones)

@@ -6,6 +6,7 @@ Lengths are in R, angles in radians. y is up for lights, the camera's own `up` f
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,17 +48,26 @@ def dolly(camera: Camera, forward: float) -> Camera:
     return _placed(camera, target + offset * (wanted / distance), target, camera.height * wanted / distance)
 
 
-def look_at(camera: Camera, point: Vector) -> Camera:
-    """The camera moved, not turned, to where it has a stone about this point in the middle and sees all its height.
+def ball_about(balls: Sequence[tuple[Vector, float]]) -> tuple[Vector, float]:
+    """Centre and radius (R) of a ball that holds balls given by theirs, at most sqrt 3 times as large as need be."""
+    if len(balls) == 1:  # to the bit
+        return balls[0]
+    centres, radii = np.array([centre for centre, _ in balls]), np.array([[radius] for _, radius in balls])
+    middle = ((centres - radii).min(axis=0) + (centres + radii).max(axis=0)) / 2
+    return _vector(middle), float((np.linalg.norm(centres - middle, axis=1) + radii[:, 0]).max())
+
+
+def look_at(camera: Camera, point: Vector, radius: float = 1.0) -> Camera:
+    """The camera moved, not turned, to where it has a ball about this point in the middle and sees all its height.
 
     So there is no line of sight that it cannot have, and a stone that went far away is as large as before.
     """
     offset = np.array(camera.position, float) - np.array(camera.target, float)
     distance = float(np.linalg.norm(offset))
-    # R, by which the stone's ball touches both edges
-    least = 1 / math.sin(math.radians(camera.fov_degrees) / 2) if camera.kind == "pinhole" else 0.0
+    # R, by which the ball touches both edges
+    least = radius / math.sin(math.radians(camera.fov_degrees) / 2) if camera.kind == "pinhole" else 0.0
     target = np.array(point, float)
-    return _placed(camera, target + offset * (max(distance, least) / distance), target, max(camera.height, 2.0))
+    return _placed(camera, target + offset * (max(distance, least) / distance), target, max(camera.height, 2 * radius))
 
 
 def axes(camera: Camera) -> tuple[Array, Array, Array]:

@@ -62,7 +62,7 @@ CULET_API int32_t culet_interface(void);
 CULET_API CuletWorld *culet_world_new(int32_t capacity);
 CULET_API void culet_world_free(CuletWorld *world);
 
-/* These wake all stones. */
+/* These wake all stones, as do `remove`, `set_body`, `set_state` and `hold`: what slept may have lost what carried it. */
 CULET_API void culet_world_set_law(CuletWorld *world, const CuletLaw *law);
 CULET_API void culet_world_set_surfaces(CuletWorld *world, int32_t count, const double *planes); /* (count, 4) */
 
@@ -72,7 +72,7 @@ CULET_API int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, cons
 CULET_API void culet_world_remove(CuletWorld *world, int32_t number);
 /* Another mass, inertia, restitution or friction; velocity and spin stay. */
 CULET_API void culet_world_set_body(CuletWorld *world, int32_t number, const CuletBody *body);
-/* Another pose, velocity and angular momentum; `spin` is not read. Wakes the body, and what slept with it. */
+/* Another pose, velocity and angular momentum; `spin` is not read. */
 CULET_API void culet_world_set_state(CuletWorld *world, int32_t number, const CuletState *state);
 /* A body that is held does not move, and stops what touches it. */
 CULET_API void culet_world_hold(CuletWorld *world, int32_t number, int32_t held);

@@ -132,20 +132,20 @@ void fall_asleep(World *world, double time) {
     Support support = support_of(world, i);
     if (support == FALLS || (support == LEANS && body->fixed < FIXED_SECONDS)) whole->restless = 1;
   }
-  for (int i = 0; i < world->count; i++) courses[i].still = -1; /* bed of the island */
+  for (int i = 0; i < world->count; i++) courses[i].bed = -1;
   for (int i = 0; i < world->count; i++) {
     Body *body = &world->bodies[i];
     int whole = island(world, i);
     if (body->asleep || body->held || courses[whole].restless) continue;
-    if (courses[whole].still < 0) courses[whole].still = world->beds++;
+    if (courses[whole].bed < 0) courses[whole].bed = world->beds++;
     body->asleep = 1;
-    body->bed = (int32_t)courses[whole].still;
+    body->bed = courses[whole].bed;
     body->velocity = body->angular_momentum = body->spin = ZERO;
   }
   /* sleepers on which others have fallen asleep: from now on one bed */
   for (int i = 0; i < world->count; i++) {
     int whole = island(world, i);
-    int32_t old = world->bodies[i].bed, bed = (int32_t)courses[whole].still;
+    int32_t old = world->bodies[i].bed, bed = courses[whole].bed;
     if (!world->bodies[i].asleep || bed < 0 || old == bed) continue;
     for (int k = 0; k < world->count; k++)
       if (world->bodies[k].asleep && world->bodies[k].bed == old) world->bodies[k].bed = bed;

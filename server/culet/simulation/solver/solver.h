@@ -102,8 +102,8 @@ typedef struct {
   Vec3 shift, turn;                  /* apart from what overlaps */
   int parent;                        /* in its island's tree */
   double gain, scale, square, linear, constant, part;
-  double still;
   int restless;
+  int32_t bed; /* of the island that falls asleep; below 0: it does not */
 } Course;
 
 /* One of the points of a pair. */

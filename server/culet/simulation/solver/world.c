@@ -113,12 +113,7 @@ int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, const CuletBod
 }
 
 void culet_world_remove(CuletWorld *world, int32_t number) {
-  wake_body(world, number);
-  for (int i = 0; i < world->now.manifold_count; i++) { /* what it carried */
-    const Manifold *manifold = &world->now.manifolds[i];
-    if (manifold->body == number && manifold->other != NONE) wake_body(world, manifold->other);
-    if (manifold->other == number) wake_body(world, manifold->body);
-  }
+  culet_world_wake(world); /* what it carried falls */
   hull_free(&world->bodies[number].hull);
   memmove(&world->bodies[number], &world->bodies[number + 1], sizeof(Body) * (size_t)(world->count - number - 1));
   world->count--;
@@ -140,17 +135,17 @@ void culet_world_set_body(CuletWorld *world, int32_t number, const CuletBody *gi
   take_properties(body, given);
   body->angular_momentum = angular_momentum_of(body, spin);
   refresh(body);
-  wake_body(world, number);
+  culet_world_wake(world);
 }
 
 void culet_world_set_state(CuletWorld *world, int32_t number, const CuletState *state) {
   take_state(&world->bodies[number], state);
-  wake_body(world, number);
+  culet_world_wake(world);
 }
 
 void culet_world_hold(CuletWorld *world, int32_t number, int32_t held) {
   Body *body = &world->bodies[number];
-  wake_body(world, number);
+  culet_world_wake(world);
   body->held = held;
   if (held) body->velocity = body->angular_momentum = body->spin = ZERO;
 }

@@ -1,0 +1,88 @@
+import { beforeEach, expect, it } from "vitest";
+import type { SessionEvent } from "./events";
+import { CHOOSE_FIRST, NO_ROOM, NO_STONE, NOTHING_REMOVED, StoneCommands } from "./stone-commands";
+import { INITIAL, type ViewState } from "./view-state";
+
+const RUBY = { id: "ruby", cut: "brilliant", scale: 1, position: [0, 0, 0] };
+const GLASS = { id: "glass", cut: "brilliant", scale: 1, position: [3, 0, 0] };
+let state: ViewState;
+let sent: SessionEvent[];
+let told: string[];
+let commands: StoneCommands;
+
+function scene(...stones: object[]): void {
+  state = { ...state, scene: { stones } };
+}
+
+beforeEach(() => {
+  [sent, told] = [[], []];
+  state = INITIAL;
+  scene(RUBY, GLASS);
+  commands = new StoneCommands({
+    state: () => state,
+    send: (event) => sent.push(event),
+    choose: (stone) => {
+      state = { ...state, stone };
+    },
+    tell: (text) => told.push(text),
+  });
+});
+
+it("adds another like the chosen one, or like the first, and chooses that", () => {
+  commands.add();
+  expect(state.stone).toBe("ruby-2");
+  state = { ...state, stone: "glass" };
+  commands.add();
+  expect(sent[1]).toMatchObject({ type: "patch_scene", patch: { stones: { "glass-2": { id: "glass-2" } } } });
+});
+
+it("removes the chosen stone, and takes removals back one by one", () => {
+  for (const id of ["ruby", "glass"]) {
+    state = { ...state, stone: id };
+    commands.remove();
+  }
+  scene();
+  expect(commands.removals).toBe(2);
+  commands.putBack();
+  commands.putBack();
+  expect(sent.map((event) => event.type === "patch_scene" && event.patch)).toEqual([
+    { stones: { ruby: null } },
+    { stones: { glass: null } },
+    { stones: { glass: GLASS } },
+    { stones: { ruby: RUBY } },
+  ]);
+  commands.putBack();
+  expect(told).toEqual([NOTHING_REMOVED]);
+});
+
+it("removes no stone by guess, but the only one", () => {
+  commands.remove();
+  expect([told, sent]).toEqual([[CHOOSE_FIRST], []]);
+  scene(GLASS);
+  commands.remove();
+  expect(sent).toEqual([{ type: "patch_scene", patch: { stones: { glass: null } } }]);
+});
+
+it("lets what it scatters fall, and goes on with what falls", () => {
+  commands.scatter();
+  state = { ...state, falling: true };
+  commands.scatter();
+  expect(sent.map(({ type }) => type)).toEqual(["patch_scene", "toggle_fall", "patch_scene"]);
+});
+
+it("says why there is nothing to do", () => {
+  scene(...Array.from({ length: 64 }, (_, k) => ({ ...RUBY, id: `${k}` })));
+  commands.add();
+  scene();
+  commands.scatter();
+  commands.remove();
+  expect([told, sent]).toEqual([[NO_ROOM, NO_STONE, NO_STONE], []]);
+});
+
+it("knows nothing of what was removed from another scene", () => {
+  scene(RUBY);
+  commands.remove();
+  commands.forget();
+  commands.putBack();
+  expect(told).toEqual([NOTHING_REMOVED]);
+});

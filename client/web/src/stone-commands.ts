@@ -1,0 +1,94 @@
+/** What a viewer does to the stones of the scene: add, remove, put back, scatter. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+import type { SessionEvent } from "./events";
+import { additionOf, anotherLike, removalOf, scatterPatch } from "./stone-edits";
+import { idsOf, MOST_STONES, stoneOf, stonesOf } from "./stones";
+import type { ViewState } from "./view-state";
+
+export interface StoneWorld {
+  state: () => ViewState;
+  send: (event: SessionEvent) => void;
+  choose: (id: string | null) => void;
+  /** What the user should know. */
+  tell: (text: string) => void;
+}
+
+export const CHOOSE_FIRST = "Choose a stone first: click it, or take it from the panel's list.";
+export const NO_STONE = "There is no stone.";
+export const NO_ROOM = `A scene has at most ${MOST_STONES} stones.`;
+export const NOTHING_REMOVED = "You have removed no stone.";
+/** So many removals can be taken back. */
+const REMEMBERED = 100;
+
+export class StoneCommands {
+  private readonly world: StoneWorld;
+  private readonly removed: JsonObject[] = [];
+
+  constructor(world: StoneWorld) {
+    this.world = world;
+  }
+
+  /** How many stones can be put back. */
+  get removals(): number {
+    return this.removed.length;
+  }
+
+  add(): void {
+    const { scene, stone } = this.world.state();
+    if (stonesOf(scene).length >= MOST_STONES) {
+      this.world.tell(NO_ROOM);
+      return;
+    }
+    this.bring(anotherLike(scene, stone ?? undefined));
+  }
+
+  remove(): void {
+    const { scene, stone } = this.world.state();
+    const ids = idsOf(scene);
+    const id = stone ?? (ids.length === 1 ? ids[0] : undefined);
+    if (id === undefined) {
+      this.world.tell(ids.length > 0 ? CHOOSE_FIRST : NO_STONE);
+      return;
+    }
+    this.removed.push(stoneOf(scene, id));
+    if (this.removed.length > REMEMBERED) this.removed.shift();
+    this.world.choose(null);
+    this.patch(removalOf(id));
+  }
+
+  /** The stone that was removed last. */
+  putBack(): void {
+    const stone = this.removed.pop();
+    if (!stone) {
+      this.world.tell(NOTHING_REMOVED);
+      return;
+    }
+    this.bring(additionOf(this.world.state().scene, stone));
+  }
+
+  /** All stones into the air, from where they fall. */
+  scatter(): void {
+    const { scene, falling } = this.world.state();
+    if (stonesOf(scene).length === 0) {
+      this.world.tell(NO_STONE);
+      return;
+    }
+    this.patch(scatterPatch(scene));
+    if (!falling) this.world.send({ type: "toggle_fall" });
+  }
+
+  /** Another scene was opened: what was removed from the one before is not its. */
+  forget(): void {
+    this.removed.length = 0;
+  }
+
+  private bring({ id, patch }: { id: string; patch: JsonObject }): void {
+    this.patch(patch);
+    this.world.choose(id);
+  }
+
+  private patch(patch: JsonObject): void {
+    this.world.send({ type: "patch_scene", patch });
+  }
+}
