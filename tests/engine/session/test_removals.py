@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from culet.engine.session.removals import REMEMBERED, Removals, RemovedStone, removal_of, with_returned
+from culet.engine.session.removals import REMEMBERED, Removal, Removals, RemovedStone, removal_of, with_returned
 from culet.errors import InputError, SceneError
 from culet.scene import Scene
 from culet.simulation.bodies import BodyState
@@ -61,9 +61,9 @@ def test_the_last_removal_is_taken_back_first_and_none_twice() -> None:
     removals = Removals()
     for name in ("glass", "ruby"):
         removals.add(removal_of(SCENE, without(name), {}))
-    assert [stone.settings.id for stone in removals.last] == ["ruby"]
+    assert [stone.settings.id for stone in removals.last.stones] == ["ruby"]
     removals.take_back()
-    assert [stone.settings.id for stone in removals.last] == ["glass"]
+    assert [stone.settings.id for stone in removals.last.stones] == ["glass"]
     removals.take_back()
     with pytest.raises(InputError, match="expected a removal to take back"):
         _ = removals.last
@@ -74,9 +74,9 @@ def test_an_event_that_removes_nothing_is_none_and_the_oldest_are_forgotten() ->
     removals.add(removal_of(SCENE, SCENE, {}))
     assert len(removals) == 0
     for number in range(REMEMBERED + 5):
-        removals.add((RemovedStone(number, SCENE.stones[0]),))
+        removals.add(Removal((RemovedStone(number, SCENE.stones[0]),)))
     assert len(removals) == REMEMBERED
-    assert removals.last[0].place == REMEMBERED + 4
+    assert removals.last.stones[0].place == REMEMBERED + 4
 
 
 def test_meshes_of_stones_that_may_come_back_are_known() -> None:

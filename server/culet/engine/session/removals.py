@@ -26,8 +26,14 @@ class RemovedStone:
     """Where it was and how it moved; None of a stone at its start."""
 
 
-Removal = tuple[RemovedStone, ...]
-"""What one event took away, in the scene's order."""
+@dataclass(frozen=True)
+class Removal:
+    """What one event took away."""
+
+    stones: tuple[RemovedStone, ...]
+    """In the scene's order."""
+    falling: bool = False
+    """Time went on for the stones."""
 
 
 class Removals:
@@ -42,7 +48,7 @@ class Removals:
 
     def add(self, removal: Removal) -> None:
         """An event took these stones away; if it took none, nothing changes."""
-        if removal:
+        if removal.stones:
             self._removals.append(removal)
 
     @property
@@ -62,19 +68,19 @@ class Removals:
 
     def meshes(self) -> set[str]:
         """Ids of the meshes that stones need which may come back."""
-        return {
-            stone.settings.mesh for removal in self._removals for stone in removal if stone.settings.mesh is not None
-        }
+        stones = (stone.settings for removal in self._removals for stone in removal.stones)
+        return {stone.mesh for stone in stones if stone.mesh is not None}
 
 
-def removal_of(before: Scene, after: Scene, states: Mapping[str, BodyState]) -> Removal:
+def removal_of(before: Scene, after: Scene, states: Mapping[str, BodyState], *, falling: bool = False) -> Removal:
     """The stones that a change of the scene takes away; `states` are those of before, by the ids of their stones."""
     kept = {stone.id for stone in after.stones}
-    return tuple(
+    stones = tuple(
         RemovedStone(place, stone, states.get(stone.id))
         for place, stone in enumerate(before.stones)
         if stone.id not in kept
     )
+    return Removal(stones, falling)
 
 
 def with_returned(scene: Scene, removal: Removal) -> tuple[Scene, dict[str, BodyState]]:
@@ -85,7 +91,7 @@ def with_returned(scene: Scene, removal: Removal) -> tuple[Scene, dict[str, Body
     """
     stones = list(scene.stones)
     states: dict[str, BodyState] = {}
-    for removed in removal:
+    for removed in removal.stones:
         name = new_id((stone.id for stone in stones), removed.settings.id)
         stones.insert(removed.place, removed.settings.model_copy(update={"id": name}))
         if removed.state is not None:
