@@ -7,7 +7,7 @@ what is shown a new step number whenever it differs from before.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from time import thread_time
 from typing import Any
@@ -15,12 +15,11 @@ from typing import Any
 from culet.engine.session.history import History, Past
 from culet.engine.session.motion import Motion, Seen
 from culet.engine.session.picking import placed, struck
-from culet.engine.session.removals import Removals, removal_of, with_returned
+from culet.engine.session.removals import Removals
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
 from culet.scene import Camera, Scene
-from culet.simulation.bodies import BodyState
 from culet.stage import Sky, Stage
 from culet_protocol.engine import SessionState
 from culet_protocol.messages import BALANCED, Balance
@@ -67,7 +66,7 @@ class Session:
         """Of the frame sent last."""
         self.history = History(history)
         self.removals = Removals()
-        """Of stones, which can be taken back."""
+        """Stones that may come back."""
         self.motion = Motion(stage, timer=timer)
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
@@ -101,37 +100,20 @@ class Session:
         """That of the stage."""
         return self.stage.scene
 
-    def change(
-        self,
-        stage: Stage,
-        *,
-        home: Camera | None = None,
-        sky: Sky | None = None,
-        states: Mapping[str, BodyState] | None = None,
-    ) -> None:
+    def change(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """Show this stage by its camera; `home` is where a reset takes the camera, by default where it was.
 
-        The stones go on as `Motion.follow` has it; stones that come begin as `states` has them by their ids. `sky` is
-        that of a stage with an environment of its own. InputError, and nothing changed, if the stones cannot be so.
+        The stones go on as `Motion.follow` has it. A stone that was removed, and comes again with the settings that it
+        had, goes on from where and as it was. `sky` is that of a stage with an environment of its own. InputError, and
+        nothing changed, if the stones cannot be so.
         """
-        removal = removal_of(self.scene, stage.scene, self.motion.states(), falling=self.motion.falling)
-        self.motion.follow(stage, states)
-        self.removals.add(removal)
+        before, states, falling = self.scene, self.motion.states(), self.motion.falling
+        returning = self.removals.returning(before, stage.scene)
+        self.motion.follow(stage, {name: stone.state for name, stone in returning.items()})
+        self.removals.changed(before, stage.scene, states, falling=falling)
+        if not before.stones and any(stone.falling for stone in returning.values()):
+            self.motion.set_falling(True)
         self._take(stage, home, sky)
-
-    def take_back_removal(self, stage_of: Callable[[Scene], Stage]) -> None:
-        """Put back the stones that the last removal took away, as they were; InputError if there is none to take back,
-        or no room for them.
-
-        `stage_of` makes the stage of a scene.
-        """
-        removal = self.removals.last
-        alone = not self.scene.stones
-        scene, states = with_returned(self.scene, removal)
-        self.change(stage_of(scene), states=states)
-        self.removals.take_back()
-        if alone and removal.falling:
-            self.set_falling(True)
 
     def replace(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """As `change`, but all stones begin anew, at rest where the scene has them. Removals are forgotten."""
