@@ -119,7 +119,7 @@ async def test_readers_of_both_kinds_at_once_share_the_memory(monkeypatch: pytes
         assert memory.free >= 0
         raise InputError("none")
 
-    monkeypatch.setattr(uploads, "read_upload", read)
+    monkeypatch.setattr(upload_store, "read_upload", read)
     mesh, sky = UploadStore(MESH, Limits(), memory), UploadStore(SKY, Limits(), memory)
     async with asyncio.timeout(10):
         results = await asyncio.gather(mesh.put("a", "off", b"1"), sky.put("b", "png", b"2"), return_exceptions=True)

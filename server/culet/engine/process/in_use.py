@@ -11,10 +11,11 @@ from culet.stage import uploads_of
 
 
 def uploads_in_use(pictures: Iterable[LivePicture], stills: Iterable[Still]) -> set[str]:
-    """Ids of the meshes and skies that sessions show, or would go back to, and that stills wait for."""
+    """Ids of the meshes and skies that sessions show or would go back to, that removed stones would come back with, and
+    that stills wait for."""
     used = set[str]()
     for live in pictures:
-        used |= uploads_of(live.session.stage.scene, live.session.sky.environment)
+        used |= uploads_of(live.session.stage.scene, live.session.sky.environment) | live.session.removals.meshes()
         if live.painted is not None:
             used |= live.painted.stage.uses()
     for still in stills:

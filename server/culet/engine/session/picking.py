@@ -52,8 +52,9 @@ def placed(stage: Stage) -> list[Placed]:
 def corners(stone: Placed) -> Array:
     """(V, 3) corners of a stone in the world, R."""
     turn = np.array([rotate(stone.orientation, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))])
-    placed: Array = stone.scale * (stone.shape.vertices @ turn) + np.array(stone.position, float)
-    return placed
+    turned: Array = stone.shape.vertices @ turn
+    found: Array = stone.scale * turned + np.array(stone.position, float)
+    return found
 
 
 def struck(camera: Camera, stones: Iterable[Placed], x: float, y: float) -> Struck | None:

@@ -15,6 +15,7 @@ from typing import Any
 from culet.engine.session.history import History, Past
 from culet.engine.session.motion import Motion, Seen
 from culet.engine.session.picking import placed, struck
+from culet.engine.session.removals import Removals
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
@@ -64,6 +65,8 @@ class Session:
         self.sequence = 0
         """Of the frame sent last."""
         self.history = History(history)
+        self.removals = Removals()
+        """Stones that may come back."""
         self.motion = Motion(stage, timer=timer)
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
@@ -101,15 +104,22 @@ class Session:
     def change(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
         """Show this stage by its camera; `home` is where a reset takes the camera, by default where it was.
 
-        The stones go on as `Motion.follow` has it. `sky` is that of a stage with an environment of its own. InputError,
-        and nothing changed, if the stones cannot be so.
+        The stones go on as `Motion.follow` has it. A stone that was removed, and comes again with the settings that it
+        had, goes on from where and as it was. `sky` is that of a stage with an environment of its own. InputError, and
+        nothing changed, if the stones cannot be so.
         """
-        self.motion.follow(stage)
+        before, states, falling = self.scene, self.motion.states(), self.motion.falling
+        returning = self.removals.returning(before, stage.scene)
+        self.motion.follow(stage, {name: stone.state for name, stone in returning.items()})
+        self.removals.changed(before, stage.scene, states, falling=falling)
+        if not before.stones and any(stone.falling for stone in returning.values()):
+            self.motion.set_falling(True)
         self._take(stage, home, sky)
 
     def replace(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
-        """As `change`, but all stones begin anew: at rest where the scene has them."""
+        """As `change`, but all stones begin anew, at rest where the scene has them. Removals are forgotten."""
         self.motion.replace(stage)
+        self.removals.clear()
         self._take(stage, home, sky)
 
     def _take(self, stage: Stage, home: Camera | None, sky: Sky | None) -> None:

@@ -2,9 +2,10 @@
  *
  * Two convex polyhedra are apart just if a face normal of one of them, or the cross product of two edges, separates
  * them; the largest signed distance over these axes is, when negative, the least depth by which they can be moved out of
- * each other (Gottschalk 1996). Faces that cannot be the best are left out by the sphere that the other hull holds; edges
- * by their place: only those that reach beyond the best face planes of the other can touch, and of these only pairs
- * whose arcs on the Gauss map cross are edges of the Minkowski difference (Gregorius 2013). */
+ * each other (Gottschalk 1996). Faces that cannot be the best are left out by the sphere that the other hull holds, and
+ * by one of its vertices, which is no nearer to the face than the nearest; edges by their place: only those that reach
+ * beyond the best face planes of the other can touch, and of these only pairs whose arcs on the Gauss map cross are edges
+ * of the Minkowski difference (Gregorius 2013). */
 #include "solver.h"
 
 #define PARALLEL 1e-8 /* sine between edges: their cross product would have lost half its digits */
@@ -20,31 +21,32 @@ static double best_face(const Hull *first, const Hull *second, const Mat3 *turn,
     if (room->heights[i] > room->heights[highest]) highest = i;
   }
   double best = -INFINITY;
+  Vec3 nearest = ZERO;           /* the second one's vertex that is lowest over the best face so far */
   for (int n = -1; n < first->face_count; n++) {
     int i = n < 0 ? highest : n; /* the most likely before all others */
     double height = room->heights[i], bound = height - second->inradius;
     if (n == highest || bound <= best || bound <= at_least) continue;
     Vec3 normal = first->normal[i];
+    if (n >= 0 && dot(normal, nearest) - first->offset[i] <= larger(best, at_least)) continue;
     Vec3 there = backwards ? times(turn, normal) : transposed_times(turn, normal);
     double distance = height + hull_lowest(second, there, room->reaches);
     if (distance > best) {
       best = distance;
       *face = i;
       if (best > enough) break;
+      Vec3 vertex = hull_vertex(second, hull_lowest_vertex(second, there));
+      nearest = add(backwards ? transposed_times(turn, vertex) : times(turn, vertex), offset);
     }
   }
   return best;
 }
 
-/* The edges whose lower end is below a plane by more than -band. */
-static int edges_below(const Hull *hull, const Vec3 *vertices, Vec3 normal, double offset, double band, int *edges) {
+/* The edges whose lower end is below a plane, or above it by `band` at most; the plane in the hull's own axes. */
+static int edges_below(const Hull *hull, Vec3 normal, double offset, double band, double *reaches, int *edges) {
   int count = 0;
-  for (int i = 0; i < hull->edge_count; i++) {
-    const int32_t *edge = hull->edges[i];
-    double p = dot(normal, vertices ? vertices[edge[0]] : hull_vertex(hull, edge[0]));
-    double q = dot(normal, vertices ? vertices[edge[1]] : hull_vertex(hull, edge[1]));
-    if (smaller(p, q) - offset <= band) edges[count++] = i;
-  }
+  hull_lowest(hull, normal, reaches);
+  for (int i = 0; i < hull->edge_count; i++)
+    if (smaller(reaches[hull->edges[i][0]], reaches[hull->edges[i][1]]) - offset <= band) edges[count++] = i;
   return count;
 }
 
@@ -58,10 +60,11 @@ Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 of
   if (other_best > enough) return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
 
   for (int i = 0; i < second->vertex_count; i++) room->vertices[i] = add(times(turn, hull_vertex(second, i)), offset);
-  int count =
-      edges_below(first, 0, other_normal, dot(other_normal, offset) + second->offset[other_face], enough, room->edges);
-  int other_count =
-      edges_below(second, room->vertices, first->normal[face], first->offset[face], enough, room->other_edges);
+  double other_height = dot(other_normal, offset) + second->offset[other_face];
+  int count = edges_below(first, other_normal, other_height, enough, room->reaches, room->edges);
+  Vec3 there = transposed_times(turn, first->normal[face]);
+  double height = first->offset[face] - dot(first->normal[face], offset);
+  int other_count = edges_below(second, there, height, enough, room->reaches, room->other_edges);
   for (int j = 0; j < other_count; j++) {
     const int32_t *edge = second->edges[room->other_edges[j]];
     room->face[j] = negated(times(turn, second->normal[edge[2]]));

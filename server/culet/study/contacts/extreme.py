@@ -41,6 +41,8 @@ class Extreme:
     """Overlap at the end, R."""
     rise: float | None = RISE
     """None: what is lifted out of an overlap rises."""
+    thrown_at: bool = False
+    """The first stone is thrown at the second along x: at the end it is behind it still, and both have moved."""
 
     def course(self) -> Course:
         """Let it run."""
@@ -52,10 +54,17 @@ class Extreme:
         course = self.course()
         yield Finding(f"{self.name}: finite", 0.0 if course.finite else math.nan, 0)
         yield Finding(f"{self.name}: fallen through the floor", course.fallen, 0)
+        if self.thrown_at:
+            yield Finding(f"{self.name}: passed through the other", _passed(course), 0)
         yield Finding(f"{self.name}: overlap", course.deepest, self.overlap, "R")
         yield Finding(f"{self.name}: overlap at the end", course.final, self.final, "R")
         if self.rise is not None:
             yield Finding(f"{self.name}: rise of energy", course.rise / max(abs(course.energy), 1e-9), self.rise)
+
+
+def _passed(course: Course) -> int:
+    (x, _, _), (other, *_) = course.positions
+    return not x < other - 0.5 or other == 0
 
 
 def few(count: int = 3, shape: Callable[[], Shape] = brilliant) -> Stones:
@@ -143,13 +152,31 @@ EXTREMES = (
     Extreme("spin of 100 rad/s", pair((0.0, 0.5, 0.0), AWAY, spin=(60.0, 60.0, -53.0))),
     Extreme("spin of 100 rad/s, at a stone", pair((0.2, 3.0, 0.0), (0.0, 0.5, 0.0), spin=(100.0, 0.0, 0.0))),
     Extreme("50 R/s at the floor", pair((0.0, 3.0, 0.0), AWAY, (5.0, -50.0, 0.0)), seconds=2.0),
-    Extreme("50 R/s at a stone", pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (50.0, 0.0, 0.0)), {"gravity": 0}, 2.0),
+    Extreme(
+        "50 R/s at a stone",
+        pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (50.0, 0.0, 0.0)),
+        {"gravity": 0},
+        2.0,
+        thrown_at=True,
+    ),
     Extreme("400 R/s at the floor", pair((0.0, 3.0, 0.0), AWAY, (5.0, -400.0, 0.0)), seconds=2.0),
-    Extreme("400 R/s at a stone", pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (400.0, 0.0, 0.0)), {"gravity": 0}, 2.0),
+    Extreme(
+        "400 R/s at a stone",
+        pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (400.0, 0.0, 0.0)),
+        {"gravity": 0},
+        2.0,
+        thrown_at=True,
+    ),
     Extreme(
         "2000 R/s at a wall", pair((0.0, 3.0, 0.0), (3.0, 0.0, 3.0), (0.0, 0.0, -2000.0)), seconds=1.0, surfaces=ROOM
     ),
-    Extreme("2000 R/s at a stone", pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (2000.0, 0.0, 0.0)), {"gravity": 0}, 1.0),
+    Extreme(
+        "2000 R/s at a stone",
+        pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (2000.0, 0.0, 0.0)),
+        {"gravity": 0},
+        1.0,
+        thrown_at=True,
+    ),
     Extreme("needles 20 : 1", few(4, box(1, 0.05, 0.05)), seconds=6.0),
     Extreme("needles 1000 : 1", few(2, box(1, 1e-3, 1e-3))),
     Extreme("wafers 20 : 1", few(4, box(1, 0.05, 1)), seconds=6.0),

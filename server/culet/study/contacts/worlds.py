@@ -178,6 +178,8 @@ class Course:
     """s; infinite: not all sleep."""
     energy: float
     """At the start."""
+    positions: tuple[Triple, ...]
+    """At the end."""
 
 
 def watch(moving: World, seconds: float, every: int = 3) -> Course:
@@ -195,5 +197,5 @@ def watch(moving: World, seconds: float, every: int = 3) -> Course:
             asleep = moving.state.time
             break
     below = sum(state.position[1] < FLOOR.offset - 0.5 for state in moving.state.bodies)
-    final = overlap(moving)
-    return Course(finite, rise, max(deepest, final), final, below, asleep, start)
+    final, positions = overlap(moving), tuple(state.position for state in moving.state.bodies)
+    return Course(finite, rise, max(deepest, final), final, below, asleep, start, positions)
