@@ -227,7 +227,10 @@ class LivePicture:
         if work is None:
             return
         self.making = None
-        self.changed_at = now
+        if (
+            work.shown is not self.session.shown or work.wanted == self.size
+        ):  # else it shows what it is to, at another size
+            self.changed_at = now
         match work.kind:
             case Kind.PLANNED:
                 self.quality.give_up_planned(
