@@ -130,9 +130,9 @@ def test_stones_of_another_scene_are_not_brought_back() -> None:
     patch(subject, {"ruby": None})
     events.apply(subject, SetScene(scene=SCENE | {"stones": SCENE["stones"][1:]}), NOTHING)
     patch(subject, {"ruby": ruby})
+    assert len(subject.removals) == 0
     position, _ = subject.motion.latest().poses["ruby"]
     assert position == (0, 3, 0)
-    assert len(subject.removals) == 0
 
 
 def test_a_change_that_is_refused_removes_nothing() -> None:
