@@ -70,7 +70,7 @@ class Argument:
 
     def value(self, given: object) -> object:
         """What pyopencl passes on."""
-        return given if self.scalar is None else self.scalar(given)  # type: ignore[call-arg]
+        return given if self.scalar is None else self.scalar(given)
 
 
 @cache
