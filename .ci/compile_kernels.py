@@ -21,7 +21,7 @@ import pyopencl as cl
 import culet_kernels
 from culet.rendering.build import FLAGS, Variant
 from culet.rendering.device import Device, open_device
-from culet.rendering.features import ESTIMATOR, FRESNEL, SKY, SURFACE, Features, Geometry
+from culet.rendering.features import ESTIMATOR, FRESNEL, SKY, SURFACE, Features, Geometry, Stones
 
 # Pragmas, since PoCL refuses -W as an option. A file does not use all of what it includes; and where a packet has one
 # lane, the lanes' `&` is one of scalars.
@@ -46,6 +46,16 @@ FIXED = [
     ),
 ]  # fmt: skip
 """All decided when the program is made, each of their kinds at least once."""
+MANY = [
+    Features(Geometry.HULL, stones=Stones.MANY),
+    Features(Geometry.MESH, stones=Stones.MANY, few_mirrors=1),
+    Features(Geometry.MESH, stones=Stones.MANY, spectral=1, polarised=1),
+    Features(
+        Geometry.HULL, SURFACE["none"], SURFACE["none"], 0, SKY["constant"], dispersion=0, absorption=-1,
+        fresnel=FRESNEL["exact"], camera_inside=0, stones=Stones.MANY,
+    ),
+]  # fmt: skip
+"""Of several stones, which the chain estimator alone takes."""
 
 WRONG = "__kernel void wrong(__global int *a) { *a = 1.5f; }"
 """An implicit conversion: the compiler must complain of it, or its silence about the kernels means nothing."""
@@ -60,7 +70,7 @@ def programs() -> list[Program]:
         replace(features, estimator=estimator)
         for features in (*(Features(geometry) for geometry in Geometry), *FIXED)
         for estimator in ESTIMATOR.values()
-    ]
+    ] + MANY
     renderers = [
         ("render.cl", (*variant.options, *each.options)) for variant, each in product(VARIANTS, features)
     ]  # a feature that is left to run time is no option

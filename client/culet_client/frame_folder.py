@@ -50,5 +50,5 @@ def header(frame: Frame) -> dict[str, Any]:
     named = {field.name: getattr(frame, field.name) for field in fields(frame) if field.name != "payload"}
     error = None if math.isnan(frame.error) else frame.error
     return named | {
-        "session": frame.session.hex(), "codec": frame.codec.name, "flags": int(frame.flags), "error": error,
+        "watch": frame.watch.hex(), "codec": frame.codec.name, "flags": int(frame.flags), "error": error,
     }  # fmt: skip

@@ -24,16 +24,16 @@ one runs out while frames wait at the high-water mark, that is, whenever the tak
 
 
 class FrameSubscription:
-    """Receives a session's frames; subscribing makes the engine render, and send its latest frame at once.
+    """Receives a session's frames by its watch id; subscribing makes the engine render, and send its latest at once.
 
     With `latest_only` a slow taker skips frames (ZMQ_CONFLATE: one slot, the newest wins) and is never behind.
     """
 
-    def __init__(self, endpoint: str, session: str, *, latest_only: bool = True) -> None:
+    def __init__(self, endpoint: str, watch: str, *, latest_only: bool = True) -> None:
         """ClientError for an id that is none, or an address that cannot be connected to."""
-        if not re.fullmatch(r"[0-9a-f]{32}", session):
-            raise ClientError(f"a session's id has 32 hexadecimal digits, got {session!r}")
-        self.endpoint, self.session = endpoint, session
+        if not re.fullmatch(r"[0-9a-f]{32}", watch):
+            raise ClientError(f"a watch id has 32 hexadecimal digits, got {watch!r}")
+        self.endpoint, self.watch = endpoint, watch
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.SUB)
         self._socket.setsockopt(zmq.LINGER, 0)
@@ -43,7 +43,7 @@ class FrameSubscription:
             self._socket.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
         for option, value in KEEP_ALIVE:
             self._socket.setsockopt(option, value)
-        self._socket.setsockopt(zmq.SUBSCRIBE, bytes.fromhex(session))
+        self._socket.setsockopt(zmq.SUBSCRIBE, bytes.fromhex(watch))
         try:
             self._socket.connect(endpoint)
         except zmq.ZMQError as error:
@@ -56,7 +56,7 @@ class FrameSubscription:
         """The next frame (a picture at rest comes again once a second); SilenceError, ClientError for other bytes."""
         if not self._socket.poll(int(timeout_seconds * 1000)):
             raise SilenceError(
-                f"no frame of session {self.session} from {self.endpoint} in {timeout_seconds:g} s; "
+                f"no frame of watch id {self.watch} from {self.endpoint} in {timeout_seconds:g} s; "
                 f"is the engine there, and does it publish frames at this address?"
             )
         try:

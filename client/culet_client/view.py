@@ -16,14 +16,14 @@ Shown = Callable[[Frame, Path], None]
 
 
 def view(
-    endpoint: str, session: str, frames: int, folder: Path, *, timeout_seconds: float = 10, shown: Shown | None = None
+    endpoint: str, watch: str, frames: int, folder: Path, *, timeout_seconds: float = 10, shown: Shown | None = None
 ) -> int:
     """Write the next frames, each the latest when it is taken; the number written.
 
     A picture at rest comes again once a second, and counts each time. SilenceError if none comes in the time allowed.
     """
     target = FrameFolder(folder)
-    with FrameSubscription(endpoint, session) as subscription:
+    with FrameSubscription(endpoint, watch) as subscription:
         while target.count < frames:
             frame = subscription.receive(timeout_seconds)
             path = target.write(frame)
@@ -34,7 +34,7 @@ def view(
 
 def record(
     endpoint: str,
-    session: str,
+    watch: str,
     seconds: float,
     folder: Path,
     *,
@@ -46,7 +46,7 @@ def record(
     SilenceError if not even one comes in the time allowed.
     """
     target = FrameFolder(folder)
-    with FrameSubscription(endpoint, session, latest_only=False) as subscription:
+    with FrameSubscription(endpoint, watch, latest_only=False) as subscription:
         frame = subscription.receive(timeout_seconds)
         end = time.monotonic() + seconds
         last: int | None = None

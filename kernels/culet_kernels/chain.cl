@@ -1,32 +1,79 @@
-// The estimator by chains: what a tile's pixels see without the stone, and then, by chains, in it.
+// The estimator by chains: what a tile's pixels see without the stones, and then, by chains, in them.
+//
+// In a convex stone light follows a single chain. What leaves a stone may meet another, or be sent back by a mirror, and then
+// starts another chain. All of it waits in pools of rays, so that packets are full.
+//
+// A work-item is at one tile at a time. It first finds where each pixel's ray meets a stone, then takes the chains one index
+// of refraction after the other, or four neighbouring wavelengths at a time, one for each group of pixels.
 #ifndef CULET_CHAIN
 #define CULET_CHAIN
 #include "camera.cl"
-#include "trace.cl"
+#include "hits.cl"
+#include "inside.cl"
 
-// The stone in a studio floor: of `glossy` rays, which end at the floor, those that a smooth floor would send to the stone.
+// Where lanes of a packet meet stones after all.
+static inline void take_up(meetingL *met, maskL mask, meetingL other) {
+  met->hit |= mask;
+  met->point = blend3(mask, other.point, met->point);
+  met->normal = blend3(mask, other.normal, met->normal);
+  if (STONES == MANY) met->stone = blend_ints_by(mask, other.stone, met->stone);
+}
+
+// Stones in a studio floor: of `glossy` rays, which end at the floor, those that a smooth floor would send to a stone.
 // For them `ray` goes on there, with the floor's reflectance for its weight, and what they showed gives way to it. From
 // sample to sample the floor is tilted a little, which softens what is seen far above it.
 static inline maskL mirrored_in_floor(world_t world, rayL *ray, maskL glossy, double jitter_x, double jitter_y,
-                                      vec3L *point, vec3L *normal, radianceL *radiance) {
+                                      meetingL *met, radianceL *radiance) {
   __constant const parameters_t *scene = world.scene;
   const real tilt_x = scene->floor_roughness * (real)clamp(2 * jitter_x - 1, -1.0, 1.0),
              tilt_z = scene->floor_roughness * (real)clamp(2 * jitter_y - 1, -1.0, 1.0);
   const vec3L up = normalise(vec3(splat(tilt_x), splat(1), splat(tilt_z)));
   const vec3L onward = reflect3(ray->direction, dot3(ray->direction, up), up);
-  const maskL heading = glossy & passes_stone(ray->origin, onward, splat(0));
+  const maskL heading = glossy & passes_stones(world, ray->origin, onward, splat(0));
   if (!any_lane(heading)) return heading;
-  const crossingL entry = stone_entry(world, ray->origin, onward, splat(0), heading);
+  const meetingL entry = stone_entry(world, ray->origin, onward, splat(0), heading, (intL)(NOBODY));
   const maskL enters = heading & entry.hit;
-  const vec3L met = along(ray->origin, entry.t, onward);
-  const realL height = blend(enters, fmax(met.y - ray->origin.y, splat(0)), splat(0));
+  const realL height = blend(enters, fmax(entry.t * onward.y, splat(0)), splat(0));
   const realL share = blend(enters, scene->floor_reflectance * exp_fast(-height / scene->floor_fade), splat(0));
   EACH (k, 3) radiance->channel[k] *= 1 - share;
   ray->weight *= blend(enters, share, splat(1));
   ray->direction = blend3(enters, onward, ray->direction);
-  *point = blend3(enters, met, *point);
-  *normal = blend3(enters, entry.normal, *normal);
+  take_up(met, enters, entry);
   return enters;
+}
+
+// The stones that a tile's rays may meet on their way from the camera.
+typedef struct {
+#if STONES == MANY
+  uchar stone[MAX_STONES];
+#endif
+  int count;
+} candidates_t;
+
+static inline candidates_t candidates_of(world_t world, int column, int row) {
+  candidates_t found;
+  found.count = 0;
+#if STONES == MANY
+  for (int number = 0; number < world.scene->stones; number++) {
+    __constant const stone_t *stone = world.stones + number;
+    const int across = stone->columns[0] < column + TILE && stone->columns[1] >= column,
+              down = stone->rows[0] < row + TILE && stone->rows[1] >= row;
+    if (across && down) found.stone[found.count++] = number;
+  }
+#endif
+  return found;
+}
+
+// The stone that a ray from the camera enters first.
+static inline meetingL first_seen(world_t world, const candidates_t *candidates, rayL ray, maskL mask) {
+#if STONES == MANY
+  meetingL first = nobody(ray.origin, ray.direction);
+  for (int i = 0; i < candidates->count; i++)
+    meet_stone(world, candidates->stone[i], ray.origin, ray.direction, ray.start, mask, (intL)(NOBODY), &first);
+  return first;
+#else
+  return stone_entry(world, ray.origin, ray.direction, ray.start, mask, (intL)(NOBODY));
+#endif
 }
 
 // A tile under way. All of it is kept where a launch ends before the tile does, and taken up by the next one.
@@ -40,7 +87,7 @@ typedef struct {
   int hit;    // the first whose chain has not begun
 } chain_work_t;
 
-// What each pixel of the tile sees without the stone, directly or by way of mirrors, and where its ray meets the stone.
+// What each pixel of the tile sees without the stone, directly or by way of mirrors, and where its ray meets a stone.
 static inline void see(world_t world, chain_work_t *work, int column, int row, double jitter_x, double jitter_y,
                        int *steps) {
   tile_t *tile = &work->tile;
@@ -48,42 +95,50 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
   const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
   const int has_backdrop = DECIDED(BACKDROP, world.scene->has_backdrop);
   const int columns = shown(column, world.scene->width), rows = shown(row, world.scene->height);
+  const candidates_t candidates = candidates_of(world, column, row);
   for (; work->packet < PACKETS && *steps > 0; work->packet++) {
     const int x = work->packet % PACKETS_ACROSS * PACKET_WIDTH, y = work->packet / PACKETS_ACROSS * PACKET_HEIGHT;
     if (x >= columns || y >= rows) continue;
     --*steps;
     const primaryL primary = primary_rays(world.scene, column + x, row + y, jitter_x, jitter_y);
     rayL ray = {primary.origin, primary.direction, primary.eye, splat(1), unpolarised(primary.direction)};
-    vec3L point = along(primary.origin, primary.eye, primary.direction), normal = primary.direction;
     const maskL all = in_picture(world.scene, column + x, row + y), none = all & !all;
-    maskL meets = camera_inside ? all : none, open = camera_inside ? none : all;
-    maskL heading = GEOMETRY == EMPTY ? none : open & passes_stone(ray.origin, ray.direction, ray.start);
+    const int host = world.scene->camera_stone;
+    meetingL met = {camera_inside ? all : none, splat(0),
+                    to_own(world, host, along(primary.origin, primary.eye, primary.direction)), primary.direction,
+                    (intL)(host)};
+    maskL open = camera_inside ? none : all;
+    maskL heading = none;
+    if (GEOMETRY == EMPTY ? 0 : STONES == ONE ? 1 : candidates.count > 0)
+      heading = open & passes_stones(world, ray.origin, ray.direction, ray.start);
+    bool direct = true;
     radianceL radiance = black(), behind = black();
     if (has_backdrop) behind = backdrop_at(world.scene, column + x, row + y, jitter_x, jitter_y, all_channels());
     realL cut = splat(0);
     while (any_lane(open)) {
       if (any_lane(heading)) {
-        const crossingL entry = stone_entry(world, ray.origin, ray.direction, ray.start, heading);
+        const meetingL entry = direct
+                                   ? first_seen(world, &candidates, ray, heading)
+                                   : stone_entry(world, ray.origin, ray.direction, ray.start, heading, (intL)(NOBODY));
         const maskL enters = heading & entry.hit & !hidden_by_room(world, ray, entry.t);
-        point = blend3(enters, along(ray.origin, entry.t, ray.direction), point);
-        normal = blend3(enters, entry.normal, normal);
-        meets |= enters;
+        take_up(&met, enters, entry);
         open &= !enters;
       }
+      direct = false;
       heading = open;
       maskL glossy = none;
       const radianceL seen =
           gather(world, &ray, splat(1), BY_CAMERA, has_backdrop ? &behind : 0, &heading, &glossy, &cut, all_channels());
       EACH (k, 3) radiance.channel[k] += seen.channel[k];
       if (GEOMETRY != EMPTY && any_lane(glossy))
-        meets |= mirrored_in_floor(world, &ray, glossy, jitter_x, jitter_y, &point, &normal, &radiance);
+        mirrored_in_floor(world, &ray, glossy, jitter_x, jitter_y, &met, &radiance);
       open = heading;
     }
     const int first = first_pixel(x, y);
     EACH (k, 3) store_lanes(radiance.channel[k], tile->radiance[k] + first);
     store_lanes(3 * cut, tile->cut + first);
     const intL tag = first + LANE_INDEX + (groups_of(x, y, world.scene->sample) << PIXEL_BITS);
-    if (any_lane(meets)) note(hits, meets, point, ray, normal, tag);
+    if (any_lane(met.hit)) note(hits, met.hit, met.point, ray, met.normal, met.stone, tag);
   }
 }
 
@@ -95,22 +150,26 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
   const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
   for (; *steps > 0; --*steps) {
     const bool all_begun = work->hit >= hits->count;
-    // Light that has come back goes first: it is what makes the pools grow.
-    if (REENTRY &&
-        (pools->outside.count >= LANES || (all_begun && pools->inside.count == 0 && pools->outside.count > 0)))
-      come_back(world, tile, pools, task);
-    else if (pools->inside.count >= LANES || (all_begun && pools->inside.count > 0))
+    const bool last = all_begun && is_empty(&pools->inside);
+    // Light outside goes first: it is what makes the pools grow.
+    if (pools->away.count >= LANES)
+      look_away(world, tile, pools, task);
+    else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
+      look_around(world, tile, pools, task);
+    else if (has_full(&pools->inside) || (all_begun && !last))
       advance(world, tile, pools, task);
     else if (!all_begun) {
       const maskL mask = widen(LANE_INDEX < (intL)(hits->count - work->hit));
       vec3L normal;
-      packetL packet = hits_at(hits, work->hit, &normal);
+      const packetL packet = hits_at(hits, work->hit, &normal);
       if (camera_inside)
-        push(&pools->inside, mask, &packet);
+        push_inside(&pools->inside, mask, &packet);
       else
-        enter(world, tile, pools, task, &packet, packet.origin, normal, mask, DECIDED(GLARE, world.scene->glare));
+        enter(world, tile, pools, task, &packet, normal, mask, DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
-    } else
+    } else if (pools->away.count > 0)
+      look_away(world, tile, pools, task);
+    else
       return;
   }
 }
@@ -120,8 +179,9 @@ static inline void begin_chain_tile(chain_work_t *work, int number) {
   work->packet = work->chain = work->hit = 0;
   work->tile.segments = (intL)(0);
   work->hits.count = 0;
-  clear(&work->pools.inside);
-  clear(&work->pools.outside);
+  clear_inside(&work->pools.inside);
+  clear(&work->pools.towards);
+  clear(&work->pools.away);
 }
 
 // Goes on with a tile for as many steps as are left, each of which takes some tenths of a microsecond to some

@@ -59,16 +59,16 @@ static inline bool advance_path(world_t world, classic_path_t *path, int channel
     realL t = splat(0);
     vec3L normal = ray.direction; // outward
     if (GEOMETRY != EMPTY) {
-      const maskL heading = active & !inside & passes_stone(ray.origin, ray.direction, ray.start);
+      const maskL heading = active & !inside & passes_stones(world, ray.origin, ray.direction, ray.start);
       if (any_lane(heading)) {
-        const crossingL entry = stone_entry(world, ray.origin, ray.direction, ray.start, heading);
+        const meetingL entry = stone_entry(world, ray.origin, ray.direction, ray.start, heading, (intL)(NOBODY));
         at_stone = heading & entry.hit & !hidden_by_room(world, ray, entry.t);
         t = blend(at_stone, entry.t, t);
         normal = blend3(at_stone, entry.normal, normal);
       }
       const maskL leaving = active & inside;
       if (any_lane(leaving)) {
-        const crossingL exit = stone_exit(world, ray.origin, ray.direction, leaving);
+        const crossingL exit = stone_exit(world, world.stones, ray.origin, ray.direction, leaving);
         *segments += count_mask(leaving);
         const maskL found = leaving & exit.hit;
         t = blend(found, exit.t, t);

@@ -24,10 +24,14 @@
 #define HALF 2
 #define IMAGE 3
 
-// Kinds of GEOMETRY: no stone, facet half-spaces, or triangles in a tree. Never RUNTIME.
+// Kinds of GEOMETRY: no stone, facet half-spaces, or triangles in a tree; of MANY stones MESH has both. Never RUNTIME.
 #define EMPTY 0
 #define HULL 1
 #define MESH 2
+
+// Kinds of STONES: one of scale 1, at the origin of the frame; or a table of them. Never RUNTIME.
+#define ONE 1
+#define MANY 2
 
 // Kinds of FRESNEL.
 #define EXACT 0
@@ -44,6 +48,9 @@
 #endif
 #ifndef GEOMETRY
 #define GEOMETRY HULL
+#endif
+#ifndef STONES
+#define STONES ONE
 #endif
 #ifndef FLOOR
 #define FLOOR RUNTIME
@@ -90,7 +97,7 @@
 #ifndef POLARISED // 1: chains carry the polarisation of light. Never RUNTIME.
 #define POLARISED 0
 #endif
-#ifndef FEW_MIRRORS // 1: the stone reflects light into few directions, which are kept exactly. Never RUNTIME.
+#ifndef FEW_MIRRORS // 1: a stone reflects light into few directions, which are kept exactly. Never RUNTIME.
 #define FEW_MIRRORS 0
 #endif
 #ifndef CAMERA_INSIDE // 1: the camera is inside the stone
@@ -99,23 +106,29 @@
 
 #define DECIDED(feature, parameter) ((feature) == RUNTIME ? (parameter) : (feature))
 
-// Whether light that has left the stone can meet it again.
+// Whether light that leaves a stone may meet a stone before it meets the room.
+#define EXCHANGE (GEOMETRY == MESH || STONES == MANY)
+
+// Whether light that has left a stone can meet one again.
 #define REENTRY                                                                                                        \
-  (GEOMETRY != EMPTY &&                                                                                                \
-   (GEOMETRY == MESH || FLOOR == MIRROR || FLOOR == RUNTIME || WALLS == MIRROR || WALLS == RUNTIME))
+  (GEOMETRY != EMPTY && (EXCHANGE || FLOOR == MIRROR || FLOOR == RUNTIME || WALLS == MIRROR || WALLS == RUNTIME))
 
 // A chain carries one channel where each has an index of its own; all three where they share one, and where the chain is
 // of a wavelength, which all of them see a part of.
 #define CHANNELS (SPECTRAL || DISPERSION == 0 ? 3 : 1)
 
-// Neighbouring pixels take different wavelengths: GROUPS of chains, one for each pixel of a square. What belongs to a chain
-// then differs by lane.
+// Neighbouring pixels take different wavelengths: GROUPS of chains, one for each pixel of a square.
 #define SPECTRAL_GROUPS 4
 #if SPECTRAL
 #define GROUPS SPECTRAL_GROUPS
-typedef realL chainL;
 #else
 #define GROUPS 1
+#endif
+
+// What belongs to a chain differs by lane where pixels differ in wavelength, or stones in material.
+#if SPECTRAL || STONES == MANY
+typedef realL chainL;
+#else
 typedef real chainL;
 #endif
 

@@ -1,4 +1,4 @@
-// Where pixels' rays first meet the stone, waiting for their chains.
+// Where pixels' rays first meet a stone, waiting for their chains.
 #ifndef CULET_HITS
 #define CULET_HITS
 #include "pool.cl"
@@ -16,14 +16,14 @@ typedef struct {
 } hits_t;
 
 // Appends the lanes of a packet of rays that the mask names; `tag` says their pixels.
-static inline void note(hits_t *hits, maskL mask, vec3L point, rayL ray, vec3L normal, intL tag) {
+static inline void note(hits_t *hits, maskL mask, vec3L point, rayL ray, vec3L normal, intL stone, intL tag) {
   packetL packet;
   packet.origin = point;
   packet.direction = ray.direction;
   EACH (k, WEIGHTS) packet.weight[k] = ray.weight;
-  EACH (k, CHANNELS) packet.radiance[k] = splat(0);
   packet.polarisation = ray.polarisation;
   packet.tag = tag;
+  packet.stone = stone;
   const packing_t packing = packing_of(mask);
   const int end = hits->count;
   pack_packet(packing, &packet, hits->number[0] + end, hits->whole[0] + end, HITS);

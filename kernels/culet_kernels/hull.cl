@@ -15,10 +15,15 @@ typedef struct {
 // built on the promise that nothing is infinite.
 #define PARALLEL ((real)1e-18)
 
-// Where a ray from outside enters. A facet that is parallel to the ray and has it outside counts as entered at infinity,
+// The part of a line that is inside, and the facet by which it comes in.
+typedef struct {
+  realL t_in, t_out; // nothing is inside where t_in >= t_out
+  vec3L normal;      // outward
+} spanL;
+
+// Where a ray from outside enters and leaves. A facet that is parallel to the ray and has it outside counts as entered at infinity,
 // so that the ray misses.
-static inline crossingL hull_entry(__global const real4 *facets, int count, vec3L origin, vec3L direction,
-                                   realL t_min) {
+static inline spanL hull_span(__global const real4 *facets, int count, vec3L origin, vec3L direction) {
   realL t_in = splat(-1e30f), t_out = splat(1e30f);
   vec3L normal = vec3(splat(0), splat(0), splat(0));
   for (int i = 0; i < count; i++) {
@@ -32,7 +37,25 @@ static inline crossingL hull_entry(__global const real4 *facets, int count, vec3
     normal = blend3(later, vec3(splat(facet.x), splat(facet.y), splat(facet.z)), normal);
     t_out = blend(entering, t_out, fmin(t_out, t));
   }
-  const crossingL crossing = {(t_in < t_out) & (t_in >= t_min), t_in, normal};
+  const spanL span = {t_in, t_out, normal};
+  return span;
+}
+
+static inline crossingL hull_entry(__global const real4 *facets, int count, vec3L origin, vec3L direction,
+                                   realL t_min) {
+  const spanL span = hull_span(facets, count, origin, direction);
+  const crossingL crossing = {(span.t_in < span.t_out) & (span.t_in >= t_min), span.t_in, span.normal};
+  return crossing;
+}
+
+// The same; and a ray that starts inside, by more than `least` along it, enters where it starts, through the facet by which it
+// would have come in.
+static inline crossingL hull_entry_from(__global const real4 *facets, int count, vec3L origin, vec3L direction,
+                                        realL t_min, real least) {
+  const spanL span = hull_span(facets, count, origin, direction);
+  const realL t = fmax(span.t_in, t_min);
+  const crossingL crossing = {
+      (span.t_in < span.t_out) & (span.t_out - t > blend(span.t_in < t_min, splat(least), splat(0))), t, span.normal};
   return crossing;
 }
 

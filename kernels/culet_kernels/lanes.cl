@@ -57,6 +57,7 @@ static inline void store_mask(maskL mask, int *to) { *to = mask; }
 static inline intL count_mask(maskL mask) { return mask; }
 static inline maskL widen(intL mask) { return mask; }
 static inline intL blend_ints(intL mask, intL yes, intL no) { return mask ? yes : no; }
+static inline intL blend_ints_by(maskL mask, intL yes, intL no) { return mask ? yes : no; }
 #else
 typedef JOIN(REAL, LANES) realL;
 typedef JOIN(int, LANES) intL;
@@ -88,6 +89,9 @@ static inline void store_mask(maskL mask, int *to) { JOIN(vstore, LANES)(JOIN(co
 static inline intL count_mask(maskL mask) { return -JOIN(convert_int, LANES)(mask); }
 static inline maskL widen(intL mask) { return JOIN(JOIN(convert_, MASK), LANES)(mask); }
 static inline intL blend_ints(intL mask, intL yes, intL no) { return select(no, yes, mask); }
+static inline intL blend_ints_by(maskL mask, intL yes, intL no) {
+  return select(no, yes, JOIN(convert_int, LANES)(mask));
+}
 #endif
 #define PACKET_X (LANE_INDEX % PACKET_WIDTH)
 #define PACKET_Y (LANE_INDEX / PACKET_WIDTH)

@@ -53,7 +53,7 @@ static inline int lowest_bit(uint bits) { return popcount((bits & -bits) - 1); }
 typedef struct {
   // For each node the children's boxes and those of their normals: lower x, y, z and upper x, y, z, TREE_WIDTH of each.
   __global const real *boxes;
-  __global const int *links;    // for each child the node, or ~leaf
+  __global const int *links;    // for each child the node, or ~leaf; of several trees one after the other
   __global const real *corners; // for each leaf three corners and the facet's normal, TREE_WIDTH of each
 } tree_t;
 
@@ -205,10 +205,10 @@ static inline void put(stack_t *stack, uint bits, __global const int *links, rea
 }
 
 // The nearest triangle along a ray.
-static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
+static inline void probe_tree(tree_t tree, int root, real side, probe_t *probe) {
   stack_t stack;
   stack.size = 1;
-  stack.node[0] = 0;
+  stack.node[0] = root;
   stack.nearness[0] = probe->start;
   // Along each axis a box is entered at one of its two sides and left at the other, by the direction's sign. Boxes are a
   // little larger than what they hold, by more than these operations round (rendering/tree.py).
@@ -244,16 +244,17 @@ static inline void probe_tree(tree_t tree, real side, probe_t *probe) {
   }
 }
 
-static inline vec3L to_stone(__constant const parameters_t *scene, vec3L v) {
-  return vec3(v.x * scene->axes[0][0] + v.y * scene->axes[1][0] + v.z * scene->axes[2][0],
-              v.x * scene->axes[0][1] + v.y * scene->axes[1][1] + v.z * scene->axes[2][1],
-              v.x * scene->axes[0][2] + v.y * scene->axes[1][2] + v.z * scene->axes[2][2]);
+// To a stone's own axes, and back.
+static inline vec3L to_own_axes(__constant const stone_t *stone, vec3L v) {
+  return vec3(v.x * stone->axes[0][0] + v.y * stone->axes[1][0] + v.z * stone->axes[2][0],
+              v.x * stone->axes[0][1] + v.y * stone->axes[1][1] + v.z * stone->axes[2][1],
+              v.x * stone->axes[0][2] + v.y * stone->axes[1][2] + v.z * stone->axes[2][2]);
 }
 
-static inline vec3L to_world(__constant const parameters_t *scene, vec3L v) {
-  return vec3(v.x * scene->axes[0][0] + v.y * scene->axes[0][1] + v.z * scene->axes[0][2],
-              v.x * scene->axes[1][0] + v.y * scene->axes[1][1] + v.z * scene->axes[1][2],
-              v.x * scene->axes[2][0] + v.y * scene->axes[2][1] + v.z * scene->axes[2][2]);
+static inline vec3L to_world_axes(__constant const stone_t *stone, vec3L v) {
+  return vec3(v.x * stone->axes[0][0] + v.y * stone->axes[0][1] + v.z * stone->axes[0][2],
+              v.x * stone->axes[1][0] + v.y * stone->axes[1][1] + v.z * stone->axes[1][2],
+              v.x * stone->axes[2][0] + v.y * stone->axes[2][1] + v.z * stone->axes[2][2]);
 }
 
 // Cosine to a facet below which rounding of the ray's start moves the crossing by more than 1e-5 R along the ray.
@@ -288,21 +289,21 @@ static inline real abreast(__global const real *rows, const probe_t *probe) {
 }
 
 // The nearest crossing of each lane's ray between t_min and t_max, from outside (side 1) or from inside (side -1).
-static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree_t tree, vec3L origin, vec3L direction,
+static inline crossingL mesh_crossing(__constant const stone_t *stone, tree_t tree, vec3L origin, vec3L direction,
                                       realL t_min, real t_max, maskL mask, real side) {
   int wanted[LANES];
   real rows[PROBE_ROWS][LANES], t[LANES], normal[3][LANES];
   store_mask(mask, wanted);
-  aim(to_stone(scene, origin), to_stone(scene, direction), t_min, side, rows);
+  aim(to_own_axes(stone, origin), to_own_axes(stone, direction), t_min, side, rows);
   for (int lane = 0; lane < LANES; lane++) {
     t[lane] = -1e30f;
     EACH (k, 3) normal[k][lane] = 0;
     if (!wanted[lane]) continue;
     probe_t probe = probe_of(rows, lane, t_max);
-    probe_tree(tree, side, &probe);
+    probe_tree(tree, stone->root, side, &probe);
     while (side < 0 && probe.triangle < 0 && probe.widening < LAST_WIDENING) {
       probe.widening = fmax(FIRST_WIDENING, WIDER * probe.widening);
-      probe_tree(tree, side, &probe);
+      probe_tree(tree, stone->root, side, &probe);
     }
     if (probe.triangle < 0) continue;
     __global const real *corners =
@@ -314,7 +315,7 @@ static inline crossingL mesh_crossing(__constant const parameters_t *scene, tree
   const maskL hit = mask & (found > (real)-1e29);
   const crossingL crossing = {
       hit, blend(hit, found, splat(0)),
-      to_world(scene, vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2])))};
+      to_world_axes(stone, vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2])))};
   return crossing;
 }
 

@@ -17,14 +17,14 @@
 typedef struct {
   vec3L origin, direction;
   realL weight[WEIGHTS];
-  realL radiance[CHANNELS];
   polarisationL polarisation;
   intL tag;
+  intL stone; // MANY: its number. Where a ray is at a stone or in it, its origin is in the stone's own measure.
 } packetL;
 
 // Does something with each number of a packet, in the order of its rows. This list and the one of the whole numbers are all
 // that says how a packet is kept.
-#define NUMBERS (6 + WEIGHTS + CHANNELS + (POLARISED ? 6 : 0))
+#define NUMBERS (6 + WEIGHTS + (POLARISED ? 6 : 0))
 #define EACH_NUMBER(packet, WITH)                                                                                      \
   WITH((packet)->origin.x)                                                                                             \
   WITH((packet)->origin.y)                                                                                             \
@@ -35,9 +35,6 @@ typedef struct {
   EACH (k, WEIGHTS) {                                                                                                  \
     WITH((packet)->weight[k])                                                                                          \
   }                                                                                                                    \
-  EACH (k, CHANNELS) {                                                                                                 \
-    WITH((packet)->radiance[k])                                                                                        \
-  }                                                                                                                    \
   if (POLARISED) {                                                                                                     \
     WITH((packet)->polarisation.q)                                                                                     \
     WITH((packet)->polarisation.u)                                                                                     \
@@ -46,8 +43,12 @@ typedef struct {
     WITH((packet)->polarisation.axis.y)                                                                                \
     WITH((packet)->polarisation.axis.z)                                                                                \
   }
-#define WHOLES 1
-#define EACH_WHOLE(packet, WITH) WITH((packet)->tag)
+#define WHOLES (STONES == MANY ? 2 : 1)
+#define EACH_WHOLE(packet, WITH)                                                                                       \
+  WITH((packet)->tag)                                                                                                  \
+  if (STONES == MANY) {                                                                                                \
+    WITH((packet)->stone)                                                                                              \
+  }
 
 // Rows that lie `stride` numbers apart. A packet is written whole, and counted as far as it is meant.
 #define PACK_NUMBER(number)                                                                                            \
@@ -74,6 +75,7 @@ __attribute__((always_inline)) static inline packetL load_packet(const real *row
   const realL none = splat(0);
   const polarisationL unknown = {none, none, none, {none, none, none}};
   packet.polarisation = unknown;
+  packet.stone = (intL)(0);
   EACH_NUMBER(&packet, LOAD_NUMBER)
   EACH_WHOLE(&packet, LOAD_WHOLE)
   return packet;

@@ -1,5 +1,6 @@
-// What a scene's quantities are: arguments, never compiled in. The layout is mirrored by rendering/parameters.py, and a
-// test compares the two. Positions are relative to the stone's centre, in the world's axes, in units of R.
+// What a scene's quantities are: arguments, never compiled in. The host finds each field here by its name
+// (rendering/layout.py). Positions are relative to the frame's origin, in the world's axes, in units of R. One stone of
+// scale 1 has its centre there, so that its own measure is the frame's.
 #ifndef CULET_PARAMETERS
 #define CULET_PARAMETERS
 #include "lanes.cl"
@@ -7,9 +8,10 @@
 #define MAX_LIGHTS 8
 #define MAX_LAMPS 24
 #define MAX_SURFACES 4 // the floor and three walls
+#define MAX_STONES 64
 
 typedef struct {
-  double foot[3];        // the point of pixel (0, 0)'s ray that is abreast of the stone
+  double foot[3];        // the point of pixel (0, 0)'s ray that is abreast of the origin
   double foot_column[3]; // how it moves with each column of pixels,
   double foot_row[3];    // and with each row
   real direction[3], direction_column[3], direction_row[3]; // the same for the ray's direction, not normalised
@@ -17,8 +19,7 @@ typedef struct {
   real cutoff;                                              // weight below which a chain ends
   real panorama_scale;                                      // factor on the radiance of the sky's image
   real panorama_turn;                                       // of the sky's image about the vertical, in whole turns
-  real centre[3];                                  // the stone's centre in the world, from where checkers are counted
-  real absorption[3];                              // per R, by channel
+  real origin[3];                                  // of the frame, in the world, from where checkers are counted
   real sky_bottom[3], sky_top[3];                  // radiance, by channel
   real lamp[MAX_LAMPS][3];                         // direction of a lamp in the sky, of unit length;
   real lamp_rim[MAX_LAMPS], lamp_slope[MAX_LAMPS]; // its edge: rim - slope (squared distance to it), from 0 to 1
@@ -35,26 +36,49 @@ typedef struct {
   real backdrop_scale[2];                              // from columns and rows to parts of the way to its edge
   real floor_colour[3];                                // STUDIO_FLOOR: radiance, by channel
   real floor_reflectance, floor_fade, floor_roughness; // of stones, per R of height, and the tilt at most
-  real contact[3][3];                                  // the contact shadow's ellipsoid, see room.cl
-  real contact_shadow;                                 // part of the floor's light that it takes at most
   real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
   real light[MAX_LIGHTS][3];        // position
   real light_colour[MAX_LIGHTS][3]; // by channel
-  real axes[3][3];                  // columns: the stone's own axes in the world's
-  int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
-  int facets;                       // half-spaces of the stone
+  int stones, groups;
   int lights, lamps, boxes;
-  int max_bounces;                  // interior segments of a chain, at most
+  int max_bounces;   // interior segments of a chain, at most
   int width, height;
-  int chains;                       // one for each index of refraction
+  int chains;        // one for each index of refraction
   int panorama_width, panorama_height;
-  int sample;                       // its number, from which chance and the pixels' wavelengths are drawn
+  int sample;        // its number, from which chance and the pixels' wavelengths are drawn
   int floor_kind, walls_kind, sky_kind, fresnel_kind, end_kind;
-  int camera_inside;                // the stone
+  int camera_inside; // a stone,
+  int camera_stone;  // this one
   int has_head, has_backdrop, glare;
-  int convex;                       // the stone: light that leaves it does not come back by itself
-  int pierces;                      // the stone reaches through a surface of the room, which may hide a part of it
+  int pierces;       // a stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
+
+// A stone. Its facets, triangles and shadows are in its own measure: relative to its centre, in the world's axes (triangles:
+// in its own), in units of its radius.
+typedef struct {
+  real centre[3];                   // in the frame
+  real radius, inverse_radius;      // R
+  real reach;                       // R from the centre within which a ray may meet it, rounded up
+  real axes[3][3];                  // columns: its own axes in the world's
+  real absorption[3];               // per radius, by channel
+  real contact[3][3];               // its contact shadow's ellipsoid, see room.cl
+  real contact_shadow;              // part of the floor's light that it takes at most
+  int first_facet, facets;          // its half-spaces
+  int first_block, blocks;          // the same, TREE_WIDTH abreast
+  int root;                         // of its tree
+  int first_chain;                  // its material's
+  int convex;                       // light that leaves it does not come back by itself
+  int by_triangles;                 // it is met by its tree, not by its half-spaces
+  int few_mirrors;                  // it reflects light into few directions
+  int columns[2], rows[2];          // first and last pixel where a ray of the camera may meet it
+  int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
+} stone_t;
+
+// Stones that are near each other, at most eight: a ray that passes their common sphere by need not be tested against each.
+typedef struct {
+  real centre[3], reach;
+  int first, last; // stones: first <= number < last
+} group_t;
 
 // One index of refraction. Of a spectral scene the groups of pixels take them by turns.
 typedef struct {

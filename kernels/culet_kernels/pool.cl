@@ -4,7 +4,7 @@
 #define CULET_POOL
 #include "packet.cl"
 
-// Rays that a pool can hold. Where light can come back to the stone, every packet may leave another one behind in each
+// Rays that a pool can hold. Where light can come back to a stone, every packet may leave another one behind in each
 // generation, and generations end by weight: some ten for a cut-off of 0.01. What finds no room is counted as cut.
 #define POOL_RAYS (REENTRY ? 64 * LANES : 4 * LANES)
 #define POOL_SIZE (POOL_RAYS + LANES) // a packet is written whole, and counted as far as it is meant
@@ -40,5 +40,110 @@ static inline void clear(pool_t *pool) {
     EACH (k, WHOLES) pool->whole[k][i] = 0;
   }
 }
+
+// Rays inside stones. A packet of them is in one stone, since its facets are looked at by all lanes together: the rays of each
+// stone gather until they are a packet, and full packets wait in a pile, the latest on top.
+#if STONES == MANY
+#define PILE 256 // full packets that may wait; what finds no room is counted as cut
+
+typedef struct {
+  real number[NUMBERS][2 * LANES];
+  int whole[WHOLES][2 * LANES];
+  int count;
+} gathering_t;
+
+typedef struct {
+  real number[PILE][NUMBERS][LANES];
+  int whole[PILE][WHOLES][LANES];
+  int stone[PILE];
+  gathering_t of_stone[MAX_STONES];
+  int full;      // packets on the pile
+  int gathering; // rays of all stones that are not yet a packet
+} inside_t;
+
+static inline void clear_inside(inside_t *inside) {
+  inside->full = inside->gathering = 0;
+  for (int i = 0; i < MAX_STONES; i++) inside->of_stone[i].count = 0;
+}
+
+static inline int is_empty(const inside_t *inside) { return inside->full == 0 && inside->gathering == 0; }
+
+static inline int has_full(const inside_t *inside) { return inside->full > 0; }
+
+// Whether a packet has room, whatever stones its lanes are in.
+static inline int has_room_inside(const inside_t *inside) { return inside->full <= PILE - LANES; }
+
+static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const packetL *packet) {
+  gathering_t *own = inside->of_stone + stone;
+  const packing_t packing = packing_of(mask);
+  pack_packet(packing, packet, own->number[0] + own->count, own->whole[0] + own->count, 2 * LANES);
+  own->count += packing.count;
+  inside->gathering += packing.count;
+  if (own->count < LANES) return;
+  own->count -= LANES;
+  inside->gathering -= LANES;
+  EACH (k, NUMBERS) store_lanes(load_lanes(own->number[k] + own->count), inside->number[inside->full][k]);
+  EACH (k, WHOLES) store_ints(load_ints(own->whole[k] + own->count), inside->whole[inside->full][k]);
+  inside->stone[inside->full++] = stone;
+}
+
+// The number of a lane's stone, of the first lane that the mask names.
+static inline int first_of(maskL mask, intL stone) {
+  int named[LANES], number[LANES];
+  store_mask(mask, named);
+  store_ints(stone, number);
+  int lane = 0;
+  while (lane < LANES - 1 && !named[lane]) lane++;
+  return number[lane];
+}
+
+// Appends the lanes that the mask names, each to its own stone.
+static inline void push_inside(inside_t *inside, maskL mask, const packetL *packet) {
+  while (any_lane(mask)) {
+    const int stone = first_of(mask, packet->stone);
+    const maskL same = mask & widen(packet->stone == (intL)(stone));
+    push_to_stone(inside, stone, same, packet);
+    mask &= !same;
+  }
+}
+
+// Takes a packet of one stone: the one on top of the pile; if that is empty, the largest that gathers.
+__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *stone) {
+  const maskL all = widen(LANE_INDEX < (intL)(LANES));
+  if (inside->full > 0) {
+    inside->full--;
+    *mask = all;
+    *stone = inside->stone[inside->full];
+    return load_packet(inside->number[inside->full][0], inside->whole[inside->full][0], LANES);
+  }
+  int largest = 0;
+  for (int i = 1; i < MAX_STONES; i++)
+    if (inside->of_stone[i].count > inside->of_stone[largest].count) largest = i;
+  gathering_t *own = inside->of_stone + largest;
+  EACH (k, NUMBERS) // no lane holds what was never written
+    for (int lane = own->count; lane < LANES; lane++) own->number[k][lane] = own->number[k][0];
+  EACH (k, WHOLES)
+    for (int lane = own->count; lane < LANES; lane++) own->whole[k][lane] = own->whole[k][0];
+  *mask = widen(LANE_INDEX < (intL)(own->count));
+  *stone = largest;
+  inside->gathering -= own->count;
+  own->count = 0;
+  return load_packet(own->number[0], own->whole[0], 2 * LANES);
+}
+#else
+typedef pool_t inside_t;
+static inline void clear_inside(inside_t *inside) { clear(inside); }
+static inline int is_empty(const inside_t *inside) { return inside->count == 0; }
+static inline int has_full(const inside_t *inside) { return inside->count >= LANES; }
+static inline int has_room_inside(const inside_t *inside) { return has_room(inside); }
+static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const packetL *packet) {
+  push(inside, mask, packet);
+}
+static inline void push_inside(inside_t *inside, maskL mask, const packetL *packet) { push(inside, mask, packet); }
+__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *stone) {
+  *stone = 0;
+  return pop(inside, mask);
+}
+#endif
 
 #endif

@@ -2,9 +2,9 @@
 // surface of radiance albedo (0.2 + sum of colour max(n.l, 0) shadow), and a mirror that returns four fifths.
 #ifndef CULET_ROOM
 #define CULET_ROOM
-#include "geometry.cl"
 #include "polarisation.cl"
 #include "sky.cl"
+#include "stones.cl"
 
 #define AMBIENT ((real)0.2)      // of a matte surface, in lights of colour 1
 #define SHADOW ((real)0.2)       // what reaches a shaded point of a light
@@ -95,16 +95,26 @@ static inline radianceL backdrop_at(__constant const parameters_t *scene, int co
 // height sqrt(det S p' S^-1 p) / |p|^4; `contact` is det S S^-1. For a ball it is exact, down to where they touch. Near a
 // flat body it is more than all, so it is led towards 1.
 #define MOST_SHADE ((real)100)
-static inline realL contact_shadow(__constant const parameters_t *scene, vec3L point) {
+static inline realL contact_shadow(__constant const stone_t *stone, vec3L point) {
   realL outline = splat(0);
   EACH (k, 3) {
-    const realL row = fma(point.x, splat(scene->contact[k][0]),
-                          fma(point.y, splat(scene->contact[k][1]), point.z * scene->contact[k][2]));
+    const realL row = fma(point.x, splat(stone->contact[k][0]),
+                          fma(point.y, splat(stone->contact[k][1]), point.z * stone->contact[k][2]));
     outline = fma(row, k == 0 ? point.x : k == 1 ? point.y : point.z, outline);
   }
   const realL squared = fmax(dot3(point, point), splat((real)1e-6)), height = fmax(-point.y, splat(0));
   const realL part = fmin(height * sqrt(fmax(outline, splat(0))) / (squared * squared), splat(MOST_SHADE));
-  return scene->contact_shadow * part * rsqrt(sqrt(1 + part * part * part * part));
+  return stone->contact_shadow * part * rsqrt(sqrt(1 + part * part * part * part));
+}
+
+// The part of an even sky's light that reaches a point of the floor past all stones.
+static inline realL past_stones(world_t world, vec3L point) {
+  if (GEOMETRY == EMPTY) return splat(1);
+  if (STONES == ONE) return 1 - contact_shadow(world.stones, point);
+  realL part = splat(1);
+  for (int number = 0; number < world.scene->stones; number++)
+    part *= 1 - contact_shadow(world.stones + number, to_own(world, number, point));
+  return part;
 }
 
 // What a ray that meets no stone shows. What the camera sees in place of the sky is `backdrop`, if that is not null.
@@ -150,7 +160,7 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   view.point = along(ray.origin, nearest, ray.direction);
   view.meets = met;
   if (floor_kind == STUDIO_FLOOR) {
-    const realL lit = viewer == BY_CAMERA ? 1 - contact_shadow(scene, view.point) : splat(1);
+    const realL lit = viewer == BY_CAMERA ? past_stones(world, view.point) : splat(1);
     EACH_CHANNEL (k, channels) {
       const realL colour = backdrop ? backdrop->channel[k] : splat(scene->floor_colour[channels.first + k]);
       view.radiance.channel[k] = blend(studio, lit * colour, view.radiance.channel[k]);
@@ -161,8 +171,8 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   }
 
   // Checkers are counted in the world: over x and z on the floor, along the wall and over y on a wall.
-  const realL x = view.point.x + scene->centre[0], y = view.point.y + scene->centre[1],
-              z = view.point.z + scene->centre[2];
+  const realL x = view.point.x + scene->origin[0], y = view.point.y + scene->origin[1],
+              z = view.point.z + scene->origin[2];
   const maskL is_floor = view.normal.y > (real)0.5;
   const realL u = blend(is_floor, x, view.normal.z * x - view.normal.x * z), v = blend(is_floor, z, y);
   const maskL odd = checker(u, v) > (real)0.25;
@@ -180,7 +190,7 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
 #define MIRROR_CUTOFF ((real)0.1)
 
 // Follows rays through the room by way of its mirrors. Returns the radiance that they gather. `towards` takes the lanes to
-// follow, and gives back those that a mirror has sent towards the stone, in `ray` as they leave the mirror. A ray's whole
+// follow, and gives back those that a mirror has sent towards a stone, in `ray` as they leave the mirror. A ray's whole
 // weight is `share` times its own; if that is below the cut-off, the stone is left out of its way. What that may have
 // hidden, and the rays that mirrors would pass on for ever, are added to `cut`. For the camera `glossy` takes up the lanes
 // that end at a studio floor, in `ray` as they meet it.
@@ -212,7 +222,7 @@ __attribute__((always_inline)) static inline radianceL gather(world_t world, ray
           blend_polarisation(active, mirror_polarisation(ray->polarisation, view.normal), ray->polarisation);
     const realL whole = share * ray->weight;
     if (REENTRY) {
-      const maskL heading = active & passes_stone(ray->origin, ray->direction, splat(0));
+      const maskL heading = active & passes_stones(world, ray->origin, ray->direction, splat(0));
       const maskL matters = whole >= cutoff;
       *towards |= heading & matters;
       *cut += blend(heading & !matters, ray->weight, splat(0));

@@ -8,9 +8,12 @@
 // the host passes them by these names (rendering/layout.py).
 #define WORLD_BUFFERS(BUFFER)                                                                                          \
   BUFFER(__constant const parameters_t, scene)                                                                         \
-  BUFFER(__global const real4, facets)  /* HULL: normal and offset, in the world's axes */                             \
-  BUFFER(__global const real4, shadows) /* HULL: planes of the lights' shadow volumes */                               \
-  BUFFER(__global const real, boxes)    /* MESH: see tree_t */                                                         \
+  BUFFER(__constant const stone_t, stones)                                                                             \
+  BUFFER(__constant const group_t, groups) /* MANY */                                                                  \
+  BUFFER(__global const real4, facets)     /* HULL: normal and offset */                                               \
+  BUFFER(__global const real, blocks)      /* HULL of MANY: the same, by TREE_WIDTH */                                 \
+  BUFFER(__global const real4, shadows)    /* HULL: planes of the lights' shadow volumes */                            \
+  BUFFER(__global const real, boxes)       /* MESH: see tree_t */                                                      \
   BUFFER(__global const int, links)                                                                                    \
   BUFFER(__global const real, corners)                                                                                 \
   BUFFER(__global const chain_t, chains)                                                                               \

@@ -1,10 +1,11 @@
 """The wire protocol between browser, gateway and engine: the source of truth for every other language.
 
-`messages` holds what is said on the WebSocket as JSON, `frame` the binary frame, `engine` what gateway and engine say
-to each other over ZeroMQ. The specification is `protocol/README.md`.
+`messages` holds what is said on the WebSocket as JSON, `parts` what a change of the scene is, `frame` the binary
+frame, `watch` the id by which frames are found, `engine` what gateway and engine say to each other over ZeroMQ. The
+specification is `protocol/README.md`.
 """
 
-VERSION = 1
+VERSION = 2
 """Raised when an old client could misunderstand a new server. Not the product's version."""
 
 SUBPROTOCOL = f"culet.v{VERSION}"

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from culet_protocol.messages import BALANCED, Exactness, Message, Question, SessionEvent
+from culet_protocol.messages import BALANCED, Exactness, Message, Question, Revision, SessionEvent
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "webp", "exr"]
@@ -72,7 +72,7 @@ class Ask(Message):
 class Demand(Message):
     """What the session's viewers can take: frames per second (0: none), and the size in pixels.
 
-    Frames are made for who subscribes to the session's 16 bytes at the frames' socket; this says how many, how large.
+    Frames are made for who subscribes to the session's watch id at the frames' socket; this says how many, how large.
     """
 
     type: Literal["demand"] = "demand"
@@ -183,19 +183,25 @@ class Reply(Message):
     field: str | None = None
 
 
-class SessionState(Message):
-    """Told unasked: on every edit, and when the stone has fallen asleep or was woken; what a new engine needs to go
-    on."""
+class SessionChange(Message):
+    """Told unasked: on every edit, and when stones have fallen asleep or were woken; with what was told before, this is
+    what a new engine needs to go on.
 
-    type: Literal["session_state"] = "session_state"
+    `parts` are those of the scene that differ since the revision before, `since`; `moved` those of the snapshot. Who
+    has another revision asks by GetSession.
+    """
+
+    type: Literal["session_change"] = "session_change"
     session: SessionId
-    scene: dict[str, Any]
+    revision: Revision
+    since: Revision
+    parts: dict[str, Any]
     falling: bool
     asleep: bool = False
     exactness: Exactness = BALANCED
     pinned: bool = False
     edited: bool
-    snapshot: dict[str, Any]
+    moved: dict[str, Any]
 
 
 class SessionMotion(Message):
@@ -225,10 +231,10 @@ class Heartbeat(Message):
 
 
 EngineMessage = Annotated[
-    Reply | SessionState | SessionMotion | SessionProblem | Heartbeat, Field(discriminator="type")
+    Reply | SessionChange | SessionMotion | SessionProblem | Heartbeat, Field(discriminator="type")
 ]
 
 engine_request: TypeAdapter[Request] = TypeAdapter(EngineRequest)
-engine_message: TypeAdapter[Reply | SessionState | SessionMotion | SessionProblem | Heartbeat] = TypeAdapter(
+engine_message: TypeAdapter[Reply | SessionChange | SessionMotion | SessionProblem | Heartbeat] = TypeAdapter(
     EngineMessage
 )

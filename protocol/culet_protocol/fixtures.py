@@ -17,6 +17,7 @@ from typing import Any
 
 from culet_protocol import VERSION, messages
 from culet_protocol.frame import HEADER_SIZE, Codec, Flags, Frame
+from culet_protocol.watch import watch_id
 
 FIXTURES = Path(__file__).resolve().parent.parent / "fixtures"
 
@@ -44,13 +45,14 @@ def _png(width: int, height: int, rgb: bytes) -> bytes:
 
 # Fractions are sums of powers of two, so that float32 keeps them and every language prints them alike.
 MOVING = Frame(
-    session=bytes(range(16)), codec=Codec.JPEG, flags=Flags.MOVING | Flags.FRONTIER, sequence=7, width=16, height=8,
+    watch=bytes(range(16)), codec=Codec.JPEG, flags=Flags.MOVING | Flags.FRONTIER, sequence=7, depends_on=6, width=16,
+    height=8,
     samples=1, bands=3, max_bounces=256, cutoff=0.015625, step=42, simulation_time=1.4375, timestamp=1_760_000_000.5,
     simulate_ms=0.125, render_ms=31.5, encode_ms=1.75, cut=0.03125, error=0.0625, payload=JPEG,
 )  # fmt: skip
 STILL = Frame(
-    session=bytes(range(240, 256)), codec=Codec.PNG,
-    flags=Flags.FINAL | Flags.POLARISED | Flags.BELOW | Flags.RIGHT, sequence=0xFFFFFFFF, width=4, height=2,
+    watch=bytes(range(240, 256)), codec=Codec.PNG,
+    flags=Flags.KEY | Flags.FINAL | Flags.POLARISED | Flags.BELOW | Flags.RIGHT, sequence=0xFFFFFFFF, width=4, height=2,
     samples=1024, bands=64, max_bounces=65536, cutoff=2**-20, step=2**53 + 1, simulation_time=0,
     timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5, encode_ms=18.25, cut=0, error=0.015625,
     payload=_png(4, 2, b"\x10\x80\xf0"),
@@ -61,7 +63,7 @@ STILL = Frame(
 def _with(frame: Frame, field: str, value: bytes | int) -> bytes:
     """The frame's bytes with one field of the header overwritten."""
     packed = frame.pack()
-    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (89, "I")}[field]
+    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (93, "I")}[field]
     return packed[:offset] + struct.pack("<" + form, value) + packed[offset + struct.calcsize(form) :]
 
 
@@ -79,7 +81,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
         "truncated_payload": (marked[:-1], f"{len(JPEG)} bytes", f"{len(JPEG) - 1}"),
         "trailing_byte": (marked + b"\0", f"{len(JPEG)} bytes", f"{len(JPEG) + 1}"),
         "wrong_magic": (_with(MOVING, "magic", b"NOPE"), "CULT", "NOPE"),
-        "wrong_version": (_with(MOVING, "version", 2), "version 3", "2"),
+        "wrong_version": (_with(MOVING, "version", 3), "version 4", "3"),
         "wrong_codec": (_with(MOVING, "codec", 9), "1 (JPEG)", "9"),
         "wrong_length": (_with(MOVING, "length", 5), "5 bytes", f"{len(JPEG)}"),
     }
@@ -90,7 +92,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
 
 def _fields(frame: Frame) -> dict[str, Any]:
     values = {field.name: getattr(frame, field.name) for field in fields(frame)}
-    values["session"] = frame.session.hex()
+    values["watch"] = frame.watch.hex()
     values["step"] = str(frame.step)  # JSON readers turn numbers into doubles
     values["error"] = None if math.isnan(frame.error) else frame.error  # JSON has no NaN
     values["payload"] = len(frame.payload)
@@ -103,8 +105,11 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.Dolly(target="light_2", forward=0.5),
     messages.ResetCamera(),
     messages.LookAtStone(),
+    messages.LookAtStone(stone="ruby"),
     messages.ToggleFall(),
+    messages.ToggleFall(stone="ruby"),
     messages.ResetStone(),
+    messages.ResetStone(stone="stone-2"),
     messages.Push(x=0.25, y=-0.125, right=0.5, up=1.5),
     messages.ToggleMirror(),
     messages.ToggleEnvironment(),
@@ -121,9 +126,17 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
 )
 
 NOTICES: tuple[messages.Message, ...] = (
-    messages.Hello(protocol=VERSION, session=bytes(range(16)).hex(), viewer=1),
+    messages.Hello(protocol=VERSION, session=bytes(range(16)).hex(), watch=watch_id(bytes(range(16)).hex()), viewer=1),
     messages.State(
-        scene={"version": 1, "floor": {"kind": "mirror"}}, falling=True, asleep=True, exactness=0.75, pinned=True
+        revision=7,
+        scene={"version": 2, "floor": {"kind": "mirror"}},
+        falling=True,
+        asleep=True,
+        exactness=0.75,
+        pinned=True,
+    ),
+    messages.Change(
+        revision=9, since=7, parts={"floor": {"kind": "matte"}, "stones.ruby": None}, falling=False, exactness=0.25
     ),
     messages.Snapshot(snapshot={"step": 12, "simulation": None}),
     messages.Viewers(count=2),
@@ -150,6 +163,8 @@ REFUSED_CONTROL = {
     "zero": '{"type": "resize", "width": 0, "height": 720}',
     "too exact": '{"type": "balance", "exactness": 1.5, "pinned": false}',
     "unknown target": '{"type": "orbit", "target": "light_3", "yaw": 0, "pitch": 0}',
+    "a stone's id in capitals": '{"type": "toggle_fall", "stone": "Ruby"}',
+    "a pick without a number": '{"type": "pick", "x": 0, "y": 0}',
     "negative sequence": '{"type": "ack", "sequence": -1}',
 }
 
@@ -158,7 +173,7 @@ REFUSED_NOTICES = {
     "not an object": "[]",
     "no type": '{"count": 1}',
     "missing field": '{"type": "viewers"}',
-    "wrong kind": '{"type": "state", "scene": [], "falling": true}',
+    "wrong kind": '{"type": "state", "revision": 1, "scene": [], "falling": true}',
     "unknown status": '{"type": "engine", "status": "sideways"}',
     "not an integer": '{"type": "viewers", "count": 1.5}',
 }
@@ -168,7 +183,7 @@ def generated() -> dict[str, bytes]:
     """File name -> contents, of everything in `protocol/fixtures`."""
     listing = {name: {"file": f"{name}.bin", **finding} for name, (_, finding) in frames().items()}
     spoken = {
-        "control_events": [event.model_dump(mode="json") for event in CONTROL_EVENTS],
+        "control_events": [event.model_dump(mode="json", exclude_none=True) for event in CONTROL_EVENTS],
         "notices": [notice.model_dump(mode="json") for notice in NOTICES],
         "refused_control_events": REFUSED_CONTROL,
         "refused_notices": REFUSED_NOTICES,

@@ -1,7 +1,8 @@
 """A frame: a fixed header of little-endian fields, then the encoded picture, in one message.
 
-The same bytes travel over ZeroMQ and WebSocket. They begin with the session's 16 bytes, which is the ZeroMQ topic,
+The same bytes travel over ZeroMQ and WebSocket. They begin with the session's watch id, which is the ZeroMQ topic,
 since topics match by prefix; a single part lets a native viewer use SUB with CONFLATE, which keeps only the latest.
+Watch id, mark and version stay where they are in every version, so that a reader of another one can say so.
 """
 
 from __future__ import annotations
@@ -12,7 +13,10 @@ from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
 MAGIC = b"CULT"
-HEADER_VERSION = 3
+HEADER_VERSION = 4
+
+REFUSED = 0
+"""In place of a codec: the payload is a sentence in UTF-8 about why there are no frames by this topic."""
 
 
 class Codec(IntEnum):
@@ -27,7 +31,7 @@ class Flags(IntFlag):
 
     NONE = 0
     MOVING = 1
-    """The stone is falling."""
+    """A stone is falling."""
     FINAL = 2
     """The picture has all its samples: nothing better will come until something changes."""
     POLARISED = 4
@@ -35,14 +39,17 @@ class Flags(IntFlag):
     FRONTIER = 8
     """The error is not of this picture: it is what the measured front of error against time says of its settings."""
     ABOVE = 16
-    """The whole stone is beyond the picture's upper edge: it is not seen. Likewise those that follow."""
+    """No stone is seen, and the whole of the one nearest to the camera is beyond the picture's upper edge.
+    Likewise those that follow."""
     BELOW = 32
     LEFT = 64
     RIGHT = 128
     BEHIND = 256
     """Behind the camera; then none of the other four is set."""
     SLOW = 512
-    """The stone moves slower than in real time: its steps, and those of others, take longer than there is time for."""
+    """Stones move slower than in real time: their steps, and those of others, take longer than there is time for."""
+    KEY = 1024
+    """The picture can be shown without any before it. A frame without this flag needs the one that it depends on."""
 
 
 class FrameError(ValueError):
@@ -58,16 +65,17 @@ class HeaderField(NamedTuple):
 
 
 FIELDS = (
-    HeaderField("session", "16s", "id of the session: 16 bytes, hexadecimal in URLs"),
+    HeaderField("watch", "16s", "watch id of the session, in hexadecimal digits; the ZeroMQ topic"),
     HeaderField("magic", "4s", "CULT"),
     HeaderField("version", "B", "version of this header"),
     HeaderField("codec", "B", "1 JPEG, 2 PNG"),
     HeaderField(
         "flags",
         "H",
-        "bit 0 moving, bit 1 final, bit 2 polarised, bit 3 error from the frontier, bits 4-8 stone unseen, bit 9 slow",
+        "bits: 0 moving, 1 final, 2 polarised, 3 the frontier's error, 4 to 8 no stone seen, 9 slow, 10 key",
     ),
     HeaderField("sequence", "I", "number of the frame in its session, from 1"),
+    HeaderField("depends_on", "I", "number of the frame that this one can be decoded after; 0 of a key frame"),
     HeaderField("width", "H", "pixels"),
     HeaderField("height", "H", "pixels"),
     HeaderField("samples", "I", "samples per pixel in this picture"),
@@ -75,7 +83,7 @@ FIELDS = (
     HeaderField("max_bounces", "I", "reflections after which a chain of light was cut"),
     HeaderField("cutoff", "f", "weight below which a chain of light was ended, 0 to 1"),
     HeaderField("step", "Q", "number of the state shown; names the frame for frame.tga?step="),
-    HeaderField("simulation_time", "d", "s since the stone was put at its start"),
+    HeaderField("simulation_time", "d", "s since the stones were put at their start"),
     HeaderField("timestamp", "d", "s since the Unix epoch, engine's clock, when encoded"),
     HeaderField("simulate_ms", "f", "milliseconds spent on the simulation before the picture's first sample"),
     HeaderField("render_ms", "f", "milliseconds spent on rendering, all samples"),
@@ -93,7 +101,7 @@ HEADER_SIZE = LAYOUT.size
 class Frame:
     """One picture of one session; see FIELDS for units."""
 
-    session: bytes
+    watch: bytes
     codec: Codec
     flags: Flags
     sequence: int
@@ -112,14 +120,16 @@ class Frame:
     cut: float
     error: float
     payload: bytes
+    depends_on: int = 0
 
     def pack(self) -> bytes:
         """The message: header, then payload."""
-        if len(self.session) != 16:
-            raise FrameError(f"a session id has 16 bytes, got {len(self.session)}")
+        if len(self.watch) != 16:
+            raise FrameError(f"a watch id has 16 bytes, got {len(self.watch)}")
         header = LAYOUT.pack(
-            self.session, MAGIC, HEADER_VERSION, self.codec, self.flags, self.sequence & 0xFFFFFFFF, self.width,
-            self.height, self.samples, self.bands, self.max_bounces, self.cutoff, self.step, self.simulation_time,
+            self.watch, MAGIC, HEADER_VERSION, self.codec, self.flags, self.sequence & 0xFFFFFFFF,
+            self.depends_on & 0xFFFFFFFF, self.width, self.height, self.samples,
+            self.bands, self.max_bounces, self.cutoff, self.step, self.simulation_time,
             self.timestamp, self.simulate_ms, self.render_ms, self.encode_ms, self.cut, self.error, len(self.payload),
         )  # fmt: skip
         return header + self.payload
@@ -130,7 +140,8 @@ class Frame:
         if len(message) < HEADER_SIZE:
             raise FrameError(f"a frame has at least {HEADER_SIZE} bytes, got {len(message)}")
         (
-            session, magic, version, codec, flags, sequence, width, height, samples, bands, max_bounces, cutoff, step,
+            watch, magic, version, codec, flags, sequence, depends_on, width, height, samples,
+            bands, max_bounces, cutoff, step,
             simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, length,
         ) = LAYOUT.unpack_from(message)  # fmt: skip
         if magic != MAGIC:
@@ -140,11 +151,21 @@ class Frame:
         payload = bytes(message[HEADER_SIZE:])
         if len(payload) != length:
             raise FrameError(f"expected {length} bytes of payload, got {len(payload)}")
+        if codec == REFUSED:
+            raise FrameError(payload.decode("utf-8", "replace"))
         try:
             codec = Codec(codec)
         except ValueError:
             raise FrameError(f"expected codec {', '.join(f'{c} ({c.name})' for c in Codec)}, got {codec}") from None
         return cls(
-            session, codec, Flags(flags), sequence, width, height, samples, bands, max_bounces, cutoff, step,
+            watch, codec, Flags(flags), sequence, width, height, samples, bands, max_bounces, cutoff, step,
             simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, payload,
+            depends_on,
         )  # fmt: skip
+
+
+def refusal(topic: bytes, why: str) -> bytes:
+    """The message to whoever waits for frames by a topic that brings none; readers of any version complain of it."""
+    sentence = why.encode()
+    numbers = [0] * (len(FIELDS) - 5)
+    return LAYOUT.pack(topic, MAGIC, HEADER_VERSION, REFUSED, *numbers, len(sentence)) + sentence

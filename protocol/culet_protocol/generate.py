@@ -170,7 +170,7 @@ def frame_typescript() -> str:
     """The text of `frame.ts`."""
     interface, reads, offset = [], [], 0
     for field in frame.FIELDS:
-        if field.name == "session":
+        if field.name == "watch":
             kind, read = "string", f"hexadecimal(new Uint8Array(message, {offset}, 16))"
         elif field.name == "magic":
             kind, read = "", f"String.fromCharCode(...new Uint8Array(message, {offset}, 4))"

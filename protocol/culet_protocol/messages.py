@@ -14,9 +14,13 @@ Distance = Annotated[float, Field(ge=-1e6, le=1e6)]
 Angle = Annotated[float, Field(ge=-1e3, le=1e3)]
 PicturePoint = Annotated[float, Field(ge=-100, le=100)]
 Blow = Annotated[float, Field(ge=-20, le=20)]
+StoneId = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}$")]
+"""As a scene names its stones."""
 Target = Literal["camera", "light_1", "light_2"]
 Pixels = Annotated[int, Field(ge=16, le=8192)]
 Exactness = Annotated[float, Field(ge=0, le=1)]
+Revision = Annotated[int, Field(ge=0, le=2**53 - 1)]
+"""Counts the states of a session that viewers could be told."""
 BALANCED: Exactness = 0.5
 """What a new session has."""
 FASTEST_RATE, EXACTEST_RATE = 60.0, 15.0
@@ -65,25 +69,29 @@ class ResetCamera(Message):
 
 
 class LookAtStone(Message):
-    """Move the camera, without turning it, to where it has the stone in the middle and sees all its height."""
+    """Move the camera, without turning it, to where it has a stone in the middle and sees all its height; or all
+    stones, if none is named."""
 
     type: Literal["look_at_stone"] = "look_at_stone"
+    stone: StoneId | None = None
 
 
 class ToggleFall(Message):
-    """Start or pause free fall."""
+    """Start or pause the free fall of a stone; of all, if none is named."""
 
     type: Literal["toggle_fall"] = "toggle_fall"
+    stone: StoneId | None = None
 
 
 class ResetStone(Message):
-    """Put the stone back to where the scene has it, and stop it."""
+    """Put a stone back to where the scene has it, and stop it; all, if none is named."""
 
     type: Literal["reset_stone"] = "reset_stone"
+    stone: StoneId | None = None
 
 
 class Push(Message):
-    """Strike the stone where the picture shows it, and let time go on; past the stone it does nothing.
+    """Strike the stone that the picture shows at a point, and let time go on; past all stones it does nothing.
 
     x to the right and y up, from the picture's centre, in halves of its height. The blow is along the camera's right
     and up, and so strong that it changes the velocity of the stone's centre by that, R/s.
@@ -115,14 +123,16 @@ class ToggleWalls(Message):
 
 
 class PatchScene(Message):
-    """Change parts of the scene: a JSON merge patch (RFC 7396), but an object of another `kind` is replaced."""
+    """Change parts of the scene: a JSON merge patch (RFC 7396), but an object of another `kind` is replaced, and
+    `stones` may be an object: by its id it reaches a stone, adds one that has a `cut` or a `mesh`, or, by null, removes
+    one."""
 
     type: Literal["patch_scene"] = "patch_scene"
     patch: dict[str, Any]
 
 
 class SetScene(Message):
-    """Replace the whole scene; camera and stone go to where it has them."""
+    """Replace the whole scene; camera and stones go to where it has them."""
 
     type: Literal["set_scene"] = "set_scene"
     scene: dict[str, Any]
@@ -154,7 +164,7 @@ class Outline(Message):
     """Asks where the picture of a step, of a frame's header, shows a stone; the answer is an `outlined`."""
 
     type: Literal["outline"] = "outline"
-    stone: Annotated[str, Field(max_length=64)]
+    stone: StoneId
     step: Annotated[int, Field(ge=0, le=2**53)]
 
 
@@ -208,14 +218,17 @@ class Hello(Message):
     type: Literal["hello"] = "hello"
     protocol: int
     session: str
+    watch: str
+    """The watch id, which frames carry."""
     viewer: int
 
 
 class State(Message):
-    """The session's scene as it is now (with the live camera), whether the stone falls, or sleeps for good, and the
-    session's balance; sent on every edit, and when the stone falls asleep."""
+    """The session's scene as it is now (with the live camera), whether stones fall, or all sleep for good, and the
+    session's balance: to a viewer that joins, and whenever it could not follow by a Change."""
 
     type: Literal["state"] = "state"
+    revision: Revision
     scene: dict[str, Any]
     falling: bool
     asleep: bool = False
@@ -223,8 +236,24 @@ class State(Message):
     pinned: bool = False
 
 
+class Change(Message):
+    """What is another since the revision that the viewer was told last: on every edit, and when stones fall asleep.
+
+    `parts` are those of the scene, as `culet_protocol.parts` says; the rest is as in State, whole.
+    """
+
+    type: Literal["change"] = "change"
+    revision: Revision
+    since: Revision
+    parts: dict[str, Any]
+    falling: bool
+    asleep: bool = False
+    exactness: Exactness = BALANCED
+    pinned: bool = False
+
+
 class Snapshot(Message):
-    """What a server would need, besides the last `state`, to make the session again if it were lost: told to a viewer
+    """What a server would need, besides the last scene, to make the session again if it were lost: told to a viewer
     that joins, and once a second at most while it changes. Only the server knows what is in it."""
 
     type: Literal["snapshot"] = "snapshot"
@@ -285,13 +314,10 @@ class Outlined(Message):
 Answer = Picked | Outlined
 """What a Question is answered by."""
 
-Notice = Annotated[
-    Hello | State | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined, Field(discriminator="type")
-]
+AnyNotice = Hello | State | Change | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined
+Notice = Annotated[AnyNotice, Field(discriminator="type")]
 
 control_event: TypeAdapter[SessionEvent | Question | ViewerEvent] = TypeAdapter(ControlEvent)
 session_event: TypeAdapter[SessionEvent] = TypeAdapter(Annotated[SessionEvent, Field(discriminator="type")])
 answer: TypeAdapter[Answer] = TypeAdapter(Annotated[Answer, Field(discriminator="type")])
-notice: TypeAdapter[Hello | State | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined] = TypeAdapter(
-    Notice
-)
+notice: TypeAdapter[AnyNotice] = TypeAdapter(Notice)

@@ -29,15 +29,13 @@ def changed_parts(before: Document, after: Document) -> dict[str, Any]:
 
 def with_parts(scene: Document, parts: Document) -> dict[str, Any]:
     """The scene with these parts; what did not change is the same object as before."""
+    of_stones = {name.removeprefix(STONE): stone for name, stone in parts.items() if name.startswith(STONE)}
     after = {**scene, **{name: value for name, value in parts.items() if not name.startswith(STONE)}}
-    stones = _by_id(after)
-    for name, stone in parts.items():
-        if name.startswith(STONE) and stone is None:
-            stones.pop(name.removeprefix(STONE), None)
-        elif name.startswith(STONE):
-            stones[name.removeprefix(STONE)] = stone
-    return after | {"stones": list(stones.values())}
+    if of_stones:
+        stones = _by_id(after) | of_stones
+        after["stones"] = [stone for stone in stones.values() if stone is not None]
+    return after
 
 
 def _by_id(scene: Document) -> dict[str, Any]:
-    return {stone["id"]: stone for stone in scene["stones"]}
+    return {stone["id"]: stone for stone in scene.get("stones", ())}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -40,7 +41,10 @@ Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint 
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
 Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
 SessionId = Annotated[
-    str, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
+    str | None, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
+]
+WatchId = Annotated[
+    str | None, typer.Option(help="The session's watch id, in place of its id; `POST /api/sessions` gives it.")
 ]
 Folder = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder for the frames; made if missing.")]
 Spare = Annotated[
@@ -278,7 +282,8 @@ def engine(
 @app.command()
 def view(
     endpoint: Endpoint,
-    session: SessionId,
+    session: SessionId = None,
+    watch: WatchId = None,
     frames: Annotated[int, typer.Option(min=1, help="How many frames to take.")] = 10,
     out: Folder = Path("frames"),
     timeout: Patience = 10,
@@ -287,14 +292,15 @@ def view(
     from culet_client.view import view as view_frames
 
     with errors_in_one_line():
-        count = view_frames(endpoint, session, frames, out, timeout_seconds=timeout)
+        count = view_frames(endpoint, _watch_of(session, watch), frames, out, timeout_seconds=timeout)
         typer.echo(f"{out}: {count} frames")
 
 
 @app.command()
 def record(
     endpoint: Endpoint,
-    session: SessionId,
+    session: SessionId = None,
+    watch: WatchId = None,
     seconds: Annotated[float, typer.Option(min=0, help="How long, counted from the first frame.")] = 10,
     out: Folder = Path("frames"),
     timeout: Patience = 10,
@@ -303,8 +309,22 @@ def record(
     from culet_client.view import record as record_frames
 
     with errors_in_one_line():
-        count = record_frames(endpoint, session, seconds, out, timeout_seconds=timeout)
+        count = record_frames(endpoint, _watch_of(session, watch), seconds, out, timeout_seconds=timeout)
         typer.echo(f"{out}: {count} frames")
+
+
+def _watch_of(session: str | None, watch: str | None) -> str:
+    """The watch id of what the user named."""
+    from culet_client import ClientError
+    from culet_protocol.watch import watch_id
+
+    if (session is None) == (watch is None):
+        raise ClientError("expected --session or --watch, got both or neither")
+    if watch is not None:
+        return watch
+    if session is None or not re.fullmatch("[0-9a-f]{32}", session):
+        raise ClientError(f"a session's id has 32 hexadecimal digits, got {session!r}")
+    return watch_id(session)
 
 
 app.add_typer(study_app, name="study")

@@ -93,7 +93,7 @@ def test_who_is_slow_gets_the_latest_and_is_never_behind(publisher: Publisher) -
 def test_other_sessions_frames_do_not_come(publisher: Publisher) -> None:
     with FrameSubscription(publisher.endpoint, SESSION) as subscription:
         publisher.subscription()
-        publisher.socket.send(replace(FRAME, session=bytes(16)).pack())
+        publisher.socket.send(replace(FRAME, watch=bytes(16)).pack())
         publisher.send(7)
         assert subscription.receive().sequence == 7
 
@@ -124,7 +124,7 @@ def test_frames_become_files_with_an_index(tmp_path: Path) -> None:
     assert folder.write(FRAME).read_bytes() == b"picture"
     assert folder.write(replace(FRAME, codec=Codec.PNG)).name == "frame-000002.png"
     first, _ = (json.loads(line) for line in (folder.folder / INDEX).read_text().splitlines())
-    assert (first["file"], first["step"], first["codec"], first["session"]) == ("frame-000001.jpg", 9, "JPEG", SESSION)
+    assert (first["file"], first["step"], first["codec"], first["watch"]) == ("frame-000001.jpg", 9, "JPEG", SESSION)
 
 
 def test_a_folder_that_cannot_be_made_is_said_so(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ import zmq.asyncio
 
 from culet_protocol.engine import REQUEST_NUMBER
 from culet_protocol.frame import Frame
+from culet_protocol.watch import watch_key
 
 PATIENCE = 30.0
 """s; an upper limit for what takes a fraction of a second, or some seconds while kernels compile for the first time."""
@@ -152,7 +153,7 @@ class Watcher:
     """A subscriber to one session's frames."""
 
     def __init__(self, context: zmq.asyncio.Context, frames: str, session: str) -> None:
-        self.topic = bytes.fromhex(session)
+        self.topic = watch_key(session)
         self._socket = context.socket(zmq.SUB)
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.subscribe(self.topic)

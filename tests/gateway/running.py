@@ -23,6 +23,7 @@ from culet.gateway.state import Gateway as Parts
 from culet_protocol import SUBPROTOCOL
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Message, Resize
+from culet_protocol.parts import with_parts
 
 PATIENCE = 30.0
 """Seconds until a condition that should come true counts as failed; machines can be slow, kernels must be built."""
@@ -85,6 +86,10 @@ class Viewer:
         self.acknowledges = acknowledges
         self.frames: list[Frame] = []
         self.notices: list[dict[str, Any]] = []
+        """Changes as the states that they make."""
+        self.changes: list[dict[str, Any]] = []
+        """As they came."""
+        self._state: dict[str, Any] = {}
 
     async def say(self, message: Message) -> None:
         """Send a control event."""
@@ -95,12 +100,24 @@ class Viewer:
         """One message."""
         message = await self.websocket.recv()
         if isinstance(message, str):
-            self.notices.append(json.loads(message))
+            self.notices.append(self._whole(json.loads(message)))
             return
         frame = Frame.unpack(message)
         self.frames.append(frame)
         if self.acknowledges:
             await self.websocket.send(json.dumps({"type": "ack", "sequence": frame.sequence}))
+
+    def _whole(self, notice: dict[str, Any]) -> dict[str, Any]:
+        """A change as the state that it makes of the one before; any other notice as it came."""
+        if notice["type"] == "change":
+            assert notice["since"] == self._state["revision"]
+            self.changes.append(notice)
+            scene = with_parts(self._state["scene"], notice["parts"])
+            notice = {name: value for name, value in notice.items() if name not in ("since", "parts")}
+            notice |= {"type": "state", "scene": scene}
+        if notice["type"] == "state":
+            self._state = notice
+        return notice
 
     async def until(self, condition: Callable[[], bool]) -> None:
         """Receive until the condition holds."""

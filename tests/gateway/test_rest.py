@@ -16,6 +16,7 @@ from culet.scene import Scene
 from culet.scene.motion import Simulation
 from culet.scene.stone import MaterialName
 from culet_client import FrameSubscription
+from culet_protocol.watch import watch_id
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
 SMALL = {"width": 64, "height": 36}
@@ -369,7 +370,7 @@ async def test_sessions_that_nobody_uses_expire(engine: Endpoints, tmp_path: Pat
 async def test_a_session_that_only_a_native_viewer_watches_does_not_expire(engine: Endpoints, tmp_path: Path) -> None:
     async with gateway_before(engine, web=tmp_path, session_idle_seconds=0.3) as gateway:
         watched, idle = await gateway.session(), await gateway.session()
-        with FrameSubscription(engine.frames, watched) as subscription:
+        with FrameSubscription(engine.frames, watch_id(watched)) as subscription:
             await asyncio.to_thread(subscription.receive, PATIENCE)
 
             async def one_left() -> bool:
@@ -377,7 +378,7 @@ async def test_a_session_that_only_a_native_viewer_watches_does_not_expire(engin
 
             await eventually(one_left)
             shown = await asyncio.to_thread(subscription.receive, PATIENCE)
-            assert shown.session.hex() == watched
+            assert shown.watch.hex() == watch_id(watched)
             assert (await gateway.http.get(f"/api/sessions/{watched}")).status_code == 200
             assert_problem(await gateway.http.get(f"/api/sessions/{idle}"), 404)
 

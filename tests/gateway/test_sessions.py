@@ -33,7 +33,12 @@ def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_i
     session = SessionRecord("ab" * 16, {"floor": {}})
     viewer = sessions.join(session)
     notices = [viewer.next_notice(0) for _ in range(4)]
-    assert notices == [State(scene={"floor": {}}, falling=False), Viewers(count=1), Engine(status="down"), None]
+    assert notices == [
+        State(revision=0, scene={"floor": {}}, falling=False),
+        Viewers(count=1),
+        Engine(status="down"),
+        None,
+    ]
 
 
 def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_watched_longest(

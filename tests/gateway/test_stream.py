@@ -21,17 +21,24 @@ from culet.scene import Scene
 from culet_protocol.close import CloseCode
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Balance, Orbit, Outline, Pick, Ping, ResetStone, Resize, ToggleFall, Visibility
+from culet_protocol.watch import watch_id
 from gateway.running import FOREIGN, PATIENCE, SIZE, Endpoints, Gateway, eventually, gateway_before
 
 
 async def test_a_viewer_is_greeted_and_gets_frames_of_its_size_up_to_the_final_one(gateway: Gateway) -> None:
     session = await gateway.session()
     async with gateway.viewer(session) as viewer:
-        assert await viewer.notice("hello") == {"type": "hello", "protocol": 1, "session": session, "viewer": 1}
+        assert await viewer.notice("hello") == {
+            "type": "hello",
+            "protocol": 2,
+            "session": session,
+            "watch": watch_id(session),
+            "viewer": 1,
+        }
         assert (await viewer.notice("state"))["scene"] == Scene().model_dump(mode="json")
         assert (await viewer.notice("viewers"))["count"] == 1
         final = await viewer.final()
-    assert final.session.hex() == session
+    assert final.watch.hex() == watch_id(session)
     assert (final.width, final.height) == (64, 36)
     assert final.payload[:2] == b"\xff\xd8", "JPEG begins with its start-of-image marker"
 
@@ -240,7 +247,7 @@ async def test_a_message_beyond_any_use_closes_that_viewer_only(gateway: Gateway
         (
             {"subprotocols": [Subprotocol("culet.v99")]},
             CloseCode.PROTOCOL_ERROR,
-            "this server speaks culet.v1; reload the page",
+            "this server speaks culet.v2; reload the page, or use its own client",
         ),
     ],
     ids=["foreign page", "other protocol"],

@@ -29,7 +29,7 @@ def golden(name: str) -> bytes:
 def test_golden_bytes_hold_the_listed_fields(name: str) -> None:
     frame = Frame.unpack(golden(name))
     wanted = LISTING[name]["fields"]
-    assert frame.session.hex() == wanted.pop("session")
+    assert frame.watch.hex() == wanted.pop("watch")
     assert frame.step == int(wanted.pop("step"))
     assert len(frame.payload) == wanted.pop("payload")
     wanted["error"] = math.nan if wanted["error"] is None else wanted["error"]
@@ -62,9 +62,9 @@ def test_golden_payloads_are_pictures_of_the_size_in_the_header(
 
 
 def test_the_header_has_no_padding_and_starts_with_the_topic() -> None:
-    assert sum(struct.calcsize("<" + field.format) for field in FIELDS) == HEADER_SIZE == 93
+    assert sum(struct.calcsize("<" + field.format) for field in FIELDS) == HEADER_SIZE == 97
     packed = MOVING.pack()
-    assert packed[:16] == MOVING.session
+    assert packed[:16] == MOVING.watch
     assert packed[16:20] == MAGIC
     assert len(packed) == LAYOUT.size + len(MOVING.payload)
 
@@ -79,6 +79,6 @@ def test_flags_are_bits() -> None:
     assert both.flags & Flags.FINAL
 
 
-def test_a_session_of_the_wrong_length_is_refused_before_it_is_sent() -> None:
+def test_a_watch_id_of_the_wrong_length_is_refused_before_it_is_sent() -> None:
     with pytest.raises(FrameError, match="16 bytes, got 3"):
-        replace(MOVING, session=b"abc").pack()
+        replace(MOVING, watch=b"abc").pack()

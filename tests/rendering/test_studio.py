@@ -17,7 +17,7 @@ from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.optics.panoramas import directions
 from culet.rendering.features import ESTIMATOR, Features, features_of, geometry_of
-from culet.rendering.projection import rotation_matrix
+from culet.rendering.placed_stone import placed_stones, rotation_matrix
 from culet.rendering.renderer import Renderer
 from culet.rendering.studio import contact_form
 from culet.scene import PRESETS, Scene
@@ -46,7 +46,8 @@ def shown(
     renderer: Renderer, scene: Scene, stone: Shape | None = None, size: tuple[int, int] = SIZE, samples: int = 1
 ) -> Array:
     """The picture by the general program, which is compiled once for all."""
-    features = Features(geometry_of(stone if scene.stones else None), estimator=ESTIMATOR[scene.optics.estimator])
+    shapes = [stone] if stone is not None and scene.stones else []
+    features = Features(geometry_of(shapes), estimator=ESTIMATOR[scene.optics.estimator])
     return radiance(take(renderer, scene, stone, size, samples, features))
 
 
@@ -316,17 +317,22 @@ def test_the_contact_shadow_of_a_brilliant_at_rest_is_near_that_of_an_even_sky(
     assert abs(seen - truth).max() < 0.25
 
 
+def form(scene: Scene, shape: Shape) -> Array:
+    (stone,) = placed_stones(staged(scene, shape))
+    return contact_form(stone)
+
+
 def test_the_shadows_ellipsoid_has_the_stones_moments(brilliant: Shape) -> None:
     """A slab's: second moments of a box are a third of its half widths squared (uniform density)."""
     plate = slab(0.3)
     half = np.array([np.sqrt((1 - 0.09) / 2), 0.3, np.sqrt((1 - 0.09) / 2)])
     spread = np.diag(5 * half**2 / 3)
     expected = np.linalg.det(spread) * np.linalg.inv(spread)
-    assert contact_form(scene_of(stones=[{**UPRIGHT}]), plate) == pytest.approx(expected, rel=1e-9)
+    assert form(scene_of(stones=[{**UPRIGHT}]), plate) == pytest.approx(expected, rel=1e-9)
     turned = scene_of(stones=[{}])
     rotation = rotation_matrix(turned.stones[0].orientation)
-    upright = contact_form(scene_of(stones=[{**UPRIGHT}]), brilliant)
-    assert contact_form(turned, brilliant) == pytest.approx(rotation @ upright @ rotation.T, abs=1e-12)
+    upright = form(scene_of(stones=[{**UPRIGHT}]), brilliant)
+    assert form(turned, brilliant) == pytest.approx(rotation @ upright @ rotation.T, abs=1e-12)
 
 
 def test_without_glare_the_first_reflection_is_missing_and_nothing_else(exact: Renderer) -> None:

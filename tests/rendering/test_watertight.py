@@ -16,7 +16,7 @@ from culet.geometry.shape import Shape
 from culet.rendering.build import FLAGS, Variant
 from culet.rendering.device import Device, Real
 from culet.rendering.layout import struct
-from culet.rendering.projection import rotation_matrix
+from culet.rendering.placed_stone import rotation_matrix
 from culet.rendering.tree import tree_of
 from rendering.views import Array
 from shared.stones import ball, box, brilliant, ring, star, thorns
@@ -111,7 +111,7 @@ def walk(
         orientation = random.normal(size=4) if turn else np.array([1.0, 0, 0, 0])
         w, x, y, z = orientation / np.linalg.norm(orientation)
         rotation = rotation_matrix((w, x, y, z))
-        parameters = np.zeros((), struct("parameters_t", real))
+        parameters = np.zeros((), struct("stone_t", real))
         parameters["axes"] = rotation
         rays = aimed(stone, rows * lanes, random).reshape(-1, 2, 3) @ rotation.T
         results = upload(found[turn]), upload(farthest[turn])

@@ -26,6 +26,7 @@ from culet.service.supervisor import STARTS_BEFORE_GIVING_UP, Part, Supervisor
 from culet_client import FrameSubscription
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Orbit, ToggleFall
+from culet_protocol.watch import watch_id
 from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Viewer, announced, eventually, png
 
 
@@ -235,11 +236,11 @@ async def test_frames_are_published_where_native_viewers_want_them_and_to_the_pa
     with _serve(tmp_path, "--frames", elsewhere) as (process, url):
         async with httpx.AsyncClient(base_url=url, timeout=PATIENCE) as http:
             session = (await http.post("/api/sessions")).json()["id"]
-            with FrameSubscription(elsewhere, session) as subscription:
+            with FrameSubscription(elsewhere, watch_id(session)) as subscription:
                 frame = await asyncio.to_thread(subscription.receive, PATIENCE)
-            assert frame.session.hex() == session
+            assert frame.watch.hex() == watch_id(session)
             async with Served(process, http).viewer(session) as viewer:
-                assert (await viewer.frame()).session.hex() == session
+                assert (await viewer.frame()).watch.hex() == watch_id(session)
 
 
 async def test_an_engine_does_not_outlive_a_killed_parent(served: Served, tmp_path: Path) -> None:
@@ -393,7 +394,7 @@ async def test_an_engine_that_stands_still_is_replaced(served: Served) -> None:
             return not alive(engine)
 
         await eventually(replaced)
-        assert (await viewer.frame()).session.hex() == session
+        assert (await viewer.frame()).watch.hex() == watch_id(session)
 
 
 async def test_a_resting_session_never_uses_a_number_again_however_often_the_engine_dies(served: Served) -> None:

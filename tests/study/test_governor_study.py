@@ -34,7 +34,7 @@ FLAT = Scene.read(
 
 def frame(step: int, flags: Flags) -> Frame:
     return Frame(
-        session=bytes(16), codec=Codec.JPEG, flags=flags, sequence=step, width=64, height=36, samples=1, bands=3,
+        watch=bytes(16), codec=Codec.JPEG, flags=flags, sequence=step, width=64, height=36, samples=1, bands=3,
         max_bounces=48, cutoff=0.01, step=step, simulation_time=step / 30, timestamp=0, simulate_ms=1, render_ms=1,
         encode_ms=1, cut=0, error=0.05, payload=b"",
     )  # fmt: skip

@@ -37,7 +37,7 @@ function open(): FakeSocket {
 describe("opening", () => {
   it("asks for this version of the protocol and for array buffers", () => {
     const socket = open();
-    expect([socket.url, socket.protocol, socket.binaryType]).toEqual([URL, "culet.v1", "arraybuffer"]);
+    expect([socket.url, socket.protocol, socket.binaryType]).toEqual([URL, "culet.v2", "arraybuffer"]);
     expect(connections.map(({ status }) => status)).toEqual(["connecting", "open"]);
   });
 

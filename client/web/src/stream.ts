@@ -76,6 +76,12 @@ export class Stream {
     if (this.now.status === "waiting") this.open();
   }
 
+  /** Begin anew, since something of it was lost: the server tells everything to whoever joins. */
+  reopen(): void {
+    this.socket?.close();
+    this.lost(1006, "begun anew");
+  }
+
   /** Whether it was sent: events are not kept for later, since a drag of ten seconds ago means nothing. */
   send(event: ControlEvent): boolean {
     if (this.now.status !== "open" || !this.socket) return false;

@@ -1,9 +1,9 @@
 import type { Notice } from "@culet/protocol/messages";
 import { describe, expect, it } from "vitest";
-import { describeChange, INITIAL, withNotice } from "./view-state";
+import { describeChange, INITIAL, isAmiss, withNotice } from "./view-state";
 
 function shown(scene: Record<string, unknown>, falling = false): Notice {
-  return { type: "state", scene, falling };
+  return { type: "state", revision: 1, scene, falling };
 }
 
 const DEFAULT = { floor: { kind: "mirror" }, walls: { kind: "none" }, environment: { kind: "dark" } };
@@ -22,15 +22,34 @@ describe("the state after a notice", () => {
   });
 
   it("knows that the stone sleeps, which older servers do not say", () => {
-    const asleep = { type: "state", scene: DEFAULT, falling: true, asleep: true } as const;
+    const asleep = { type: "state", revision: 1, scene: DEFAULT, falling: true, asleep: true } as const;
     expect(withNotice(INITIAL, asleep).asleep).toBe(true);
     expect(withNotice(INITIAL, shown(DEFAULT, true)).asleep).toBe(false);
   });
 
   it("has the session's balance, half way if none is said", () => {
     const balance = { exactness: 0.75, pinned: true };
-    expect(withNotice(INITIAL, { type: "state", scene: DEFAULT, falling: false, ...balance })).toMatchObject(balance);
+    expect(
+      withNotice(INITIAL, { type: "state", revision: 1, scene: DEFAULT, falling: false, ...balance }),
+    ).toMatchObject(balance);
     expect(withNotice(INITIAL, shown(DEFAULT))).toMatchObject({ exactness: 0.5, pinned: false });
+  });
+
+  it("follows by what has changed", () => {
+    const before = withNotice(INITIAL, shown(DEFAULT));
+    const parts = { floor: { kind: "matte" }, environment: { kind: "light" } };
+    const change = { type: "change", revision: 5, since: 1, parts, falling: true } as const;
+    expect(isAmiss(before, change)).toBe(false);
+    expect(withNotice(before, change)).toMatchObject({
+      revision: 5,
+      scene: { ...DEFAULT, ...parts },
+      falling: true,
+      mirror: false,
+      light: true,
+    });
+    expect(isAmiss(before, { ...change, since: 2 })).toBe(true);
+    expect(isAmiss(INITIAL, change)).toBe(true);
+    expect(isAmiss(INITIAL, shown(DEFAULT))).toBe(false);
   });
 
   it("survives a scene without the parts it looks at", () => {
@@ -45,7 +64,7 @@ describe("the state after a notice", () => {
     const down = withNotice(INITIAL, { type: "engine", status: "down" });
     expect(down.engine).toBe("down");
     expect(withNotice(down, { type: "engine", status: "up" }).engine).toBe("up");
-    expect(withNotice(down, { type: "hello", protocol: 1, session: "0", viewer: 1 }).engine).toBe("up");
+    expect(withNotice(down, { type: "hello", protocol: 2, session: "0", watch: "cd", viewer: 1 }).engine).toBe("up");
   });
 
   it("is the same value if nothing in it changed", () => {

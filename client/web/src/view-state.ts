@@ -1,14 +1,17 @@
 /** What the page knows of its session: an immutable value, changed by notices. */
 
-import { BALANCED, type JsonObject, type Notice } from "@culet/protocol/messages";
+import { BALANCED, type Change, type JsonObject, type Notice, type State } from "@culet/protocol/messages";
 import type { Target } from "./events";
 import { part, text } from "./json";
+import { withParts } from "./scene-parts";
 
 export interface ViewState {
   target: Target;
   scene: JsonObject | null;
   /** The id of the stone that this viewer has chosen. */
   stone: string | null;
+  /** Of what was told of the scene last; null before that. */
+  revision: number | null;
   falling: boolean;
   /** It came to rest and sleeps: nothing moves, though it was told to fall. */
   asleep: boolean;
@@ -27,6 +30,7 @@ export const INITIAL: ViewState = {
   target: "camera",
   scene: null,
   stone: null,
+  revision: null,
   falling: false,
   asleep: false,
   mirror: false,
@@ -40,22 +44,10 @@ export const INITIAL: ViewState = {
 
 export function withNotice(state: ViewState, notice: Notice): ViewState {
   switch (notice.type) {
-    case "state": {
-      const { scene, falling } = notice;
-      const walls = text(part(scene, "walls").kind, "none");
-      const mirror = part(scene, "floor").kind === "mirror" || walls === "mirror";
-      return {
-        ...state,
-        scene,
-        falling,
-        asleep: notice.asleep ?? false,
-        mirror,
-        light: part(scene, "environment").kind === "light",
-        walls: walls !== "none",
-        exactness: notice.exactness ?? BALANCED,
-        pinned: notice.pinned ?? false,
-      };
-    }
+    case "state":
+      return withScene(state, notice, notice.scene);
+    case "change":
+      return state.scene ? withScene(state, notice, withParts(state.scene, notice.parts)) : state;
     case "viewers":
       return { ...state, viewers: notice.count };
     case "engine":
@@ -65,6 +57,27 @@ export function withNotice(state: ViewState, notice: Notice): ViewState {
     default:
       return state;
   }
+}
+
+function withScene(state: ViewState, told: State | Change, scene: JsonObject): ViewState {
+  const walls = text(part(scene, "walls").kind, "none");
+  return {
+    ...state,
+    scene,
+    revision: told.revision,
+    falling: told.falling,
+    asleep: told.asleep ?? false,
+    mirror: part(scene, "floor").kind === "mirror" || walls === "mirror",
+    light: part(scene, "environment").kind === "light",
+    walls: walls !== "none",
+    exactness: told.exactness ?? BALANCED,
+    pinned: told.pinned ?? false,
+  };
+}
+
+/** Whether a notice tells of changes since another state than this one: then something of the stream was lost. */
+export function isAmiss(state: ViewState, notice: Notice): boolean {
+  return notice.type === "change" && notice.since !== state.revision;
 }
 
 export const TARGET_NAMES: Record<Target, string> = { camera: "camera", light_1: "red light", light_2: "blue light" };

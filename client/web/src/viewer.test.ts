@@ -69,7 +69,7 @@ describe("a viewer", () => {
     FakeSocket.last.accept();
     const notices = [
       { type: "engine", status: "up" },
-      { type: "hello", protocol: 1, session: "", viewer: 1 },
+      { type: "hello", protocol: 2, session: "", watch: "", viewer: 1 },
     ];
     FakeSocket.last.say(bytes("jpeg.bin"));
     for (const notice of notices) {
@@ -95,14 +95,27 @@ describe("a viewer", () => {
   it("follows the state, and keeps its own target", () => {
     FakeSocket.last.accept();
     viewer.select("light_2");
-    FakeSocket.last.say({ type: "state", scene: { floor: { kind: "mirror" } }, falling: true });
+    FakeSocket.last.say({ type: "state", revision: 3, scene: { floor: { kind: "mirror" } }, falling: true });
     expect(viewer.state).toMatchObject({
       ...INITIAL,
       scene: viewer.state.scene,
+      revision: 3,
       falling: true,
       mirror: true,
       target: "light_2",
     });
+  });
+
+  it("opens the stream anew if it has missed something of the scene", () => {
+    FakeSocket.last.accept();
+    FakeSocket.last.say({ type: "state", revision: 3, scene: {}, falling: false });
+    const socket = FakeSocket.last;
+    socket.say({ type: "change", revision: 4, since: 3, parts: { walls: { kind: "matte" } }, falling: false });
+    expect(viewer.state).toMatchObject({ revision: 4, walls: true });
+    socket.say({ type: "change", revision: 9, since: 8, parts: { walls: { kind: "none" } }, falling: false });
+    expect(viewer.state).toMatchObject({ revision: 4, walls: true });
+    expect(socket.closed).toBe(true);
+    expect(viewer.stream.connection.status).toBe("waiting");
   });
 
   it("passes problems on, its own among them", () => {

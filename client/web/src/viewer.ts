@@ -8,7 +8,7 @@ import { FramePlayer } from "./frame-player";
 import { FrameRate } from "./frame-rate";
 import type { Size } from "./picture-size";
 import { type Connection, Stream } from "./stream";
-import { INITIAL, type ViewState, withNotice } from "./view-state";
+import { INITIAL, isAmiss, type ViewState, withNotice } from "./view-state";
 
 export interface ViewerListener {
   show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
@@ -98,7 +98,8 @@ export class Viewer {
       this.ended ||= notice.code === "session_closed";
       if (notice.code === "session_lost") this.listener.lacking();
       this.listener.problem(notice.message, notice.field ?? undefined);
-    } else this.become(withNotice(this.state, notice));
+    } else if (isAmiss(this.state, notice)) this.stream.reopen();
+    else this.become(withNotice(this.state, notice));
   }
 
   private become(state: ViewState): void {

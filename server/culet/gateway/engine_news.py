@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import time
 from collections.abc import Awaitable, Callable
@@ -11,7 +12,7 @@ from culet.errors import CuletError
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.session_record import SessionRecord
-from culet_protocol.engine import ListSessions, SessionMotion, SessionProblem, SessionState
+from culet_protocol.engine import GetSession, ListSessions, SessionChange, SessionMotion, SessionProblem
 from culet_protocol.frame import Frame
 from culet_protocol.messages import Engine, Problem
 
@@ -35,25 +36,44 @@ class EngineNews(EngineEvents):
         """Set once this gateway knows the sessions that the engine had when it came."""
         self._link = link
         self._records = records
+        self._catching_up: set[asyncio.Task[None]] = set()
+        self._by_topic: dict[bytes, SessionRecord] = {}
         self._reopen = reopen
 
     def frame_came(self, frame: Frame, message: bytes) -> None:
         """The session's latest frame."""
-        session = self._records.get(frame.session.hex())
+        session = self._shown_by(frame.watch)
         if session is None:
             return
         session.latest = (frame, message)
         for viewer in session.viewers:
             viewer.offer(frame, message)
 
-    def session_changed(self, state: SessionState) -> None:
-        """Somebody edited the session, or its stone fell asleep or was woken."""
-        session = self._records.get(state.session)
-        if session is None:
+    def _shown_by(self, topic: bytes) -> SessionRecord | None:
+        found = self._by_topic.get(topic)
+        if found is None or self._records.get(found.id) is not found:  # sessions came, or went
+            self._by_topic = {record.topic: record for record in self._records.values()}
+            found = self._by_topic.get(topic)
+        return found
+
+    def session_changed(self, change: SessionChange) -> None:
+        """Somebody edited the session, or its stones fell asleep or were woken."""
+        session = self._records.get(change.session)
+        if session is None or session.revision is None:  # it is being opened, and the answer will say all
             return
         told_asleep = session.asleep
-        session.hear(state)
-        if state.edited or session.asleep != told_asleep:
+        if not session.hear(change):
+            task = asyncio.create_task(self._catch_up(session))
+            self._catching_up.add(task)
+            task.add_done_callback(self._catching_up.discard)
+        elif change.edited or session.asleep != told_asleep:
+            session.tell(session.state())
+
+    async def _catch_up(self, session: SessionRecord) -> None:
+        """Ask for all of a session of which something was missed."""
+        with contextlib.suppress(CuletError):  # it is gone, or the engine is: then it will be given to the next one
+            described, _ = await self._link.request(GetSession(session=session.id))
+            session.learn(described)
             session.tell(session.state())
 
     def session_moved(self, motion: SessionMotion) -> None:

@@ -27,9 +27,9 @@ from culet_protocol.engine import (
     Cancel,
     Heartbeat,
     Reply,
+    SessionChange,
     SessionMotion,
     SessionProblem,
-    SessionState,
     engine_message,
 )
 from culet_protocol.frame import Frame, FrameError
@@ -57,7 +57,7 @@ class EngineEvents:
     def frame_came(self, frame: Frame, message: bytes) -> None:
         """A frame, unpacked and as the message that it came in."""
 
-    def session_changed(self, state: SessionState) -> None:
+    def session_changed(self, change: SessionChange) -> None:
         """A session is another one than before."""
 
     def session_moved(self, motion: SessionMotion) -> None:
@@ -256,7 +256,7 @@ class EngineLink:
             match message:
                 case Heartbeat():
                     self._hear(message.instance)
-                case SessionState():
+                case SessionChange():
                     self.events.session_changed(message)
                 case SessionMotion():
                     self.events.session_moved(message)

@@ -9,10 +9,12 @@ from typing import Any
 
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.viewer import Viewer
-from culet_protocol.engine import SessionState
+from culet_protocol.engine import SessionChange
 from culet_protocol.frame import Frame
 from culet_protocol.messages import BALANCED, Notice, Snapshot, State
+from culet_protocol.parts import with_parts
 from culet_protocol.sizes import LIVE_SIZE
+from culet_protocol.watch import watch_key
 
 SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
@@ -27,8 +29,11 @@ class SessionRecord:
         self.id = session
         self.owner = owner
         """The client that opened it."""
-        self.topic = bytes.fromhex(session)
+        self.topic = watch_key(session)
+        """Its watch id, by which frames come."""
         self.scene = scene
+        self.revision: int | None = None
+        """Of the scene, by the engine's count; None until the engine has said so."""
         self.falling = self.asleep = False
         self.exactness, self.pinned = BALANCED, False
         self.snapshot: dict[str, Any] | None = None
@@ -52,15 +57,19 @@ class SessionRecord:
 
     def learn(self, described: Mapping[str, Any]) -> None:
         """What the engine said of the session, as it is now."""
-        self.scene, self.snapshot = described["scene"], described["snapshot"]
+        self.revision, self.scene, self.snapshot = described["revision"], described["scene"], described["snapshot"]
         self.falling, self.asleep = described["falling"], described["asleep"]
         self.exactness, self.pinned = described["exactness"], described["pinned"]
 
-    def hear(self, state: SessionState) -> None:
-        """What the engine told of the session unasked."""
-        self.scene, self.snapshot = state.scene, state.snapshot
-        self.falling, self.asleep = state.falling, state.asleep
-        self.exactness, self.pinned = state.exactness, state.pinned
+    def hear(self, change: SessionChange) -> bool:
+        """What the engine told of the session unasked; False, and nothing learnt, if it is not all that is new."""
+        if change.since != self.revision:
+            return False
+        self.revision, self.scene = change.revision, with_parts(self.scene, change.parts)
+        self.snapshot = (self.snapshot or {}) | change.moved
+        self.falling, self.asleep = change.falling, change.asleep
+        self.exactness, self.pinned = change.exactness, change.pinned
+        return True
 
     def tell_snapshot(self, now: float) -> None:
         """Tell the viewers the snapshot, if it is another one and they can do with it now."""
@@ -72,8 +81,9 @@ class SessionRecord:
         self.tell(notice)
 
     def state(self) -> State:
-        """The notice for viewers."""
+        """The notice for viewers, of which each is told what is new to it."""
         return State(
+            revision=self.revision or 0,
             scene=self.scene,
             falling=self.falling,
             asleep=self.asleep,

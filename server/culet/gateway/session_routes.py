@@ -61,6 +61,7 @@ class SessionAnswer(Model):
     """A session as it is now."""
 
     id: Annotated[str, Field(description="Whoever knows it may watch and change the session.")]
+    watch: Annotated[str, Field(description="Whoever knows it may look at the session's frames over ZeroMQ, no more.")]
     scene: Annotated[dict[str, Any], Field(description="With the camera and lights where they are now.")]
     falling: bool
     asleep: Annotated[bool, Field(description="Whether the stone has come to rest for good.")]
@@ -117,8 +118,10 @@ async def patch_session(
 ) -> SessionAnswer:
     """Change parts of a session's scene by a JSON merge patch (RFC 7396).
 
-    One thing is not as there: an object of another `kind`, such as `{"environment": {"kind": "light"}}`, replaces the
-    one before instead of being merged into it.
+    Two things are not as there. An object of another `kind`, such as `{"environment": {"kind": "light"}}`, replaces the
+    one before instead of being merged into it. And `stones` may be an object that reaches single stones by their ids:
+    `{"stones": {"ruby": {"material": "sapphire"}}}` changes one, null removes it, and an id that there is not adds a
+    stone, if it has a `cut` or a `mesh`. A list takes the place of all stones.
     """
     finite(patch)
     session = gateway.sessions.get(session_id)
@@ -206,6 +209,7 @@ async def _frame(
 def _answer(session: SessionRecord) -> SessionAnswer:
     return SessionAnswer(
         id=session.id,
+        watch=session.topic.hex(),
         scene=session.scene,
         falling=session.falling,
         asleep=session.asleep,

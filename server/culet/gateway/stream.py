@@ -36,7 +36,6 @@ from culet_protocol.messages import (
     Question,
     Resize,
     SessionEvent,
-    ViewerEvent,
     Visibility,
     control_event,
 )
@@ -70,7 +69,10 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
         )
         return
     if offered and SUBPROTOCOL not in offered:
-        await websocket.close(CloseCode.PROTOCOL_ERROR, f"this server speaks {SUBPROTOCOL}; reload the page")
+        await websocket.close(
+            CloseCode.PROTOCOL_ERROR,
+            f"this server speaks {SUBPROTOCOL}; reload the page, or use its own client",
+        )
         return
     await gateway.sessions.settle(session_id)
     try:
@@ -86,7 +88,7 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
         await websocket.close(CloseCode.BUSY, str(error))
         return
     try:
-        hello = Hello(protocol=VERSION, session=session.id, viewer=viewer.number)
+        hello = Hello(protocol=VERSION, session=session.id, watch=session.topic.hex(), viewer=viewer.number)
         await websocket.send_text(hello.model_dump_json())
         await _Stream(websocket, gateway, session, viewer, bucket).run()
     except (WebSocketDisconnect, RuntimeError):  # starlette raises either for a send after the viewer left
@@ -225,7 +227,7 @@ class _Stream:
         self._messages.spend(cost, now)
         self._client.spend(cost, now)
 
-    def _heed(self, event: ViewerEvent) -> None:
+    def _heed(self, event: Resize | Visibility | Ack | Ping) -> None:
         match event:
             case Ack(sequence=sequence):
                 stalled = self._viewer.credit.stalled(time.monotonic())

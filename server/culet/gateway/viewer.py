@@ -10,6 +10,7 @@ from culet.gateway.client_address import UNKNOWN
 from culet.gateway.credit import Credit
 from culet_protocol.frame import Frame
 from culet_protocol.messages import (
+    Change,
     Engine,
     Hello,
     Message,
@@ -22,13 +23,14 @@ from culet_protocol.messages import (
     State,
     Viewers,
 )
+from culet_protocol.parts import changed_parts
 
 NOTICES_WAITING = 256
 """A viewer that has so many unread ones does not read at all."""
 SETTLING_SECONDS = 0.25
 """A new viewer has so long to say its size before frames are rendered for the default one."""
 STATE_SECONDS = 0.04
-"""Between two states, which hold the whole scene: a drag makes 60 or 120 a second, and sliders follow at 25."""
+"""Between two states: a drag makes 60 or 120 a second, and sliders follow at 25."""
 
 
 class Standing(Enum):
@@ -64,6 +66,8 @@ class Viewer:
         """By what makes a later one replace an earlier one, in the order in which they are told."""
         self._numbers = 0
         self._next_state_at = -float("inf")
+        self._told: State | None = None
+        """The last one, from which it can follow by what has changed."""
 
     def watches(self, now: float) -> bool:
         """Whether frames are wanted: it can be seen, takes them, and said its size or had the time to."""
@@ -105,7 +109,7 @@ class Viewer:
         """Queue a notice. Of those that say how something is, only the latest waits; of equal ones, only one."""
         key: object
         match notice:
-            case State() | Snapshot() | Viewers() | Engine():
+            case State() | Change() | Snapshot() | Viewers() | Engine():
                 key = type(notice)
             case Problem():
                 key = notice
@@ -128,8 +132,16 @@ class Viewer:
                     continue
                 self._next_state_at = now + STATE_SECONDS
             del self._notices[key]
-            return notice
+            return self._since_told(notice) if isinstance(notice, State) else notice
         return None
+
+    def _since_told(self, state: State) -> State | Change:
+        """What is new of a state to this viewer, which is then told."""
+        told, self._told = self._told, state
+        if told is None:
+            return state
+        same = state.model_dump(include={"revision", "falling", "asleep", "exactness", "pinned"})
+        return Change(since=told.revision, parts=changed_parts(told.scene, state.scene), **same)
 
     def next_frame(self, now: float) -> bytes | None:
         """The latest frame if it is new to the viewer and there is credit for it; that is then used."""

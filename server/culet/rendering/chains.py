@@ -10,7 +10,7 @@ from culet.optics.dispersion import channel_indices
 from culet.optics.materials import material_of
 from culet.rendering.device import Real
 from culet.rendering.layout import constants, struct
-from culet.scene.model import Scene
+from culet.scene.model import Scene, StoneSettings
 
 GROUPS = constants("features.cl")["SPECTRAL_GROUPS"]
 """Sets of wavelengths that neighbouring pixels take."""
@@ -23,9 +23,8 @@ def is_spectral(scene: Scene) -> bool:
     return scene.optics.bands > 3 and scene.optics.estimator == "chain"
 
 
-def absorption(scene: Scene) -> tuple[float, float, float]:
+def absorption(scene: Scene, stone: StoneSettings) -> tuple[float, float, float]:
     """Of the red, green and blue channel, per R: what the scene asks for, and what the material has by itself."""
-    stone = scene.stones[0]
     own = material_of(stone.material).absorption_rgb_per_mm()
     red, green, blue = (
         asked + coefficient * scene.millimetres for asked, coefficient in zip(stone.absorption, own, strict=True)
@@ -34,36 +33,54 @@ def absorption(scene: Scene) -> tuple[float, float, float]:
 
 
 def is_coloured(scene: Scene) -> bool:
-    """Whether light is absorbed in the stone."""
-    return any(absorption(scene))
+    """Whether light is absorbed in a stone."""
+    return any(any(absorption(scene, stone)) for stone in scene.stones)
+
+
+def chains_of_stones(scene: Scene) -> tuple[list[int], list[StoneSettings]]:
+    """For each stone of the scene the number of its set of chains, and for each set a stone that it is of: stones of
+    one material, absorption and size share it."""
+    kinds: dict[object, int] = {}
+    sets: list[StoneSettings] = []
+    numbers = []
+    for stone in scene.stones:
+        kind = repr(stone.material), absorption(scene, stone), stone.scale
+        if kind not in kinds:
+            kinds[kind] = len(sets)
+            sets.append(stone)
+        numbers.append(kinds[kind])
+    return numbers, sets
 
 
 def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArray[np.void]:
-    """(N,) one row a chain. `common`: the channels share one index; else each has its own.
+    """(S N,) one row a chain, N for each set of `chains_of_stones`. `common`: the channels share one index; else each
+    has its own.
 
     A spectral scene has `bands` wavelengths for each of the GROUPS of pixels instead, which take the rows by turns;
-    they move within their strata from sample to sample.
+    they move within their strata from sample to sample. Absorption is per radius of the stone.
     """
+    return np.concatenate([_chains(scene, stone, sample, real, common) for stone in chains_of_stones(scene)[1]])
+
+
+def _chains(scene: Scene, stone: StoneSettings, sample: int, real: Real, common: bool) -> NDArray[np.void]:
+    material, scale = material_of(stone.material), stone.scale
     if not is_spectral(scene):
         table = np.zeros(1 if common and scene.optics.estimator == "chain" else 3, struct("chain_t", real))
-        table["eta"] = channel_indices(scene.stones[0].material)[: len(table)]
-        table["absorption"] = absorption(scene)[: len(table)]
+        table["eta"] = channel_indices(stone.material)[: len(table)]
+        table["absorption"] = scale * np.array(absorption(scene, stone)[: len(table)])
         table["share"] = np.eye(3)[: len(table)]
         return table
-    stone = scene.stones[0]
-    material = material_of(stone.material)
     spectrum = bands(scene.optics.bands, offset=(0.5 + sample * GOLDEN) % 1, groups=GROUPS)
     table = np.zeros(len(spectrum.wavelength), struct("chain_t", real))
     table["eta"] = material.index(spectrum.wavelength, clamp=True)
-    table["absorption"] = material.absorption_per_mm(spectrum.wavelength) * scene.millimetres + _asked(
-        scene, spectrum.wavelength
-    )
+    own = material.absorption_per_mm(spectrum.wavelength) * scene.millimetres
+    table["absorption"] = scale * (own + _asked(stone, spectrum.wavelength))
     table["share"] = spectrum.weights
     table["summed_share"] = abs(spectrum.weights).sum(axis=1)
     return table
 
 
-def _asked(scene: Scene, wavelength: NDArray[np.float64]) -> NDArray[np.float64]:
+def _asked(stone: StoneSettings, wavelength: NDArray[np.float64]) -> NDArray[np.float64]:
     """The scene's three coefficients over wavelength, per R: linear between the lines that stand for the channels."""
-    red, green, blue = scene.stones[0].absorption
+    red, green, blue = stone.absorption
     return np.interp(wavelength, (435.8, 546.1, 656.3), (blue, green, red))

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from enum import IntEnum
 
+from culet.errors import SceneError
 from culet.geometry.shape import Shape
 from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
 from culet.rendering.mirrors import makes_finite_group
-from culet.rendering.projection import camera_is_inside
+from culet.rendering.placed_stone import camera_stone, placed_stones
 from culet.scene.emitters import boxes, discs
+from culet.scene.model import Scene
 from culet.scene.room import Floor, Plane
 from culet.scene.sky import Environment
 from culet.stage import Stage
@@ -25,6 +28,13 @@ class Geometry(IntEnum):
     EMPTY = 0
     HULL = 1
     MESH = 2
+
+
+class Stones(IntEnum):
+    """As in features.cl."""
+
+    ONE = 1
+    MANY = 2
 
 
 MOST_HALF_SPACES = 1500
@@ -59,6 +69,7 @@ class Features:
     polarised: int = 0
     few_mirrors: int = 0
     camera_inside: int = RUNTIME
+    stones: int = Stones.ONE
     estimator: int = ESTIMATOR["chain"]
 
     @property
@@ -66,7 +77,11 @@ class Features:
         """The program for every scene of this estimator and geometry, spectral or not, polarised or not. It reflects in
         its own precision."""
         return Features(
-            geometry=self.geometry, spectral=self.spectral, polarised=self.polarised, estimator=self.estimator
+            geometry=self.geometry,
+            spectral=self.spectral,
+            polarised=self.polarised,
+            stones=self.stones,
+            estimator=self.estimator,
         )
 
     @property
@@ -83,29 +98,40 @@ class Features:
         return replace(self, **{name: RUNTIME})
 
 
-def shape_on(stage: Stage) -> Shape | None:
-    """The shape of the stage's stone, if there is one."""
-    return stage.shapes[0] if stage.shapes else None
+def by_half_spaces(shape: Shape) -> bool:
+    """Whether a shape is traced by its half-spaces, or else by its triangles."""
+    return shape.convex and len(shape.planes) <= MOST_HALF_SPACES
 
 
-def geometry_of(shape: Shape | None) -> Geometry:
-    """How a stone is traced."""
-    if shape is None:
+def geometry_of(shapes: Sequence[Shape]) -> Geometry:
+    """How stones are traced."""
+    if not shapes:
         return Geometry.EMPTY
-    return Geometry.HULL if shape.convex and len(shape.planes) <= MOST_HALF_SPACES else Geometry.MESH
+    return Geometry.HULL if all(map(by_half_spaces, shapes)) else Geometry.MESH
+
+
+def stones_of(scene: Scene) -> Stones:
+    """Which program the stones need: one of scale 1 has the frame to itself."""
+    return Stones.MANY if len(scene.stones) > 1 or any(stone.scale != 1 for stone in scene.stones) else Stones.ONE
 
 
 def features_of(stage: Stage) -> Features:
-    """The program that holds what this stage needs, and nothing else."""
-    scene, shape = stage.scene, shape_on(stage)
+    """The program that holds what this stage needs, and nothing else. SceneError where the classic estimator is asked
+    for more than one stone of scale 1."""
+    scene, shapes = stage.scene, stage.shapes
     kinds: tuple[Floor, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds
-    optics = scene.optics
+    optics, stones = scene.optics, stones_of(scene)
+    if optics.estimator == "classic" and stones == Stones.MANY:
+        raise SceneError(
+            f"optics.estimator: expected chain, which takes any stones, or one stone of scale 1 for classic, got "
+            f"classic and {len(scene.stones)} stones",
+            "optics.estimator",
+        )
     lit = floor.kind in ("matte", "mirror") or walls.kind != "none"
-    settings = scene.only_stone() if shape is not None else None
-    indices = channel_indices(settings.material) if settings else (1.0, 1.0, 1.0)
+    indices = [channel_indices(stone.material) for stone in scene.stones]
     return Features(
-        geometry=geometry_of(shape),
+        geometry=geometry_of(shapes),
         floor=SURFACE[floor.kind],
         walls=SURFACE[walls.kind],
         lights=RUNTIME if scene.points and lit else 0,
@@ -115,13 +141,14 @@ def features_of(stage: Stage) -> Features:
         head=int(scene.head is not None),
         backdrop=int(scene.backdrop.kind != "none"),
         glare=int(optics.glare),
-        dispersion=int(len(set(indices)) > 1),
-        absorption=RUNTIME if shape is not None and is_coloured(scene) else 0,
+        dispersion=int(any(len(set(each)) > 1 for each in indices)),
+        absorption=RUNTIME if is_coloured(scene) else 0,
         fresnel=FRESNEL[optics.fresnel],
         end=END[optics.end],
         spectral=int(is_spectral(scene)),
         polarised=int(optics.polarised and optics.estimator == "chain"),
-        few_mirrors=int(shape is not None and makes_finite_group(shape)),
-        camera_inside=int(shape is not None and camera_is_inside(scene, shape)),
+        few_mirrors=int(any(map(makes_finite_group, shapes))),
+        camera_inside=int(camera_stone(scene, placed_stones(stage)) is not None),
+        stones=stones,
         estimator=ESTIMATOR[optics.estimator],
     )

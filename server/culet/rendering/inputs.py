@@ -8,15 +8,12 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.geometry.polygons import edges_of_facets
-from culet.geometry.shape import Shape
-from culet.rendering.chains import chain_table, is_spectral
+from culet.rendering.chains import chain_table, chains_of_stones, is_spectral
 from culet.rendering.device import Device, Real
-from culet.rendering.features import Features, Geometry, shape_on
-from culet.rendering.parameters import parameters, shown_surfaces
-from culet.rendering.projection import placement, world_planes
-from culet.rendering.shadows import shadow_planes
-from culet.rendering.tree import tree_of
+from culet.rendering.features import Features
+from culet.rendering.parameters import parameters
+from culet.rendering.placed_stone import placed_stones
+from culet.rendering.stone_table import StoneTable, grouped
 from culet.scene.model import Scene
 from culet.scene.sky import ImageEnvironment
 from culet.stage import Stage
@@ -34,24 +31,18 @@ class Inputs:
         features: Features,
         real: Real,
     ) -> None:
-        scene, shape = stage.scene, shape_on(stage)
+        scene, stones = stage.scene, grouped(placed_stones(stage))
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
-        self._changes = shape is not None and (is_spectral(scene) or scene.optics.end == "roulette")
+        self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
         self._sample = -1
-        shadow_start, shadows, facets = np.zeros(1, np.int32), np.zeros((1, 4)), np.zeros((1, 4))
-        self._struct = parameters(scene, shape, width, height, real)
-        mesh: dict[str, Any] = dict.fromkeys(("boxes", "links", "corners"))
-        if shape is not None and features.geometry == Geometry.HULL:
-            facets = world_planes(scene, shape)
-            if features.lights != 0:
-                shadow_start, shadows = _shadow_volumes(scene, shape, facets)
-                self._struct["shadow_start"][: len(shadow_start)] = shadow_start
-        elif shape is not None:
-            tree = tree_of(shape)
-            rows = {"boxes": tree.boxes.astype(real), "links": tree.links, "corners": tree.corners.astype(real)}
-            mesh = {name: self._upload(array) for name, array in rows.items()}
-        self._has_stone = shape is not None
+        self._struct = parameters(scene, stones, width, height, real)
+        self._table = StoneTable.of(scene, stones, width, height, features, real)
+        self._struct["stones"], self._struct["groups"] = len(stones), len(self._table.groups)
+        tree = self._table.tree
+        rows: dict[str, NDArray[Any]] = {}
+        if tree is not None:
+            rows = {"boxes": tree.boxes, "links": tree.links, "corners": tree.corners}
         self._panorama = None
         panorama = stage.panorama
         if isinstance(scene.environment, ImageEnvironment) and panorama is not None:
@@ -60,38 +51,28 @@ class Inputs:
             self._struct["panorama_scale"] = scene.environment.scale
             self._panorama = device.panorama(panorama)
         self._fixed = {
-            "facets": self._upload(facets.astype(real)),
-            "shadows": self._upload(shadows.astype(real)),
-            **mesh,
+            **dict.fromkeys(("boxes", "links", "corners")),
+            **{name: self._upload(array if name == "links" else array.astype(real)) for name, array in rows.items()},
+            "groups": self._upload(self._table.groups),
+            "facets": self._upload(self._table.facets.astype(real)),
+            "blocks": self._upload(self._table.blocks.astype(real)),
+            "shadows": self._upload(self._table.shadows.astype(real)),
         }
 
     def of_sample(self, sample: int) -> dict[str, Any]:
         """The kernels' arguments for that sample."""
         if self._sample < 0 or (self._changes and sample != self._sample):
-            chains = self._chains(sample)
-            self._struct["sample"], self._struct["chains"] = sample, len(chains)
-            self._uploaded = self._upload(self._struct), self._upload(chains)
+            scene = self._scene if self._scene.stones else Scene()
+            chains = chain_table(scene, sample, self._real, common=self._common)
+            sets = len(chains_of_stones(self._scene)[1])
+            self._struct["sample"], self._struct["chains"] = sample, len(chains) // max(1, sets)
+            stones = self._table.stones.copy()
+            stones["first_chain"] *= self._struct["chains"]
+            self._uploaded = self._upload(self._struct), self._upload(stones), self._upload(chains)
             self._sample = sample
-        struct, chains = self._uploaded
-        return {"scene": struct, **self._fixed, "chains": chains, "panorama": self._panorama}
-
-    def _chains(self, sample: int) -> NDArray[np.void]:
-        scene = self._scene if self._has_stone else Scene()
-        return chain_table(scene, sample, self._real, common=self._common)
+        struct, table, chains = self._uploaded
+        return {"scene": struct, "stones": table, **self._fixed, "chains": chains, "panorama": self._panorama}
 
     def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401 - pyopencl has no types
         flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
         return cl.Buffer(self._device.context, flags, hostbuf=np.ascontiguousarray(array))
-
-
-def _shadow_volumes(
-    scene: Scene, shape: Shape, facets: NDArray[np.float64]
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Where each light's planes begin, and all of them."""
-    centre, rotation = placement(scene)
-    surfaces, vertices, edges = shown_surfaces(scene, centre), shape.vertices @ rotation.T, edges_of_facets(shape)
-    volumes = [
-        shadow_planes(facets, vertices, edges, np.array(light.position) - centre, surfaces) for light in scene.points
-    ]
-    starts = np.cumsum([0, *map(len, volumes)]).astype(np.int32)
-    return starts, np.vstack([*volumes, np.zeros((1, 4))])

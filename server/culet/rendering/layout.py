@@ -70,7 +70,7 @@ class Argument:
 
     def value(self, given: object) -> object:
         """What pyopencl passes on."""
-        return given if self.scalar is None else np.dtype(self.scalar).type(given)
+        return given if self.scalar is None else self.scalar(given)
 
 
 @cache

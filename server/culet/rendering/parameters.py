@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.shape import Shape
-from culet.rendering.chains import absorption
 from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.layout import struct
-from culet.rendering.projection import camera_is_inside, placement, project
+from culet.rendering.placed_stone import PlacedStone, camera_stone, origin_of
+from culet.rendering.projection import project
 from culet.rendering.studio import set_studio
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
@@ -42,7 +43,7 @@ def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[floa
 
 
 def room_surfaces(centre: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(4, 4) floor and walls as inward normal and offset, relative to the stone's centre."""
+    """(4, 4) floor and walls as inward normal and offset, relative to a place."""
     normals = np.array([(0, 1, 0), *WALL_NORMALS], dtype=float)
     offsets = np.array([FLOOR_Y, *[-WALL_DISTANCE] * 3]) - normals @ centre
     return np.column_stack([normals, offsets])
@@ -53,27 +54,26 @@ def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.floa
     return room_surfaces(centre)[[scene.floor.kind != "none", *[scene.walls.kind != "none"] * 3]]
 
 
-def parameters(scene: Scene, shape: Shape | None, width: int, height: int, real: Real) -> NDArray[np.void]:
-    """One struct; every position is relative to the stone's centre, subtracted in double precision.
+def parameters(scene: Scene, stones: Sequence[PlacedStone], width: int, height: int, real: Real) -> NDArray[np.void]:
+    """One struct; every position is relative to the stones' middle, subtracted in double precision.
 
-    What depends on other buffers (shadows, chains, panorama) is left zero.
+    What depends on other buffers (the table of stones, chains, panorama) is left zero.
     """
     p = np.zeros((), struct("parameters_t", real))
-    centre, rotation = placement(scene)
-    projection = project(scene, width, height)
+    origin = origin_of(stones)
+    projection = project(scene, stones, width, height)
     p["foot"], p["foot_column"], p["foot_row"] = projection.foot
     p["direction"], p["direction_column"], p["direction_row"] = projection.direction
     p["reach"] = projection.reach
     p["cutoff"] = scene.optics.cutoff
-    p["centre"] = centre
+    p["origin"] = origin
     p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
-    set_studio(p, scene, shape, width, height)
-    p["surface"] = room_surfaces(centre)
+    set_studio(p, scene, origin, width, height)
+    p["surface"] = room_surfaces(origin)
     for number, light in enumerate(scene.points):
-        p["light"][number] = np.array(light.position) - centre
+        p["light"][number] = np.array(light.position) - origin
         p["light_colour"][number] = light.colour
     p["lights"] = len(scene.points)
-    p["axes"] = rotation
     p["max_bounces"] = scene.optics.max_bounces
     p["width"], p["height"] = width, height
     p["floor_kind"], p["walls_kind"] = SURFACE[scene.floor.kind], SURFACE[scene.walls.kind]
@@ -81,17 +81,13 @@ def parameters(scene: Scene, shape: Shape | None, width: int, height: int, real:
     p["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
     p["end_kind"] = END[scene.optics.end]
     p["glare"] = scene.optics.glare
-    if shape is not None:
-        p["absorption"] = absorption(scene)
-        p["facets"] = len(shape.planes)
-        p["camera_inside"] = camera_is_inside(scene, shape)
-        p["convex"] = shape.convex
-        p["pierces"] = _pierces(scene, shape)
+    host = camera_stone(scene, stones)
+    p["camera_inside"], p["camera_stone"] = host is not None, host or 0
+    p["pierces"] = any(_pierces(scene, stone) for stone in stones)
     return p
 
 
-def _pierces(scene: Scene, shape: Shape) -> bool:
-    """Whether the stone reaches through the floor or a wall that is there."""
-    centre, rotation = placement(scene)
-    surfaces = shown_surfaces(scene, centre)
-    return bool((shape.vertices @ rotation.T @ surfaces[:, :3].T < surfaces[:, 3]).any())
+def _pierces(scene: Scene, stone: PlacedStone) -> bool:
+    """Whether a stone reaches through the floor or a wall that is there."""
+    surfaces = shown_surfaces(scene, stone.centre)
+    return bool((stone.scale * stone.vertices @ surfaces[:, :3].T < surfaces[:, 3]).any())

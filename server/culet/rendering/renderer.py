@@ -16,7 +16,7 @@ from culet.rendering.bounds import largest_radiance
 from culet.rendering.build import OF_ITEMS, TILE, TILES_DEALT, Kernel, Variant, build, progress_size
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
-from culet.rendering.features import Features, Geometry, features_of
+from culet.rendering.features import Features, Geometry, by_half_spaces, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
 from culet.rendering.pace import Pace
@@ -107,7 +107,9 @@ class Renderer:
     def is_ready(self, stage: Stage) -> bool:
         """Whether a picture can be begun without waiting for a compiler, or for a mesh's tree."""
         features = features_of(stage)
-        tree_is_there = features.geometry != Geometry.MESH or all(has_tree(shape) for shape in stage.shapes)
+        tree_is_there = features.geometry != Geometry.MESH or all(
+            has_tree(shape) or by_half_spaces(shape) for shape in stage.shapes
+        )
         return tree_is_there and self.programs.is_ready(features.general, self.variant)
 
     def make_ready(self, stage: Stage) -> None:
@@ -115,7 +117,8 @@ class Renderer:
         features = features_of(stage)
         if features.geometry == Geometry.MESH:
             for shape in stage.shapes:
-                tree_of(shape)
+                if not by_half_spaces(shape):
+                    tree_of(shape)
         self.programs.prepare(features.general, self.variant)
 
     def describe(self) -> dict[str, str | int]:

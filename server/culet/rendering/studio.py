@@ -5,17 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.shape import Shape
-from culet.rendering.projection import placement
+from culet.rendering.placed_stone import PlacedStone
 from culet.scene.backdrop import Backdrop, GradientBackdrop, PlainBackdrop
 from culet.scene.emitters import BoxLamp, boxes, discs
 from culet.scene.model import Scene
-from culet.scene.room import FLOOR_Y, StudioFloor
+from culet.scene.room import StudioFloor
 
 Array = NDArray[np.float64]
 
 
-def set_studio(p: NDArray[np.void], scene: Scene, shape: Shape | None, width: int, height: int) -> None:
+def set_studio(p: NDArray[np.void], scene: Scene, origin: Array, width: int, height: int) -> None:
     """Fill in what the scene has of it."""
     lamps, soft_boxes = discs(scene.shown_lamps), boxes(scene.shown_lamps)
     for number, lamp in enumerate(lamps):
@@ -27,12 +26,12 @@ def set_studio(p: NDArray[np.void], scene: Scene, shape: Shape | None, width: in
     p["lamps"], p["boxes"] = len(lamps), len(soft_boxes)
     if scene.head is not None:
         p["has_head"] = True
-        p["head"] = towards_observer(scene)
+        p["head"] = towards_observer(scene, origin)
         p["head_rim"], p["head_slope"] = disc_edge(scene.head.half_angle_degrees, scene.head.softness)
         p["head_radiance"] = scene.head.radiance
     _set_backdrop(p, scene.backdrop, width, height)
     if isinstance(scene.floor, StudioFloor):
-        _set_floor(p, scene.floor, scene, shape)
+        _set_floor(p, scene.floor)
 
 
 def disc_edge(half_angle_degrees: float, softness: float) -> tuple[float, float]:
@@ -56,11 +55,11 @@ def box_axes(box: BoxLamp) -> tuple[Array, Array, Array]:
     return to_box, np.cos(turn) * across + np.sin(turn) * up, np.cos(turn) * up - np.sin(turn) * across
 
 
-def towards_observer(scene: Scene) -> Array:
-    """The unit vector from the stone to the camera; of parallel rays, against them."""
+def towards_observer(scene: Scene, origin: Array) -> Array:
+    """The unit vector from the stones' middle to the camera; of parallel rays, against them."""
     camera = scene.camera
     back = np.subtract(camera.position, camera.target)
-    from_stone = np.subtract(camera.position, placement(scene)[0])
+    from_stone = np.subtract(camera.position, origin)
     far = camera.kind == "orthographic" or not np.linalg.norm(from_stone) > 1e-6
     return _unit(back if far else from_stone)
 
@@ -89,23 +88,19 @@ def _set_backdrop(p: NDArray[np.void], backdrop: Backdrop, width: int, height: i
     p["has_backdrop"] = backdrop.kind != "none"
 
 
-def _set_floor(p: NDArray[np.void], floor: StudioFloor, scene: Scene, shape: Shape | None) -> None:
+def _set_floor(p: NDArray[np.void], floor: StudioFloor) -> None:
     p["floor_colour"] = floor.colour
     p["floor_reflectance"], p["floor_fade"] = floor.reflectance, floor.fade
     p["floor_roughness"] = floor.roughness
-    if shape is not None and placement(scene)[0][1] > FLOOR_Y:
-        p["contact"] = contact_form(scene, shape)
-        p["contact_shadow"] = floor.shadow
 
 
-def contact_form(scene: Scene, shape: Shape) -> Array:
-    """(3, 3) det S S^-1 in the world's axes: x' S^-1 x = 1 is the ellipsoid of even density that has the stone's second
-    moments, which are S / 5."""
-    inertia = shape.mass.inertia
+def contact_form(stone: PlacedStone) -> Array:
+    """(3, 3) det S S^-1 in the stone's own measure: x' S^-1 x = 1 is the ellipsoid of even density that has the
+    stone's second moments, which are S / 5."""
+    inertia = stone.shape.mass.inertia
     spread = 5 * (np.trace(inertia) / 2 * np.eye(3) - inertia)
-    rotation = placement(scene)[1]
     adjugate = np.linalg.det(spread) * np.linalg.inv(spread)
-    return np.asarray(rotation @ adjugate @ rotation.T)
+    return np.asarray(stone.rotation @ adjugate @ stone.rotation.T)
 
 
 def _unit(vector: object) -> Array:

@@ -7,6 +7,7 @@ Getting Rid of Packets, 2008).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
@@ -43,6 +44,19 @@ class Tree:
     """(N, WIDTH): the child's node, or ~leaf."""
     corners: Array
     """(L, 12, WIDTH): three corners, the facet's normal; zeros where a leaf is not full. The first is empty."""
+
+    def moved(self, nodes: int, leaves: int) -> Tree:
+        """The same behind so many nodes and leaves of other trees."""
+        return Tree(self.boxes, np.where(self.links >= 0, self.links + nodes, self.links - leaves), self.corners)
+
+    @classmethod
+    def joined(cls, trees: Sequence[Tree]) -> Tree:
+        """Several trees in one, each `moved` behind those before it."""
+        return cls(
+            np.concatenate([tree.boxes for tree in trees]),
+            np.concatenate([tree.links for tree in trees]).astype(np.int32),
+            np.concatenate([tree.corners for tree in trees]),
+        )
 
 
 @dataclass(eq=False)

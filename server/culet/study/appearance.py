@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.rendering.projection import project, world_planes
+from culet.rendering.placed_stone import placed_stones
+from culet.rendering.projection import project
 from culet.stage import Stage
 
 Array = NDArray[np.float64]
@@ -65,14 +66,15 @@ class Appearance:
 
 def stone_mask(stage: Stage, width: int, height: int) -> Mask:
     """(height, width) pixels whose centre's ray meets a convex stone before anything else."""
-    scene, (shape,) = stage.scene, stage.shapes
-    rays = project(scene, width, height)
+    stones = placed_stones(stage)
+    (stone,) = stones
+    rays = project(stage.scene, stones, width, height)
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     foot, direction = (
         rows[0] + x[..., None] * rows[1] + y[..., None] * rows[2] for rows in (rays.foot, rays.direction)
     )
     enter, leave = np.full(x.shape, -rays.reach), np.full(x.shape, np.inf)
-    for *normal, offset in world_planes(scene, shape):
+    for *normal, offset in stone.planes:
         speed, gap = direction @ np.array(normal), offset - foot @ np.array(normal)
         with np.errstate(divide="ignore", invalid="ignore"):
             t = gap / speed

@@ -41,6 +41,7 @@ from culet_protocol.messages import (
     ToggleMirror,
     ToggleWalls,
 )
+from culet_protocol.watch import watch_key
 
 VIEWER_RATE = 60.0
 """Frames per second that the subscriber can take, as a browser's gateway says."""
@@ -118,7 +119,7 @@ class Play:
         await self.control(balance)
         demand = Demand(session=self.session, frames_per_second=VIEWER_RATE, width=size[0], height=size[1])
         await self._link.request(demand)
-        self._link.subscribe(bytes.fromhex(self.session))
+        self._link.subscribe(watch_key(self.session))
         async with asyncio.timeout(START_SECONDS):
             await self._recorder.came.wait()
 

@@ -20,6 +20,7 @@ from PIL import Image
 
 from culet_protocol.engine import REQUEST_NUMBER
 from culet_protocol.frame import Codec, Flags, Frame
+from culet_protocol.watch import watch_id
 from engine.peer import PATIENCE, SIZE, EngineProcess, connected, running_engine
 
 UNKNOWN = "f" * 32
@@ -92,7 +93,7 @@ async def test_a_frame_says_what_it_shows(engine: EngineProcess) -> None:
         watcher = watch(await peer.open(PLAIN))
         await peer.demand()
         frame = await watcher.until(lambda frame: frame.width == SIZE["width"])
-        assert frame.session.hex() == peer.session
+        assert frame.watch.hex() == watch_id(peer.session)
         assert frame.codec is Codec.JPEG
         assert pixels(frame.payload).shape == (SIZE["height"], SIZE["width"], 3)
         assert abs(frame.timestamp - time.time()) < 60
@@ -260,9 +261,9 @@ async def test_an_edit_is_told_to_every_gateway(engine: EngineProcess) -> None:
         await other.told(lambda told: told["type"] == "heartbeat")
         await peer.open(PLAIN)
         await peer.control("toggle_environment")
-        state = await other.told(lambda told: told["type"] == "session_state" and told["session"] == peer.session)
+        state = await other.told(lambda told: told["type"] == "session_change" and told["session"] == peer.session)
         assert state["edited"]
-        assert state["scene"]["environment"]["kind"] == "light"
+        assert state["parts"] == {"environment": {"kind": "light"}}
 
 
 async def test_a_session_goes_on_in_another_engine(engine: EngineProcess, tmp_path: Path) -> None:

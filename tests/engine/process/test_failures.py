@@ -27,6 +27,7 @@ from culet.simulation.state import RigidState
 from culet.stage import Library, Stage
 from culet_protocol.frame import Flags
 from culet_protocol.messages import SessionEvent
+from culet_protocol.watch import watch_id
 from engine.peer import Peer, Watcher
 
 REFUSED: dict[str, Any] = {"environment": {"kind": "half"}}
@@ -96,7 +97,7 @@ async def test_a_scene_that_cannot_be_rendered_is_a_problem_of_its_session_alone
         assert (reply["status"], reply["detail"]) == (500, "the kernel does not build")
 
         assert (await peer.control("set_scene", scene=GOOD))["status"] == 200
-        assert (await bad.next()).session.hex() == peer.session  # an edit that helps
+        assert (await bad.next()).watch.hex() == watch_id(peer.session)  # an edit that helps
 
 
 async def test_a_stone_that_cannot_be_simulated_is_a_problem_of_its_session_alone(
@@ -113,9 +114,9 @@ async def test_a_stone_that_cannot_be_simulated_is_a_problem_of_its_session_alon
         assert (await peer.control("toggle_fall"))["result"]["falling"]
         problem = await peer.told(lambda told: told["type"] == "session_problem")
         assert (problem["session"], problem["detail"]) == (peer.session, "simulating failed: ZeroDivisionError: 0 / 0")
-        state = await peer.told(lambda told: told["type"] == "session_state" and not told["falling"])
+        state = await peer.told(lambda told: told["type"] == "session_change" and not told["falling"])
         assert state["session"] == peer.session
-        assert not state["snapshot"]["falling"]  # another engine does not run into it again
+        assert not state["moved"]["falling"]  # another engine does not run into it again
 
         await falling.until(lambda frame: Flags.FINAL in frame.flags)  # it is still shown
         other = watch(await peer.open(GOOD))

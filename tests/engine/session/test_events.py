@@ -196,7 +196,7 @@ def test_a_stone_that_sleeps_is_dropped_anew_by_the_same_key() -> None:
     for tenth in range(20):  # it sleeps after 1 s
         subject.advance(tenth / 10)
     assert (subject.motion.asleep, subject.motion.falling, subject.motion.moving) == (True, True, False)
-    assert subject.state(edited=False).asleep
+    assert subject.described()["asleep"]
     after(subject, messages.ToggleFall())
     assert subject.pose() == session().pose(), "its start"
     assert (subject.motion.asleep, subject.motion.falling, subject.motion.moving) == (False, True, True)

@@ -86,7 +86,7 @@ def test_a_restored_session_shows_the_same_and_moves_on_the_same() -> None:
     session.change(
         STAGE.showing(SCENE.model_copy(update={"camera": SCENE.camera.model_copy(update={"fov_degrees": 20.0})}))
     )
-    report = json.loads(session.state(edited=True).model_dump_json())
+    report = json.loads(json.dumps(session.described()))
     restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     assert restored.pose() == session.pose()
     assert restored.scene == session.scene
@@ -182,7 +182,7 @@ def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyP
 
 def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeypatch: pytest.MonkeyPatch) -> None:
     session = fallen(0.21)
-    report = json.loads(session.state(edited=True).model_dump_json())
+    report = json.loads(json.dumps(session.described()))
     restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     for one in (session, restored):
         assert one.motion.falling

@@ -79,7 +79,7 @@ class LiveFrame:
         height, width, _ = self.rgb.shape
         frontier = math.isnan(self.error) and not math.isnan(self.expected_error)
         return Frame(
-            session=session.key,
+            watch=session.key,
             codec=Codec.JPEG,
             flags=self._flags(frontier) | self._unseen(),
             sequence=session.sequence,
@@ -113,5 +113,6 @@ class LiveFrame:
             Flags.POLARISED: self.optics.polarised,
             Flags.FRONTIER: frontier,
             Flags.SLOW: self.slow,
+            Flags.KEY: True,  # as every JPEG
         }
         return Flags(sum(flag for flag, is_set in flags.items() if is_set))

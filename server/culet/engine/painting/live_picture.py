@@ -229,7 +229,7 @@ class LivePicture:
         self.making = None
         if (
             work.shown is not self.session.shown or work.wanted == self.size
-        ):  # else it shows what it is to, at another size
+        ):  # else only its size was wrong
             self.changed_at = now
         match work.kind:
             case Kind.PLANNED:

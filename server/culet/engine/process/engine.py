@@ -15,7 +15,7 @@ from culet.engine.painting.still import StillQueue
 from culet.engine.process.limits import Limits
 from culet.engine.process.machine import budget
 from culet.engine.process.memory import Memory
-from culet.engine.process.messages import encoded, read_request, refusal
+from culet.engine.process.messages import encoded, read_request, refusal, refusal_by_session
 from culet.engine.process.motion_news import MotionNews
 from culet.engine.process.requests import Requests
 from culet.engine.process.sockets import Peers, bind_control, bind_frames
@@ -158,7 +158,10 @@ class Engine:
         while True:
             message = await self._frames.recv()
             if len(message) == 17 and message[0] in (0, 1):
-                self._requests.sessions.watch(message[1:], subscribed=message[0] == 1)
+                topic, subscribed = message[1:], message[0] == 1
+                self._requests.sessions.watch(topic, subscribed=subscribed)
+                if subscribed and topic.hex() in self._requests.sessions:  # as viewers of protocol 1 ask for frames
+                    self._send_frame(refusal_by_session(topic.hex()))
 
     async def _beat(self) -> None:
         loop = asyncio.get_running_loop()
@@ -174,7 +177,7 @@ class Engine:
     def _heartbeat(self) -> bytes:
         return encoded(protocol.Heartbeat(instance=self._requests.instance))
 
-    def _tell(self, state: protocol.SessionState | protocol.SessionMotion) -> None:
+    def _tell(self, state: protocol.SessionChange | protocol.SessionMotion) -> None:
         self._spawn(self._peers.tell(encoded(state)))
 
     def _tell_problem(self, session: str, error: CuletError) -> None:
@@ -184,7 +187,7 @@ class Engine:
         self._spawn(self._peers.tell(encoded(problem)))
         live = self._painter.pictures.get(session)
         if live is not None:  # its stone may have stopped
-            self._tell(live.session.state(edited=True))
+            self._tell(live.session.change_told(edited=True))
 
     async def _try_again(self, session: str) -> None:
         await asyncio.sleep(RETRY_SECONDS)

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.session.session import Session
-from culet_protocol.engine import SessionMotion, SessionState
+from culet_protocol.engine import SessionChange, SessionMotion
 
 MOTION_SECONDS = 0.05
 """Between two messages about a session that moves. If this engine dies, so much of the motion is lost at most."""
@@ -31,7 +31,7 @@ class _Told(NamedTuple):
 class MotionNews:
     """Of all sessions."""
 
-    def __init__(self, pictures: Iterable[LivePicture], tell: Callable[[SessionState | SessionMotion], None]) -> None:
+    def __init__(self, pictures: Iterable[LivePicture], tell: Callable[[SessionChange | SessionMotion], None]) -> None:
         """`pictures` are those that there are at each moment."""
         self._pictures = pictures
         self._tell = tell
@@ -55,8 +55,8 @@ class MotionNews:
                 before, now = self._told.get(session, _Told()), _Told.of(session)
                 self._told[session] = now
                 if now.asleep != before.asleep:
-                    self._tell(session.state(edited=False))
+                    self._tell(session.change_told(edited=False))
                 else:
-                    self._tell(SessionMotion(session=session.name, moved=session.snapshot().moving_part()))
+                    self._tell(session.motion_told())
         finally:
             self._telling.discard(session)

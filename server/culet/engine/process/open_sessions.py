@@ -108,12 +108,12 @@ class OpenSessions:
             self.close(name)
 
     def watch(self, key: bytes, subscribed: bool) -> None:
-        """Somebody began or ceased to receive the frames of the session with these 16 bytes."""
+        """Somebody began or ceased to receive the frames of the session with this watch id."""
         if subscribed and len(self._subscriptions) < SUBSCRIPTIONS:  # maybe before the session is opened
             self._subscriptions.add(key)
         elif not subscribed:
             self._subscriptions.discard(key)
-        live = self._painter.pictures.get(key.hex())
+        live = next((live for live in self if live.session.key == key), None)
         if live is None:
             return
         live.watched = subscribed
@@ -158,8 +158,8 @@ async def described(live: LivePicture) -> dict[str, Any]:
     """A session as the gateway is told of it."""
     session = live.session
     async with session.motion.still():
-        state = session.state(edited=False)
-    return state.model_dump(mode="json", exclude={"type", "edited"}) | {
+        state = session.described()
+    return state | {
         "watched": live.watched,
         "step": session.shown.step,
         "simulation_time": session.shown.simulation_time,

@@ -41,7 +41,7 @@ class Requests:
         limits: Limits,
         device: dict[str, Any],
         *,
-        tell: Callable[[protocol.SessionState], None],
+        tell: Callable[[protocol.SessionChange], None],
         memory: Memory,
         forget_sky: Callable[[SkyPicture], object],
     ) -> None:
@@ -124,7 +124,7 @@ class Requests:
                     await asyncio.to_thread(apply)
                 else:
                     apply()
-                self._tell(session.state(edited=True))
+                self._tell(session.change_told(edited=True))
         finally:
             self._painter.wake()
         return {"step": session.shown.step, "falling": session.motion.falling}

@@ -32,11 +32,11 @@ def apply(session: Session, event: SessionEvent, library: Library) -> None:
         case messages.ResetCamera():
             session.change(session.stage.showing(session.scene.model_copy(update={"camera": session.home})))
         case messages.LookAtStone():
-            _look_at_stone(session)
+            _look_at_stone(session, event.stone)
         case messages.ToggleFall():
-            session.toggle_fall()
+            session.toggle_fall(event.stone)
         case messages.ResetStone():
-            session.reset_stone()
+            session.reset_stone(event.stone)
         case messages.Push():
             session.push(event.x, event.y, event.right, event.up)
         case messages.ToggleMirror():

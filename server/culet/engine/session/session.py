@@ -14,6 +14,7 @@ from typing import Any
 
 from culet.engine.session.history import History, Past
 from culet.engine.session.motion import Motion, Seen
+from culet.engine.session.news import News
 from culet.engine.session.picking import placed, struck
 from culet.engine.session.removals import Removals
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
@@ -21,8 +22,9 @@ from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
 from culet.scene import Camera, Scene
 from culet.stage import Sky, Stage
-from culet_protocol.engine import SessionState
+from culet_protocol.engine import SessionChange, SessionMotion
 from culet_protocol.messages import BALANCED, Balance
+from culet_protocol.watch import watch_key
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,8 @@ class Session:
         """`timer` says how many seconds of the processor were taken."""
         self.name = name
         """32 hexadecimal digits."""
-        self.key = bytes.fromhex(name)
-        """The 16 bytes that its frames begin with."""
+        self.key = watch_key(name)
+        """Its watch id: the 16 bytes that its frames begin with."""
         self.lock = asyncio.Lock()
         self.balance = Balance(exactness=BALANCED, pinned=False)
         """Of speed and exactness, while things move."""
@@ -68,6 +70,7 @@ class Session:
         self.removals = Removals()
         """Stones that may come back."""
         self.motion = Motion(stage, timer=timer)
+        self.news = News(stage.scene)
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
         self.home = stage.scene.camera
@@ -186,18 +189,26 @@ class Session:
         now = Past(self.shown.step, self.shown.scene)
         return now if step is None else self.history.at(step, now)
 
-    def state(self, *, edited: bool) -> SessionState:
-        """What the gateway needs to know, and another engine needs to go on."""
-        return SessionState(
-            session=self.name,
-            scene=self.scene.model_dump(mode="json"),
-            falling=self.motion.falling,
-            asleep=self.motion.asleep,
-            exactness=self.balance.exactness,
-            pinned=self.balance.pinned,
-            edited=edited,
-            snapshot=self.snapshot().model_dump(mode="json"),
-        )
+    def change_told(self, *, edited: bool) -> SessionChange:
+        """What the gateways do not know yet, and another engine needs to go on; they are to be told of it."""
+        return self.news.change(self, edited=edited)
+
+    def motion_told(self) -> SessionMotion:
+        """As `change_told`, of what changed by itself."""
+        return self.news.motion(self)
+
+    def described(self) -> dict[str, Any]:
+        """All that a gateway needs to know, and another engine needs to go on, as JSON's types."""
+        return {
+            "session": self.name,
+            "revision": self.news.revision,
+            "scene": self.scene.model_dump(mode="json"),
+            "falling": self.motion.falling,
+            "asleep": self.motion.asleep,
+            "exactness": self.balance.exactness,
+            "pinned": self.balance.pinned,
+            "snapshot": self.snapshot().model_dump(mode="json"),
+        }
 
     def snapshot(self) -> Snapshot:
         """What the scene does not say."""

@@ -1,0 +1,52 @@
+// Light inside a stone follows a chain: at each facet the transmitted part leaves, the reflected part goes on, until its weight
+// is under the cut-off.
+#ifndef CULET_INSIDE
+#define CULET_INSIDE
+#include "outside.cl"
+
+// Segments of a chain between two looks at which of the packet's lanes have ended: a lane that idles for a segment costs
+// less than sorting the packet each time.
+#ifndef STRIDE
+#define STRIDE 2
+#endif
+
+// Advances one packet of light inside a stone by a few segments, and puts back what survives.
+static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t task) {
+  maskL taken;
+  int number;
+  packetL packet = pop_inside(&pools->inside, &taken, &number);
+  __constant const stone_t *stone = world.stones + number;
+  task_t own = task;
+  if (STONES == MANY) own.chains += stone->first_chain;
+  const chainL eta = (chainL)(OF_CHAIN(own, packet.tag, eta));
+  maskL alive = taken;
+  for (int segment = 0; segment < STRIDE && any_lane(alive); segment++) {
+    const crossingL crossing = stone_exit(world, stone, packet.origin, packet.direction, alive);
+    tile->segments += count_mask(alive);
+    packet.origin = along(packet.origin, crossing.t, packet.direction);
+    if (ABSORPTION != 0) {
+      EACH (k, WEIGHTS)
+        packet.weight[k] *=
+            exp_fast(-(WEIGHTS == 3 ? stone->absorption[k] : OF_CHAIN(own, packet.tag, absorption)) * crossing.t);
+    }
+    const realL cos_s = clamp(dot3(packet.direction, crossing.normal), (realL)0, (realL)1);
+    const realL squared_a = squared_cosine_in_air(cos_s, eta);
+    const maskL leaves = alive & (squared_a > 0);
+    if (POLARISED || any_lane(leaves)) {
+      const realL cos_a = sqrt(fmax(squared_a, (realL)0));
+      const splitL parts = meet_boundary(world, &packet, crossing.normal, cos_a, cos_s, squared_a, eta);
+      if (any_lane(leaves))
+        leave(world, tile, pools, task, &packet, refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal),
+              (real)1 - parts.kept, parts.transmitted, leaves);
+      scale_weights(&packet, parts.kept);
+      packet.polarisation = parts.reflected;
+    }
+    packet.direction = reflect_inside(stone, packet.direction, cos_s, crossing.normal);
+    packet.tag += ONE_BOUNCE;
+    const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
+    alive = settle(world, tile, task, &packet, alive, used_up);
+  }
+  if (any_lane(alive)) push_to_stone(&pools->inside, number, alive, &packet);
+}
+
+#endif

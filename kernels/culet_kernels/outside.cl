@@ -1,0 +1,118 @@
+// Light outside the stones: what leaves one waits by what it may meet, and is followed in full packets.
+#ifndef CULET_OUTSIDE
+#define CULET_OUTSIDE
+#include "boundary.cl"
+#include "pool.cl"
+#include "room.cl"
+#include "sink.cl"
+
+typedef struct {
+  inside_t inside;
+  pool_t towards; // may meet a stone
+  pool_t away;    // can meet the room and the sky only, by way of mirrors a stone again
+} pools_t;
+
+// Puts off a packet that may meet a stone. What finds no room is counted as cut.
+static inline void put_off(tile_t *tile, pools_t *pools, task_t task, maskL mask, const packetL *packet) {
+  if (has_room(&pools->towards))
+    push(&pools->towards, mask, packet);
+  else
+    lose(tile, mask, packet, over_channels(task, packet));
+}
+
+// Lets go what leaves a stone's surface, reflected or from inside. `packet` is as it meets the surface.
+static inline void leave(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet,
+                         vec3L direction, realL share, polarisationL polarisation, maskL mask) {
+  packetL outer = *packet;
+  outer.origin = to_frame(world, packet->stone, packet->origin);
+  outer.direction = direction;
+  outer.polarisation = polarisation;
+  scale_weights(&outer, share);
+  if (EXCHANGE)
+    put_off(tile, pools, task, mask, &outer);
+  else
+    push(&pools->away, mask, &outer);
+}
+
+#if STONES == MANY
+// The index of each lane's stone.
+static inline chainL eta_of_each(world_t world, task_t task, const packetL *packet) {
+  int number[LANES], tag[LANES];
+  real eta[LANES];
+  store_ints(packet->stone, number);
+  store_ints(packet->tag, tag);
+  for (int lane = 0; lane < LANES; lane++)
+    eta[lane] = task.chains[world.stones[number[lane]].first_chain + (tag[lane] >> PIXEL_BITS & (GROUPS - 1))].eta;
+  return load_lanes(eta);
+}
+#else
+static inline chainL eta_of_each(world_t world, task_t task, const packetL *packet) {
+  return OF_CHAIN(task, packet->tag, eta);
+}
+#endif
+
+// Splits light that meets a stone from outside, at the origin of the packet: what is reflected goes into the room, if
+// `glare` says so, and what enters starts a chain.
+static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L normal,
+                         maskL mask, bool glare) {
+  const realL cos_a = clamp(-dot3(packet->direction, normal), (realL)0, (realL)1);
+  const chainL eta = eta_of_each(world, task, packet);
+  const realL cos_s = cosine_in_stone(cos_a, eta);
+  const splitL parts = meet_boundary(world, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
+  if (glare)
+    leave(world, tile, pools, task, packet, reflect3(packet->direction, -cos_a, normal), parts.kept, parts.reflected,
+          mask);
+  packetL inner = *packet;
+  inner.direction = refract_inward(packet->direction, cos_a, cos_s, eta, normal);
+  inner.polarisation = parts.transmitted;
+  scale_weights(&inner, (real)1 - parts.kept);
+  inner.tag = packet->tag & (ONE_BOUNCE - 1);
+  const maskL goes_on = settle(world, tile, task, &inner, mask, mask & !mask);
+  if (has_room_inside(&pools->inside))
+    push_inside(&pools->inside, goes_on, &inner);
+  else
+    lose(tile, goes_on, &inner, over_channels(task, &inner));
+}
+
+// Takes one packet that can meet the room only, and shows what it sees there. What a mirror sends towards a stone goes on.
+static inline void look_away(world_t world, tile_t *tile, pools_t *pools, task_t task) {
+  maskL taken;
+  packetL packet = pop(&pools->away, &taken);
+  rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
+  maskL towards = taken;
+  realL cut = splat(0);
+  const radianceL radiance =
+      gather(world, &ray, largest_weight(&packet), BY_STONE, 0, &towards, 0, &cut, channels_of(task));
+  show(tile, task, taken, &packet, radiance);
+  lose(tile, taken & (cut > 0), &packet, cut * over_channels(task, &packet));
+  if (REENTRY && any_lane(towards)) {
+    packet.origin = ray.origin;
+    packet.direction = ray.direction;
+    packet.polarisation = ray.polarisation;
+    packet.stone = (intL)(NOBODY);
+    scale_weights(&packet, ray.weight);
+    put_off(tile, pools, task, towards, &packet);
+  }
+}
+
+// Takes one packet that may meet a stone: it enters, or goes on through the room.
+static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task_t task) {
+  maskL taken;
+  packetL packet = pop(&pools->towards, &taken);
+  const meetingL met = stone_entry(world, packet.origin, packet.direction, splat(0), taken, packet.stone);
+  const rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
+  const maskL meets = met.hit & !hidden_by_room(world, ray, met.t);
+  const maskL misses = taken & !meets;
+  if (any_lane(misses)) push(&pools->away, misses, &packet);
+  // Between stones that overlap light could be reflected for ever; so only what is worth it meets another one.
+  maskL hits = taken & meets;
+  if (STONES == MANY) hits = settle(world, tile, task, &packet, hits, misses & !misses);
+  if (any_lane(hits)) {
+    packet.origin = met.point;
+    if (STONES == MANY)
+      packet.stone = blend_ints_by(hits, met.stone, (intL)(0)); // no lane names a stone that is not there
+    enter(world, tile, pools, task, &packet, met.normal, hits, true);
+  }
+}
+
+#endif

@@ -1,0 +1,148 @@
+// Where chains end: what they show goes to the pixels, what they drop is counted.
+#ifndef CULET_SINK
+#define CULET_SINK
+#include "packet.cl"
+#include "sky.cl"
+#include "tile.cl"
+
+// What all rays of a pool have in common while it is worked on.
+typedef struct {
+  __global const chain_t *chains; // by group of pixels; of MANY stones those of the first
+  int first_channel;
+  uint seed;                      // of chance
+} task_t;
+
+// How many they are is written out, not kept in the task, so that the compiler knows it in functions that it does not inline.
+static inline channels_t channels_of(task_t task) {
+  const channels_t channels = {task.first_channel, CHANNELS};
+  return channels;
+}
+
+// A quantity of each lane's chain.
+#if SPECTRAL
+#define OF_CHAIN(task, tag, quantity)                                                                                  \
+  by_group(tag, (task).chains[0].quantity, (task).chains[1].quantity, (task).chains[2].quantity,                       \
+           (task).chains[3].quantity)
+static inline realL by_group(intL tag, real first, real second, real third, real fourth) {
+  const maskL odd = widen((tag >> PIXEL_BITS & 1) != 0), high = widen((tag >> PIXEL_BITS & 2) != 0);
+  return blend(high, blend(odd, splat(fourth), splat(third)), blend(odd, splat(second), splat(first)));
+}
+#else
+#define OF_CHAIN(task, tag, quantity) ((task).chains[0].quantity)
+#endif
+
+static inline realL largest_weight(const packetL *packet) {
+  realL largest = packet->weight[0];
+  for (int k = 1; k < WEIGHTS; k++) largest = fmax(largest, packet->weight[k]);
+  return largest;
+}
+
+static inline void scale_weights(packetL *packet, realL factor) {
+  EACH (k, WEIGHTS) packet->weight[k] *= factor;
+}
+
+// What a packet's weight is in a pixel's sum over the three channels.
+static inline realL summed_weight(task_t task, const packetL *packet) {
+  if (WEIGHTS == 3) return packet->weight[0] + packet->weight[1] + packet->weight[2];
+  if (SPECTRAL) return OF_CHAIN(task, packet->tag, summed_share) * packet->weight[0];
+  return CHANNELS * packet->weight[0];
+}
+
+// The most that a packet's weight can be in a pixel's sum over the three channels. Boundaries to come may turn polarisation
+// into intensity.
+static inline realL over_channels(task_t task, const packetL *packet) {
+  const realL weight = summed_weight(task, packet);
+  if (!POLARISED) return weight;
+  const polarisationL p = packet->polarisation;
+  return weight * (1 + sqrt(p.q * p.q + p.u * p.u + p.v * p.v));
+}
+
+// Where light ends: in the tile's pixels.
+//
+// Adds to a packet's pixels what its weight shows of a radiance.
+static inline void show(tile_t *tile, task_t task, maskL mask, const packetL *packet, radianceL seen) {
+  int pixel[LANES];
+  real radiance[CHANNELS][LANES];
+  const packing_t packing = packing_of(mask);
+  pack_ints(packing, packet->tag & PIXEL_MASK, pixel);
+  EACH (k, CHANNELS) {
+    const realL light = packet->weight[min(k, WEIGHTS - 1)] * seen.channel[k];
+    pack_lanes(packing, SPECTRAL ? OF_CHAIN(task, packet->tag, share[k]) * light : light, radiance[k]);
+  }
+  for (int i = 0; i < packing.count; i++)
+    EACH (k, CHANNELS) tile->radiance[task.first_channel + k][pixel[i]] += radiance[k][i];
+}
+
+// Counts weight that is dropped, over the channels.
+static inline void lose(tile_t *tile, maskL mask, const packetL *packet, realL cut) {
+  if (!any_lane(mask)) return;
+  int pixel[LANES];
+  real lost[LANES];
+  const packing_t packing = packing_of(mask);
+  pack_ints(packing, packet->tag & PIXEL_MASK, pixel);
+  pack_lanes(packing, cut, lost);
+  for (int i = 0; i < packing.count; i++) tile->cut[pixel[i]] += lost[i];
+}
+
+// A number from 0 to 1 for each lane, by an integer hash (C. Wellons, Prospecting for Hash Functions, 2018: lowbias32).
+static inline realL chance(task_t task, const packetL *packet) {
+  real number[LANES];
+  int tag[LANES];
+  real weight[LANES];
+  store_ints(packet->tag, tag);
+  store_lanes(packet->weight[0], weight);
+  for (int lane = 0; lane < LANES; lane++) {
+    uint x =
+        (uint)tag[lane] ^ task.seed ^ as_uint((float)weight[lane]) * 0x9e3779b9u; // the weight tells branches apart
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
+    number[lane] = (real)(x >> 8) * (real)(1.0f / (1 << 24));
+  }
+  return load_lanes(number);
+}
+
+// Cut-offs that a pixel's channel may lose before its cut-off is lowered, how many times it is then halved for each further
+// one, and how often at most.
+#define AMPLE ((real)1.5)
+#define HALVINGS ((real)3)
+#define MOST_HALVINGS ((real)5)
+
+// The weight below which a chain ends. Where light comes back to stones, each pixel has a tree of chains, and where each of them
+// loses a cut-off, some lose a hundred. Here their sum grows like the logarithm of their number, down to a least cut-off
+// that bounds what it costs. Of sampled wavelengths one channel may lose twice the mean.
+static inline realL cutoff_now(world_t world, const tile_t *tile, task_t task, const packetL *packet) {
+  const real cutoff = world.scene->cutoff, channels = SPECTRAL ? (real)1.5 : (real)(task.first_channel + CHANNELS);
+  int pixel[LANES];
+  real lost[LANES];
+  store_ints(packet->tag & PIXEL_MASK, pixel);
+  for (int lane = 0; lane < LANES; lane++) lost[lane] = tile->cut[pixel[lane]];
+  const realL excess = load_lanes(lost) / (cutoff * channels) - AMPLE;
+  return cutoff * exp2(-clamp(HALVINGS * excess, (realL)0, (realL)MOST_HALVINGS));
+}
+
+// What becomes of chains whose weight is below the cut-off, or whose bounces are used up: which go on. What ends is added
+// to `cut`.
+static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *packet, maskL mask, maskL used_up) {
+  const int end_kind = DECIDED(END, world.scene->end_kind);
+  const realL weight = largest_weight(packet);
+  maskL ends = mask & (used_up | (weight < world.scene->cutoff));
+  if (!any_lane(ends)) return mask;
+  if (end_kind == ROULETTE) { // Arvo & Kirk, Particle Transport and Image Synthesis (1990)
+    const maskL faint = ends & !used_up, lucky = faint & (chance(task, packet) * world.scene->cutoff < weight);
+    scale_weights(packet, blend(lucky, world.scene->cutoff / fmax(weight, splat((real)1e-30)), splat(1)));
+    lose(tile, ends & used_up, packet, over_channels(task, packet));
+    return mask & (lucky | !ends);
+  }
+  if (EXCHANGE ? world.scene->stones > 1 || !world.stones->convex : 0)
+    ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
+  if (end_kind == SKYLIGHT) {
+    show(tile, task, ends, packet, sky(world, packet->direction, channels_of(task)));
+  }
+  lose(tile, ends, packet, over_channels(task, packet));
+  return mask & !ends;
+}
+
+#endif

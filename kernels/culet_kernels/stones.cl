@@ -1,0 +1,193 @@
+// The stones, whatever their geometry: which of them light from outside enters first and where, where light inside one meets
+// its surface, and what they shade.
+//
+// Where stones overlap, the one that light entered first keeps it until it leaves that stone. If it then is within another,
+// it enters that one there.
+#ifndef CULET_STONES
+#define CULET_STONES
+#include "features.cl"
+#include "world.cl"
+
+#define NOBODY (-1) // in place of a stone's number
+
+// Where a ray from outside first meets a stone.
+typedef struct {
+  maskL hit;
+  realL t;      // R
+  vec3L point;  // in the measure of the stone
+  vec3L normal; // outward
+  intL stone;   // its number
+} meetingL;
+
+// R of a stone's own radius by which a ray may start inside it, or end there again, and count as one that passes it by.
+#define TOUCH ((real)2e-6)
+// R of a stone's own radius by which a ray may start inside a stone of triangles and still enter it there.
+#define DEPTH ((real)1e-4)
+
+#if STONES == MANY
+// Positions in a stone's measure, and back. Each lane's stone may be another.
+static inline realL of_each(__constant const real *first, intL stone) {
+  int number[LANES];
+  real value[LANES];
+  store_ints(stone, number);
+  for (int lane = 0; lane < LANES; lane++)
+    value[lane] = *(__constant const real *)((__constant const char *)first + number[lane] * sizeof(stone_t));
+  return load_lanes(value);
+}
+static inline vec3L to_frame(world_t world, intL stone, vec3L point) {
+  const realL radius = of_each(&world.stones->radius, stone);
+  return vec3(fma(radius, point.x, of_each(world.stones->centre, stone)),
+              fma(radius, point.y, of_each(world.stones->centre + 1, stone)),
+              fma(radius, point.z, of_each(world.stones->centre + 2, stone)));
+}
+static inline vec3L to_own(world_t world, int number, vec3L point) {
+  __constant const stone_t *stone = world.stones + number;
+  return scale3(splat(stone->inverse_radius),
+                vec3(point.x - stone->centre[0], point.y - stone->centre[1], point.z - stone->centre[2]));
+}
+#else
+static inline vec3L to_frame(world_t world, intL stone, vec3L point) { return point; }
+static inline vec3L to_own(world_t world, int number, vec3L point) { return point; }
+#endif
+
+// Whether a stone is met by its half-spaces, or else by its triangles.
+static inline int by_half_spaces(__constant const stone_t *stone) {
+  return GEOMETRY == HULL ? 1 : STONES == MANY ? !stone->by_triangles : 0;
+}
+
+// How a ray passes a sphere: the middle of its way, from the centre of the sphere, and how far along the ray that is.
+typedef struct {
+  maskL passes;
+  realL middle;
+  vec3L foot;
+} passageL;
+
+static inline passageL passage(vec3L origin, vec3L direction, realL t_min, real x, real y, real z, real reach) {
+  const vec3L apart = vec3(origin.x - x, origin.y - y, origin.z - z);
+  passageL passage;
+  passage.middle = -dot3(apart, direction);
+  passage.foot = along(apart, passage.middle, direction);
+  passage.passes = (dot3(passage.foot, passage.foot) < reach * reach) & (passage.middle > t_min - reach);
+  return passage;
+}
+
+// Whether a ray can meet a stone at all: whether it passes the sphere around one, not wholly before t_min.
+static inline maskL passes_stones(world_t world, vec3L origin, vec3L direction, realL t_min) {
+#if STONES == MANY
+  maskL passes = t_min < t_min;
+  for (int i = 0; i < world.scene->groups; i++) {
+    __constant const group_t *group = world.groups + i;
+    passes |=
+        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach).passes;
+  }
+  return passes;
+#else
+  const realL middle = -dot3(origin, direction);
+  const vec3L nearest = along(origin, middle, direction);
+  return (dot3(nearest, nearest) < (real)1.0001) & (middle > t_min - (real)1.0001);
+#endif
+}
+
+#if STONES == MANY
+// Looks whether rays enter this stone before the one that they met so far. `from` is the stone that each comes from.
+static inline void meet_stone(world_t world, int number, vec3L origin, vec3L direction, realL t_min, maskL mask,
+                              intL from, meetingL *first) {
+  __constant const stone_t *stone = world.stones + number;
+  const passageL way =
+      passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach);
+  const maskL returns = widen(from == (intL)(number));
+  maskL near = mask & way.passes & (way.middle - stone->reach < first->t);
+  if (stone->convex) near &= !returns;
+  if (!any_lane(near)) return;
+  const vec3L foot = scale3(splat(stone->inverse_radius), way.foot); // from here on in the stone's own measure
+  const realL start = (t_min - way.middle) * stone->inverse_radius;
+  crossingL crossing;
+  if (by_half_spaces(stone))
+    crossing = hull_entry_from(world.facets + stone->first_facet, stone->facets, foot, direction, start, TOUCH);
+  else {
+    crossing = mesh_crossing(stone, tree_of(world), foot, direction, blend(returns, start, start - DEPTH), (real)1e30,
+                             near, 1);
+    crossing.t = fmax(crossing.t, start);
+  }
+  const realL t = fma(crossing.t, splat(stone->radius), way.middle);
+  const maskL sooner = near & crossing.hit & (t < first->t);
+  first->hit |= sooner;
+  first->t = blend(sooner, t, first->t);
+  first->point = blend3(sooner, along(foot, crossing.t, direction), first->point);
+  first->normal = blend3(sooner, crossing.normal, first->normal);
+  first->stone = blend_ints_by(sooner, (intL)(number), first->stone);
+}
+
+static inline meetingL nobody(vec3L origin, vec3L direction) {
+  const maskL none = origin.x < origin.x;
+  const meetingL meeting = {none, splat(1e30f), origin, direction, (intL)(NOBODY)};
+  return meeting;
+}
+#endif
+
+// The stone that a ray from outside enters first. `from` is the stone that it comes from, or NOBODY.
+static inline meetingL stone_entry(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask, intL from) {
+#if STONES == MANY
+  meetingL first = nobody(origin, direction);
+  for (int i = 0; i < world.scene->groups; i++) {
+    __constant const group_t *group = world.groups + i;
+    const passageL way =
+        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach);
+    const maskL near = mask & way.passes & (way.middle - group->reach < first.t);
+    if (!any_lane(near)) continue;
+    for (int number = group->first; number < group->last; number++)
+      meet_stone(world, number, origin, direction, t_min, near, from, &first);
+  }
+  return first;
+#else
+  const crossingL crossing =
+      GEOMETRY == HULL ? hull_entry(world.facets, world.stones->facets, origin, direction, t_min)
+                       : mesh_crossing(world.stones, tree_of(world), origin, direction, t_min, (real)1e30, mask, 1);
+  const meetingL meeting = {crossing.hit, crossing.t, along(origin, crossing.t, direction), crossing.normal, (intL)(0)};
+  return meeting;
+#endif
+}
+
+// Where light inside a stone meets its surface, in the stone's own measure.
+static inline crossingL stone_exit(world_t world, __constant const stone_t *stone, vec3L origin, vec3L direction,
+                                   maskL mask) {
+  if (by_half_spaces(stone))
+    return hull_exit(world.facets + (STONES == MANY ? stone->first_facet : 0), stone->facets, origin, direction);
+  return mesh_crossing(stone, tree_of(world), origin, direction, splat(0), (real)1e30, mask, -1);
+}
+
+// Whether a stone lies between points of the room and a light; all in the stone's own measure.
+static inline maskL shaded_by(world_t world, __constant const stone_t *stone, int light, vec3L point, vec3L to_light,
+                              real reach, maskL mask) {
+  // The line to the light passes the sphere if its moment about the centre is less than its length.
+  const vec3L moment = cross3(point, to_light);
+  const maskL near = mask & (dot3(moment, moment) < reach * dot3(to_light, to_light));
+  if (!any_lane(near)) return near;
+  if (by_half_spaces(stone))
+    return near & hull_shadow(world.shadows, stone->shadow_start[light], stone->shadow_start[light + 1], point);
+  return mesh_crossing(stone, tree_of(world), point, to_light, splat(0), 1, near, 1).hit;
+}
+
+// Whether stones lie between points of the room and a light.
+static inline maskL stone_shadow(world_t world, int light, vec3L point, vec3L to_light, maskL mask) {
+  maskL shaded = mask & !mask;
+  if (GEOMETRY == EMPTY) return shaded;
+  if (STONES == ONE) return shaded_by(world, world.stones, light, point, to_light, (real)1.0001, mask);
+  const realL squared = dot3(to_light, to_light);
+  for (int i = 0; i < world.scene->groups; i++) {
+    __constant const group_t *group = world.groups + i;
+    const vec3L moment =
+        cross3(vec3(point.x - group->centre[0], point.y - group->centre[1], point.z - group->centre[2]), to_light);
+    const maskL near = mask & !shaded & (dot3(moment, moment) < group->reach * group->reach * squared);
+    if (!any_lane(near)) continue;
+    for (int number = group->first; number < group->last; number++) {
+      __constant const stone_t *stone = world.stones + number;
+      const real reach = stone->reach * stone->inverse_radius;
+      shaded |= shaded_by(world, stone, light, to_own(world, number, point),
+                          scale3(splat(stone->inverse_radius), to_light), reach * reach, near & !shaded);
+    }
+  }
+  return shaded;
+}
+
+#endif

@@ -1,0 +1,75 @@
+"""What is new of a session since the gateways were told of it last: an edit tells what it changed, not the scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from culet.scene import Scene
+from culet_protocol.engine import SessionChange, SessionMotion
+from culet_protocol.parts import STONE, changed_parts
+
+if TYPE_CHECKING:
+    from culet.engine.session.session import Session
+
+
+class News:
+    """Mutable: it remembers what was told. Used under the session's lock, or two could tell the same."""
+
+    def __init__(self, scene: Scene) -> None:
+        """Of a session that has just been opened with this scene, of whose snapshot nothing was told."""
+        self.revision = 0
+        """Of what was told last."""
+        self._scene = scene
+        self._snapshot: dict[str, Any] = {}
+
+    def change(self, session: Session, *, edited: bool) -> SessionChange:
+        """Everything that is new. Where stones move and none of them was edited, their motion is left to `motion`,
+        which tells it 20 times a second: a pointer's events come more often, and of many stones it is large."""
+        parts = scene_parts(self._scene, session.scene)
+        snapshot = session.snapshot().model_dump(mode="json")
+        if session.motion.moving and not any(name.startswith(STONE) or name == "stones" for name in parts):
+            del snapshot["simulation"]
+        since, self.revision, self._scene = self.revision, self.revision + 1, session.scene
+        return SessionChange(
+            session=session.name,
+            revision=self.revision,
+            since=since,
+            parts=parts,
+            falling=session.motion.falling,
+            asleep=session.motion.asleep,
+            exactness=session.balance.exactness,
+            pinned=session.balance.pinned,
+            edited=edited,
+            moved=self._moved(snapshot),
+        )
+
+    def motion(self, session: Session) -> SessionMotion:
+        """What changed without anybody doing something."""
+        return SessionMotion(session=session.name, moved=self._moved(session.snapshot().moving_part()))
+
+    def _moved(self, snapshot: dict[str, Any]) -> dict[str, Any]:
+        moved = {
+            name: value
+            for name, value in snapshot.items()
+            if name not in self._snapshot or self._snapshot[name] != value
+        }
+        self._snapshot |= moved
+        return moved
+
+
+def scene_parts(before: Scene, after: Scene) -> dict[str, Any]:
+    """`changed_parts` of two scenes, as JSON's types. What is the same object, as most are, is not looked into."""
+    stones = {stone.id: stone for stone in after.stones}
+    parts: dict[str, Any] = {}
+    for name in changed_parts(_shallow(before), _shallow(after)):
+        stone = stones.get(name.removeprefix(STONE)) if name.startswith(STONE) else None
+        if name.startswith(STONE):
+            parts[name] = None if stone is None else stone.model_dump(mode="json")
+        else:
+            parts |= after.model_dump(mode="json", include={name})
+    return parts
+
+
+def _shallow(scene: Scene) -> dict[str, Any]:
+    """The scene's fields as they are, and each stone with its id."""
+    return dict(scene) | {"stones": [{"id": stone.id, "stone": stone} for stone in scene.stones]}

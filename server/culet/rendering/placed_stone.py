@@ -1,0 +1,119 @@
+"""The stones of a picture: what each is made of, its shape, its size and its place, in double precision."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from culet.geometry.shape import Shape
+from culet.scene.model import Scene, StoneSettings
+from culet.stage import Stage
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedStone:
+    """One stone. Its own measure: relative to its centre, in the world's axes, in units of its radius."""
+
+    settings: StoneSettings
+    shape: Shape
+    number: int
+    """Of the stone in the scene."""
+    centre: Array
+    """(3,), in the world, R."""
+    rotation: Array
+    """(3, 3), its own axes in the world's as columns."""
+    scale: float
+    """Its radius, R."""
+
+    @property
+    def planes(self) -> Array:
+        """(F, 4) facets in its own measure."""
+        return np.column_stack([self.shape.planes[:, :3] @ self.rotation.T, self.shape.planes[:, 3]])
+
+    @property
+    def vertices(self) -> Array:
+        """(V, 3), in its own measure."""
+        return np.asarray(self.shape.vertices @ self.rotation.T)
+
+    def own(self, point: Iterable[float]) -> Array:
+        """A point of the world in the stone's own measure."""
+        return (np.array(tuple(point), dtype=float) - self.centre) / self.scale
+
+    def depth(self, point: Iterable[float]) -> float:
+        """How far inside the stone a point of the world is, in its radii; not positive outside. Of a stone that is not
+        convex all points inside are as deep as can be."""
+        own = self.own(point) @ self.rotation
+        if own @ own >= 1:
+            return 0.0
+        if self.shape.convex:
+            return float((self.shape.planes[:, 3] - self.shape.planes[:, :3] @ own).min())
+        return float(abs(_winding_number(self.shape, own)) > 0.5)
+
+
+def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
+    """(3, 3), the stone's axes in the world as columns, from a unit quaternion w, x, y, z."""
+    w, x, y, z = orientation
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def placed_stones(stage: Stage) -> tuple[PlacedStone, ...]:
+    """The stage's stones, ordered by place: how the scene orders them changes nothing, to the bit."""
+    stones = [
+        PlacedStone(
+            settings, shape, number, np.array(settings.position), rotation_matrix(settings.orientation),
+            settings.scale,
+        )
+        for number, (settings, shape) in enumerate(zip(stage.scene.stones, stage.shapes, strict=True))
+    ]  # fmt: skip
+    return tuple(sorted(stones, key=_place))
+
+
+def _place(stone: PlacedStone) -> tuple[tuple[float, ...], float, tuple[float, ...], int, str]:
+    settings = stone.settings
+    return settings.position, stone.scale, settings.orientation, len(stone.shape.planes), repr(settings.material)
+
+
+def origin_of(stones: Sequence[PlacedStone]) -> Array:
+    """(3,) the origin of the kernels' frame, in the world: the middle of the stones' centres, which is the centre of
+    one stone; the world's origin where there is none."""
+    if not stones:
+        return np.zeros(3)
+    return np.array([math.fsum(stone.centre[k] for stone in stones) / len(stones) for k in range(3)])
+
+
+def extent_of(stones: Sequence[PlacedStone]) -> float:
+    """R from that origin within which all stones are."""
+    origin = origin_of(stones)
+    return max((float(np.linalg.norm(stone.centre - origin)) + stone.scale for stone in stones), default=0.0)
+
+
+def camera_stone(scene: Scene, stones: Sequence[PlacedStone]) -> int | None:
+    """Which of the stones holds the eye: the one in which it is deepest. On a surface counts as outside. Parallel rays
+    begin outside."""
+    if scene.camera.kind == "orthographic" or not stones:
+        return None
+    depths = [stone.depth(scene.camera.position) * stone.scale for stone in stones]
+    deepest = int(np.argmax(depths))
+    return deepest if depths[deepest] > 0 else None
+
+
+def _winding_number(shape: Shape, point: Array) -> float:
+    """How often the surface encloses a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom &
+    Strackee, IEEE Trans. Biomed. Eng. 30, 125 (1983), eq. 8)."""
+    a, b, c = (shape.vertices[shape.triangles[:, k]] - point for k in range(3))
+    la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+    triple = np.einsum("ij,ij->i", a, np.cross(b, c))
+    dots = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
+    return float(2 * np.arctan2(triple, dots).sum() / (4 * np.pi))
