@@ -134,7 +134,7 @@ def test_several_stones_go_on_in_another_engine_to_the_same_bits() -> None:
     session = falling(3)
     patch(session, stones={"s0": None})
     patch(session, stones=[stone(5), *(each.model_dump(mode="json") for each in session.scene.stones)])
-    report = json.loads(session.state(edited=True).model_dump_json())
+    report = json.loads(json.dumps(session.described()))
     other = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
     assert shown(other) == shown(session)
     for one in (session, other):
