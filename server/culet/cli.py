@@ -119,7 +119,7 @@ def _quality(picture: Picture) -> str:
 def simulate(
     scene: SceneFile = None,
     seconds: Annotated[float, typer.Option(min=0, help="Simulated time.")] = 5,
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="The stone's path: .csv .json .npz")] = Path(
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="The stones' paths: .csv .json .npz")] = Path(
         "path.csv"
     ),
     preset: Preset = None,
@@ -128,13 +128,14 @@ def simulate(
         Path | None, typer.Option(metavar="FILE", help="Draw height, energy and angular speed over time too: .png")
     ] = None,
 ) -> None:
-    """Let the stone fall and write its path, step by step: position, orientation, velocities, energy, contacts.
+    """Let the stones fall and write their paths, step by step: position, orientation, velocities, energy, contacts.
 
-    A stone that stands on the floor is lifted to y = 1.5 first.
+    A stone that stands on the floor is lifted to y = 1.5 first, several stones all together.
     """
-    from culet.simulation.drop import dropped
     from culet.simulation.paths import ENDINGS, write
     from culet.simulation.paths import record as record_path
+    from culet.simulation.several_paths import record_several
+    from culet.simulation.staged import dropped
 
     with errors_in_one_line():
         check_place(out, "out", ENDINGS)
@@ -142,7 +143,8 @@ def simulate(
             check_place(plot, "plot", ["png"])
         stage = read_stage(scene, preset, mesh)
         with progress_bar("simulating") as advance:
-            path = record_path(dropped(stage), seconds, advance)
+            record_all = record_several if len(stage.shapes) > 1 else record_path
+            path = record_all(dropped(stage), seconds, advance)
         write(path, out)
         if plot is not None:
             from culet.simulation.plot import plot as draw

@@ -5,7 +5,8 @@ from __future__ import annotations
 from culet.engine.session.session import Session
 from culet.geometry.shape import Shape
 from culet.scene import Scene
-from culet.simulation.drop import DROP_HEIGHT, dropped
+from culet.simulation.drop import DROP_HEIGHT
+from culet.simulation.staged import dropped
 from shared.stages import staged
 
 

@@ -8,7 +8,6 @@ from culet.geometry.shape import Shape
 from culet.scene.room import FLOOR_Y
 from culet.simulation.rotation import rotate_back
 from culet.simulation.state import Quaternion, Triple
-from culet.stage import Stage
 
 DROP_HEIGHT = 1.5
 """y of the centre, R: 2.5 R above the floor, from where a stone takes 0.6 s to fall, in the default picture's sight."""
@@ -21,11 +20,3 @@ def drop_position(shape: Shape, position: Triple, orientation: Quaternion) -> Tr
     x, y, z = position
     lowest = float((shape.vertices @ np.array(rotate_back(orientation, (0.0, 1.0, 0.0)))).min())
     return position if y + lowest - FLOOR_Y > STANDING else (x, max(y, DROP_HEIGHT), z)
-
-
-def dropped(stage: Stage) -> Stage:
-    """The stage with its stones where they fall from."""
-    return stage.posed(
-        (drop_position(shape, stone.position, stone.orientation), stone.orientation)
-        for stone, shape in zip(stage.scene.stones, stage.shapes, strict=True)
-    )

@@ -10,7 +10,7 @@ import os
 import pathlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +83,7 @@ def record(stage: Stage, seconds: float, progress: Progress | None = None) -> Pa
     scene = stage.scene
     if not scene.stones:
         raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
-    count = _whole_steps(seconds, scene.simulation.time_step)
+    count = whole_steps(seconds, scene.simulation.time_step)
     simulation = Simulation.of(stage)
     path = _empty_path(simulation.settings.model_dump(mode="json"), count + 1)
     for index in range(count + 1):
@@ -95,7 +95,8 @@ def record(stage: Stage, seconds: float, progress: Progress | None = None) -> Pa
     return path
 
 
-def _whole_steps(seconds: float, time_step: float) -> int:
+def whole_steps(seconds: float, time_step: float) -> int:
+    """Steps in so many seconds; InputError for a time that is none, TooLargeError beyond MAX_STEPS."""
     if not 0 <= seconds < math.inf:
         raise InputError(f"seconds: expected a finite number, 0 or more; got {seconds}", "seconds")
     steps = seconds / time_step
@@ -147,7 +148,18 @@ def _record_state(path: Path, index: int, simulation: Simulation) -> None:
     path.clearance[index] = touch.clearance
 
 
-def write(path: Path, file: pathlib.Path) -> None:
+class Table(Protocol):
+    """What is recorded: arrays, and the same as columns."""
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The scene's `simulation`, as JSON."""
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """One-dimensional arrays by name."""
+
+
+def write(path: Table, file: pathlib.Path) -> None:
     """Write a path as its file's ending says, .csv, .json or .npz: all of it or nothing.
 
     Numbers in text read back as the same doubles. InputError for another ending, or a place that cannot be written to.
@@ -174,7 +186,7 @@ def _replace(file: pathlib.Path, content: bytes) -> None:
         part.unlink(missing_ok=True)
 
 
-def _csv(path: Path) -> bytes:
+def _csv(path: Table) -> bytes:
     columns = path.columns()
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
@@ -184,20 +196,20 @@ def _csv(path: Path) -> bytes:
     return text.getvalue().encode()
 
 
-def _json(path: Path) -> bytes:
+def _json(path: Table) -> bytes:
     columns = {name: column.tolist() for name, column in path.columns().items()}
     document = {"version": 1, "simulation": path.settings, "columns": columns}
     return json.dumps(document, allow_nan=False).encode()
 
 
-def _npz(path: Path) -> bytes:
+def _npz(path: Table) -> bytes:
     arrays = {name: value for name, value in vars(path).items() if name != "settings"}
     packed = io.BytesIO()
     np.savez_compressed(packed, allow_pickle=False, simulation=np.array(json.dumps(path.settings)), **arrays)
     return packed.getvalue()
 
 
-_ENCODERS: dict[str, Callable[[Path], bytes]] = {".csv": _csv, ".json": _json, ".npz": _npz}
+_ENCODERS: dict[str, Callable[[Table], bytes]] = {".csv": _csv, ".json": _json, ".npz": _npz}
 
 ENDINGS = tuple(ending.lstrip(".") for ending in _ENCODERS)
 """Of the files that `write` makes, without the dot."""

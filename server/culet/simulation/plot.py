@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from culet.errors import InputError
 from culet.simulation.paths import Path
+from culet.simulation.several_paths import SeveralPaths
 
 WIDTH, PANEL = 960, 200
 """Pixels; the height of one of the panels."""
@@ -19,14 +20,14 @@ INK, FAINT, CURVE = (32, 32, 36), (214, 214, 220), (36, 98, 178)
 TICKS = 4
 
 
-def plot(path: Path, file: pathlib.Path) -> None:
+def plot(path: Path | SeveralPaths, file: pathlib.Path) -> None:
     """Write height, energy and angular speed over time as a .png; InputError for another ending or a bad place."""
     if file.suffix.lower() != ".png":
         raise InputError(f"plot: expected a name that ends in .png; got {file.name!r}", "plot")
     panels: list[tuple[str, NDArray[np.float64]]] = [
-        ("height of the centre of mass, R", path.position[:, 1]),
+        ("height of the centre of mass, R", path.position[..., 1]),
         ("energy, mass R^2/s^2", path.energy),
-        ("angular speed, rad/s", np.linalg.norm(path.angular_velocity, axis=1)),
+        ("angular speed, rad/s", np.linalg.norm(path.angular_velocity, axis=-1)),
     ]
     image = Image.new("RGB", (WIDTH, PANEL * len(panels) + BOTTOM), "white")
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=13)
@@ -58,19 +59,23 @@ def _panel(
         draw.line([(LEFT, row(value)), (WIDTH - RIGHT, row(value))], FAINT)
         draw.text((LEFT - 6, row(value)), f"{value:.4g}", INK, font, anchor="rm")
     draw.text((LEFT, top + 4), title, INK, font)
-    columns = _columns(time)
-    draw.line([(x, row(value)) for x, value in zip(columns.tolist(), values.tolist(), strict=True)], CURVE, 2)
+    columns = _columns(time).tolist()
+    for curve in values.reshape(len(time), -1).T.tolist():  # a stone each
+        draw.line([(x, row(value)) for x, value in zip(columns, curve, strict=True)], CURVE, 2)
 
 
-def _rest(draw: ImageDraw.ImageDraw, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, path: Path) -> None:
-    """The axis of time, and where the stone fell asleep."""
+def _rest(
+    draw: ImageDraw.ImageDraw, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, path: Path | SeveralPaths
+) -> None:
+    """The axis of time, and where all stones have fallen asleep."""
     bottom = draw.im.size[1] - BOTTOM + 4
     step, low, high = _ticks(0.0, float(path.time[-1]))
     for value in np.arange(low, high + step / 2, step).tolist():
         if value <= path.time[-1]:
             draw.text((float(_columns(path.time, value)[0]), bottom), f"{value:.4g} s", INK, font, anchor="ma")
-    if path.asleep.any():
-        x = float(_columns(path.time)[int(path.asleep.argmax())])
+    asleep = path.asleep.reshape(len(path.time), -1).all(axis=1)
+    if asleep.any():
+        x = float(_columns(path.time)[int(asleep.argmax())])
         draw.line([(x, TOP), (x, bottom - 4)], INK)
         draw.text((x - 4, TOP), "asleep", INK, font, anchor="ra")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from culet.simulation.bodies import Body
+from culet.simulation.drop import drop_position
 from culet.simulation.settings import mass_of
 from culet.simulation.surfaces import surfaces_of
 from culet.simulation.world import World
@@ -23,3 +24,16 @@ def bodies_of(stage: Stage) -> tuple[Body, ...]:
 def world_of(stage: Stage) -> World:
     """The stones at their starts, between the surfaces of the scene and under its law."""
     return World(bodies_of(stage), surfaces_of(stage.scene), stage.scene.simulation)
+
+
+def dropped(stage: Stage) -> Stage:
+    """The stage with its stones where they fall from: of several all are lifted together, or they would overlap."""
+    stones = stage.scene.stones
+    if len(stones) > 1:
+        world = world_of(stage)
+        world.drop()
+        return stage.posed((body.position, body.orientation) for body in world.state.bodies)
+    return stage.posed(
+        (drop_position(shape, stone.position, stone.orientation), stone.orientation)
+        for stone, shape in zip(stones, stage.shapes, strict=True)
+    )

@@ -15,8 +15,8 @@ from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.presets import PRESETS, Preset
 from culet.scene.thumbnails import SIZE
-from culet.simulation.drop import dropped
 from culet.simulation.paths import record
+from culet.simulation.staged import dropped
 from culet.stage import Stage
 from culet.study.appearance import appearance, colour_parts, stone_mask
 

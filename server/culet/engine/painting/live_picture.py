@@ -227,9 +227,7 @@ class LivePicture:
         if work is None:
             return
         self.making = None
-        if (
-            work.shown is not self.session.shown or work.wanted == self.size
-        ):  # else only its size was wrong
+        if work.shown is not self.session.shown or work.wanted == self.size:  # else only its size was wrong
             self.changed_at = now
         match work.kind:
             case Kind.PLANNED:
