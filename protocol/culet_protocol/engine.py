@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from culet_protocol.messages import BALANCED, Exactness, Message, Question, Revision, SessionEvent
+from culet_protocol.messages import Condition, Message, Question, Revision, SessionEvent
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "webp", "exr"]
@@ -183,7 +183,7 @@ class Reply(Message):
     field: str | None = None
 
 
-class SessionChange(Message):
+class SessionChange(Condition):
     """Told unasked: on every edit, and when stones have fallen asleep or were woken; with what was told before, this is
     what a new engine needs to go on.
 
@@ -196,10 +196,6 @@ class SessionChange(Message):
     revision: Revision
     since: Revision
     parts: dict[str, Any]
-    falling: bool
-    asleep: bool = False
-    exactness: Exactness = BALANCED
-    pinned: bool = False
     edited: bool
     moved: dict[str, Any]
 

@@ -21,6 +21,7 @@ Pixels = Annotated[int, Field(ge=16, le=8192)]
 Exactness = Annotated[float, Field(ge=0, le=1)]
 Revision = Annotated[int, Field(ge=0, le=2**53 - 1)]
 """Counts the states of a session that viewers could be told."""
+StoneMotion = Literal["paused", "falling", "asleep"]
 BALANCED: Exactness = 0.5
 """What a new session has."""
 FASTEST_RATE, EXACTEST_RATE = 60.0, 15.0
@@ -223,33 +224,43 @@ class Hello(Message):
     viewer: int
 
 
-class State(Message):
-    """The session's scene as it is now (with the live camera), whether stones fall, or all sleep for good, and the
-    session's balance: to a viewer that joins, and whenever it could not follow by a Change."""
+class Fall(Message):
+    """Whether time goes on for a session's stones, whether all of them sleep for good, and the session's balance."""
 
-    type: Literal["state"] = "state"
-    revision: Revision
-    scene: dict[str, Any]
     falling: bool
     asleep: bool = False
     exactness: Exactness = BALANCED
     pinned: bool = False
 
 
-class Change(Message):
+class Condition(Fall):
+    """What a session is like besides its scene; `motions` are what each of its stones does, by its id."""
+
+    motions: dict[str, StoneMotion] = Field(default_factory=dict)
+
+
+class State(Condition):
+    """The session's scene as it is now (with the live camera), whether time goes on for its stones (`falling`), whether
+    all of them sleep for good (`asleep`), what each does by its id (`motions`: "paused", "falling" or "asleep"), and
+    the session's balance: to a viewer that joins, and whenever it could not follow by a Change."""
+
+    type: Literal["state"] = "state"
+    revision: Revision
+    scene: dict[str, Any]
+
+
+class Change(Fall):
     """What is another since the revision that the viewer was told last: on every edit, and when stones fall asleep.
 
-    `parts` are those of the scene, as `culet_protocol.parts` says; the rest is as in State, whole.
+    `parts` are those of the scene, as `culet_protocol.parts` says; `motions` are those of all stones if one of them is
+    another, and else null; the rest is as in State.
     """
 
     type: Literal["change"] = "change"
     revision: Revision
     since: Revision
     parts: dict[str, Any]
-    falling: bool
-    asleep: bool = False
-    exactness: Exactness = BALANCED
-    pinned: bool = False
+    motions: dict[str, StoneMotion] | None = None
 
 
 class Snapshot(Message):

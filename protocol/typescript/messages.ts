@@ -228,38 +228,42 @@ export interface Hello {
 }
 
 /**
- * The session's scene as it is now (with the live camera), whether stones fall, or all sleep for good, and the
- * session's balance: to a viewer that joins, and whenever it could not follow by a Change.
+ * The session's scene as it is now (with the live camera), whether time goes on for its stones (`falling`), whether
+ * all of them sleep for good (`asleep`), what each does by its id (`motions`: "paused", "falling" or "asleep"), and
+ * the session's balance: to a viewer that joins, and whenever it could not follow by a Change.
  */
 export interface State {
-  type: "state";
-  /** integer, 0 to 9.00719925474099e+15 */
-  revision: number;
-  scene: JsonObject;
   falling: boolean;
   asleep?: boolean;
   /** 0 to 1 */
   exactness?: number;
   pinned?: boolean;
+  motions?: JsonObject;
+  type: "state";
+  /** integer, 0 to 9.00719925474099e+15 */
+  revision: number;
+  scene: JsonObject;
 }
 
 /**
  * What is another since the revision that the viewer was told last: on every edit, and when stones fall asleep.
  *
- * `parts` are those of the scene, as `culet_protocol.parts` says; the rest is as in State, whole.
+ * `parts` are those of the scene, as `culet_protocol.parts` says; `motions` are those of all stones if one of them is
+ * another, and else null; the rest is as in State.
  */
 export interface Change {
+  falling: boolean;
+  asleep?: boolean;
+  /** 0 to 1 */
+  exactness?: number;
+  pinned?: boolean;
   type: "change";
   /** integer, 0 to 9.00719925474099e+15 */
   revision: number;
   /** integer, 0 to 9.00719925474099e+15 */
   since: number;
   parts: JsonObject;
-  falling: boolean;
-  asleep?: boolean;
-  /** 0 to 1 */
-  exactness?: number;
-  pinned?: boolean;
+  motions?: JsonObject | null;
 }
 
 /**
@@ -323,21 +327,23 @@ export type Notice = Hello | State | Change | Snapshot | Viewers | Problem | Eng
 export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {
   hello: { protocol: ["integer"], session: ["string"], watch: ["string"], viewer: ["integer"] },
   state: {
-    revision: ["integer"],
-    scene: ["object"],
     falling: ["boolean"],
     asleep: ["boolean", "absent"],
     exactness: ["number", "absent"],
     pinned: ["boolean", "absent"],
+    motions: ["object", "absent"],
+    revision: ["integer"],
+    scene: ["object"],
   },
   change: {
+    falling: ["boolean"],
+    asleep: ["boolean", "absent"],
+    exactness: ["number", "absent"],
+    pinned: ["boolean", "absent"],
     revision: ["integer"],
     since: ["integer"],
     parts: ["object"],
-    falling: ["boolean"],
-    asleep: ["boolean", "absent"],
-    exactness: ["number", "absent"],
-    pinned: ["boolean", "absent"],
+    motions: ["object", "null", "absent"],
   },
   snapshot: { snapshot: ["object"] },
   viewers: { count: ["integer"] },

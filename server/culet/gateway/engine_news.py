@@ -61,12 +61,12 @@ class EngineNews(EngineEvents):
         session = self._records.get(change.session)
         if session is None or session.revision is None:  # it is being opened, and the answer will say all
             return
-        told_asleep = session.asleep
+        told = session.condition
         if not session.hear(change):
             task = asyncio.create_task(self._catch_up(session))
             self._catching_up.add(task)
             task.add_done_callback(self._catching_up.discard)
-        elif change.edited or session.asleep != told_asleep:
+        elif change.edited or session.condition != told:
             session.tell(session.state())
 
     async def _catch_up(self, session: SessionRecord) -> None:

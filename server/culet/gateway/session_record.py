@@ -11,7 +11,7 @@ from culet.gateway.client_address import UNKNOWN
 from culet.gateway.viewer import Viewer
 from culet_protocol.engine import SessionChange
 from culet_protocol.frame import Frame
-from culet_protocol.messages import BALANCED, Notice, Snapshot, State
+from culet_protocol.messages import Condition, Notice, Snapshot, State
 from culet_protocol.parts import with_parts
 from culet_protocol.sizes import LIVE_SIZE
 from culet_protocol.watch import watch_key
@@ -34,8 +34,7 @@ class SessionRecord:
         self.scene = scene
         self.revision: int | None = None
         """Of the scene, by the engine's count; None until the engine has said so."""
-        self.falling = self.asleep = False
-        self.exactness, self.pinned = BALANCED, False
+        self.condition = Condition(falling=False)
         self.snapshot: dict[str, Any] | None = None
         self.snapshot_told: dict[str, Any] | None = None
         self.next_snapshot_at = -float("inf")
@@ -58,8 +57,7 @@ class SessionRecord:
     def learn(self, described: Mapping[str, Any]) -> None:
         """What the engine said of the session, as it is now."""
         self.revision, self.scene, self.snapshot = described["revision"], described["scene"], described["snapshot"]
-        self.falling, self.asleep = described["falling"], described["asleep"]
-        self.exactness, self.pinned = described["exactness"], described["pinned"]
+        self.condition = Condition.model_validate({name: described[name] for name in Condition.model_fields})
 
     def hear(self, change: SessionChange) -> bool:
         """What the engine told of the session unasked; False, and nothing learnt, if it is not all that is new."""
@@ -67,8 +65,7 @@ class SessionRecord:
             return False
         self.revision, self.scene = change.revision, with_parts(self.scene, change.parts)
         self.snapshot = (self.snapshot or {}) | change.moved
-        self.falling, self.asleep = change.falling, change.asleep
-        self.exactness, self.pinned = change.exactness, change.pinned
+        self.condition = Condition.model_validate(change.model_dump(include=set(Condition.model_fields)))
         return True
 
     def tell_snapshot(self, now: float) -> None:
@@ -82,14 +79,7 @@ class SessionRecord:
 
     def state(self) -> State:
         """The notice for viewers, of which each is told what is new to it."""
-        return State(
-            revision=self.revision or 0,
-            scene=self.scene,
-            falling=self.falling,
-            asleep=self.asleep,
-            exactness=self.exactness,
-            pinned=self.pinned,
-        )
+        return State(revision=self.revision or 0, scene=self.scene, **self.condition.model_dump())
 
     def tell(self, notice: Notice) -> None:
         """Tell every viewer."""

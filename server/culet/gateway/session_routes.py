@@ -19,7 +19,7 @@ from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Height, Width, response_c
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
 from culet_protocol.engine import Format, Render
-from culet_protocol.messages import PatchScene, SessionEvent
+from culet_protocol.messages import PatchScene, SessionEvent, StoneMotion
 
 router = APIRouter(tags=["sessions"])
 
@@ -63,8 +63,9 @@ class SessionAnswer(Model):
     id: Annotated[str, Field(description="Whoever knows it may watch and change the session.")]
     watch: Annotated[str, Field(description="Whoever knows it may look at the session's frames over ZeroMQ, no more.")]
     scene: Annotated[dict[str, Any], Field(description="With the camera and lights where they are now.")]
-    falling: bool
-    asleep: Annotated[bool, Field(description="Whether the stone has come to rest for good.")]
+    falling: Annotated[bool, Field(description="Whether time goes on for the stones.")]
+    asleep: Annotated[bool, Field(description="Whether all stones have come to rest for good.")]
+    motions: Annotated[dict[str, StoneMotion], Field(description="What each stone does, by its id.")]
     exactness: Annotated[float, Field(description="While things move: 0 is many frames, 1 few and good ones.")]
     pinned: Annotated[bool, Field(description="Whether `exactness` fixes the quality of moving frames instead.")]
     viewers: int
@@ -211,10 +212,7 @@ def _answer(session: SessionRecord) -> SessionAnswer:
         id=session.id,
         watch=session.topic.hex(),
         scene=session.scene,
-        falling=session.falling,
-        asleep=session.asleep,
-        exactness=session.exactness,
-        pinned=session.pinned,
+        **session.condition.model_dump(),
         viewers=len(session.viewers),
         stream=f"/api/sessions/{session.id}/stream",
     )

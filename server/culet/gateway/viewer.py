@@ -12,6 +12,7 @@ from culet_protocol.frame import Frame
 from culet_protocol.messages import (
     Change,
     Engine,
+    Fall,
     Hello,
     Message,
     Notice,
@@ -140,8 +141,9 @@ class Viewer:
         told, self._told = self._told, state
         if told is None:
             return state
-        same = state.model_dump(include={"revision", "falling", "asleep", "exactness", "pinned"})
-        return Change(since=told.revision, parts=changed_parts(told.scene, state.scene), **same)
+        motions = None if state.motions == told.motions else state.motions
+        same = state.model_dump(include={"revision", *Fall.model_fields})
+        return Change(since=told.revision, parts=changed_parts(told.scene, state.scene), motions=motions, **same)
 
     def next_frame(self, now: float) -> bytes | None:
         """The latest frame if it is new to the viewer and there is credit for it; that is then used."""

@@ -74,6 +74,10 @@ def test_while_stones_move_a_pointers_event_does_not_repeat_their_motion() -> No
 
 
 def test_what_was_told_once_is_not_told_again() -> None:
-    subject, news = session(), News(Scene())
-    assert "simulation" in news.change(subject, edited=True).moved
-    assert news.change(subject, edited=True).moved == {}
+    subject, news = session(), News(NAME, Scene())
+    snapshot = subject.snapshot().model_dump(mode="json")
+    first, second = (
+        news.change(subject.scene, subject.condition(), snapshot, moving=False, edited=True) for _ in range(2)
+    )
+    assert "simulation" in first.moved
+    assert second.moved == {}

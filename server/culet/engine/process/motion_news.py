@@ -20,12 +20,14 @@ class _Told(NamedTuple):
 
     step: int = 0
     sequence: int = 0
-    asleep: bool = False
+    sleeping: frozenset[str] = frozenset()
+    """Ids of stones."""
 
     @classmethod
     def of(cls, session: Session) -> Self:
         """As the session is now."""
-        return cls(session.shown.step, session.sequence, session.motion.asleep)
+        sleeping = frozenset(name for name, motion in session.motion.motions().items() if motion == "asleep")
+        return cls(session.shown.step, session.sequence, sleeping)
 
 
 class MotionNews:
@@ -54,7 +56,7 @@ class MotionNews:
             async with session.lock, session.motion.still():
                 before, now = self._told.get(session, _Told()), _Told.of(session)
                 self._told[session] = now
-                if now.asleep != before.asleep:
+                if now.sleeping != before.sleeping:
                     self._tell(session.change_told(edited=False))
                 else:
                     self._tell(session.motion_told())

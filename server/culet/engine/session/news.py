@@ -2,50 +2,48 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from culet.scene import Scene
 from culet_protocol.engine import SessionChange, SessionMotion
+from culet_protocol.messages import Condition
 from culet_protocol.parts import STONE, changed_parts
-
-if TYPE_CHECKING:
-    from culet.engine.session.session import Session
 
 
 class News:
     """Mutable: it remembers what was told. Used under the session's lock, or two could tell the same."""
 
-    def __init__(self, scene: Scene) -> None:
-        """Of a session that has just been opened with this scene, of whose snapshot nothing was told."""
+    def __init__(self, session: str, scene: Scene) -> None:
+        """Of the session of that name, which has just been opened with this scene, and of whose snapshot nothing was
+        told."""
+        self._session = session
         self.revision = 0
         """Of what was told last."""
         self._scene = scene
         self._snapshot: dict[str, Any] = {}
 
-    def change(self, session: Session, *, edited: bool) -> SessionChange:
+    def change(
+        self, scene: Scene, condition: Condition, snapshot: dict[str, Any], *, moving: bool, edited: bool
+    ) -> SessionChange:
         """Everything that is new. Where stones move and none of them was edited, their motion is left to `motion`,
         which tells it 20 times a second: a pointer's events come more often, and of many stones it is large."""
-        parts = scene_parts(self._scene, session.scene)
-        snapshot = session.snapshot().model_dump(mode="json")
-        if session.motion.moving and not any(name.startswith(STONE) or name == "stones" for name in parts):
-            del snapshot["simulation"]
-        since, self.revision, self._scene = self.revision, self.revision + 1, session.scene
+        parts = scene_parts(self._scene, scene)
+        if moving and not any(name.startswith(STONE) or name == "stones" for name in parts):
+            snapshot = {name: value for name, value in snapshot.items() if name != "simulation"}
+        since, self.revision, self._scene = self.revision, self.revision + 1, scene
         return SessionChange(
-            session=session.name,
+            session=self._session,
             revision=self.revision,
             since=since,
             parts=parts,
-            falling=session.motion.falling,
-            asleep=session.motion.asleep,
-            exactness=session.balance.exactness,
-            pinned=session.balance.pinned,
             edited=edited,
             moved=self._moved(snapshot),
+            **condition.model_dump(),
         )
 
-    def motion(self, session: Session) -> SessionMotion:
-        """What changed without anybody doing something."""
-        return SessionMotion(session=session.name, moved=self._moved(session.snapshot().moving_part()))
+    def motion(self, moving_part: dict[str, Any]) -> SessionMotion:
+        """What changed without anybody doing something, of that part of the snapshot."""
+        return SessionMotion(session=self._session, moved=self._moved(moving_part))
 
     def _moved(self, snapshot: dict[str, Any]) -> dict[str, Any]:
         moved = {

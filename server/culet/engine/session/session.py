@@ -23,7 +23,7 @@ from culet.errors import InputError
 from culet.scene import Camera, Scene
 from culet.stage import Sky, Stage
 from culet_protocol.engine import SessionChange, SessionMotion
-from culet_protocol.messages import BALANCED, Balance
+from culet_protocol.messages import BALANCED, Balance, Condition
 from culet_protocol.watch import watch_key
 
 
@@ -70,7 +70,7 @@ class Session:
         self.removals = Removals()
         """Stones that may come back."""
         self.motion = Motion(stage, timer=timer)
-        self.news = News(stage.scene)
+        self.news = News(name, stage.scene)
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
         self.home = stage.scene.camera
@@ -191,11 +191,22 @@ class Session:
 
     def change_told(self, *, edited: bool) -> SessionChange:
         """What the gateways do not know yet, and another engine needs to go on; they are to be told of it."""
-        return self.news.change(self, edited=edited)
+        snapshot = self.snapshot().model_dump(mode="json")
+        return self.news.change(self.scene, self.condition(), snapshot, moving=self.motion.moving, edited=edited)
 
     def motion_told(self) -> SessionMotion:
         """As `change_told`, of what changed by itself."""
-        return self.news.motion(self)
+        return self.news.motion(self.snapshot().moving_part())
+
+    def condition(self) -> Condition:
+        """What the session is like besides its scene."""
+        return Condition(
+            falling=self.motion.falling,
+            asleep=self.motion.asleep,
+            motions=self.motion.motions(),
+            exactness=self.balance.exactness,
+            pinned=self.balance.pinned,
+        )
 
     def described(self) -> dict[str, Any]:
         """All that a gateway needs to know, and another engine needs to go on, as JSON's types."""
@@ -203,10 +214,7 @@ class Session:
             "session": self.name,
             "revision": self.news.revision,
             "scene": self.scene.model_dump(mode="json"),
-            "falling": self.motion.falling,
-            "asleep": self.motion.asleep,
-            "exactness": self.balance.exactness,
-            "pinned": self.balance.pinned,
+            **self.condition().model_dump(mode="json"),
             "snapshot": self.snapshot().model_dump(mode="json"),
         }
 
