@@ -105,17 +105,38 @@ def test_the_same_start_gives_the_same_bits(box: Shape) -> None:
 
 
 def test_a_snapshot_goes_through_json_and_on_to_the_same_bits(box: Shape) -> None:
-    moving = world(scattered(5, box, 3), BOWL, rolling_resistance=0.02)
+    """Taken while the stones fall, while they touch, and shortly before they fall asleep."""
+    first = world(scattered(5, box, 3), BOWL, rolling_resistance=0.02)
+    while not first.settled:
+        first.step()
+    for step in (60, 240, first.state.step - 20, first.state.step):
+        moving, other = (world(scattered(5, box, 3), BOWL, rolling_resistance=0.02) for _ in range(2))
+        for _ in range(step):
+            moving.step()
+        other.restore(json.loads(json.dumps(moving.snapshot())))
+        assert (other.state, other.previous) == (moving.state, moving.previous)
+        for _ in range(first.state.step - step + 2):
+            moving.step()
+            other.step()
+            assert other.state == moving.state
+        assert moving.settled
+
+
+def test_a_stone_that_falls_on_a_sleeper_wakes_it_and_what_leans_on_it(box: Shape) -> None:
+    bodies = [standing("low", box, IDENTITY), standing("high", box, IDENTITY, gap=height_of(box))]
+    moving = world([*bodies, Body("falls", box, (0.3, 6.0, 0.0), TILTED)], restitution=0)
+    moving.hold("falls", held=True)
     advance(moving, 2)
-    assert any(touch.contacts for touch in moving.touches())
-    other = world(scattered(5, box, 3), BOWL, rolling_resistance=0.02)
-    other.restore(json.loads(json.dumps(moving.snapshot())))
-    assert (other.state, other.previous) == (moving.state, moving.previous)
-    for _ in range(600):
+    assert [state.asleep for state in moving.state.bodies] == [True, True, False]
+    moving.hold("falls", held=False)
+    advance(moving, 0.5)
+    assert [state.asleep for state in moving.state.bodies] == [True, True, False]
+    before = moving.state.bodies[1].position
+    while moving.state.bodies[1].asleep and moving.state.time < 6:
         moving.step()
-        other.step()
-        assert other.state == moving.state
-    assert moving.settled
+    assert not moving.state.bodies[0].asleep
+    advance(moving, 1)
+    assert math.dist(moving.state.bodies[1].position, before) > 0.01
 
 
 @pytest.mark.parametrize("damage", ["version", "stones", "saved", "short", "nan"])
