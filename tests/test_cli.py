@@ -216,6 +216,15 @@ def test_a_path_that_could_not_be_kept_is_not_simulated(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_stone_of_another_size_has_a_path_too(tmp_path: Path) -> None:
+    scene = '{"version": 2, "stones": [{"id": "large", "scale": 2, "position": [0, 4, 0]}]}'
+    run = invoke("simulate", "-", "--seconds", "0.1", "-o", tmp_path / "path.csv", stdin=scene)
+    assert run.exit_code == 0, run.output
+    last = (tmp_path / "path.csv").read_text().splitlines()[-1].split(",")
+    assert last[:2] == ["large", "12"]
+    assert float(last[4]) == pytest.approx(4 - 9.81 * 0.1**2 / 2)
+
+
 def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:
     run = invoke("simulate", "-", "-o", tmp_path / "path.csv", stdin='{"stones": []}')
     assert "needs a stone" in refused(run)

@@ -143,7 +143,8 @@ def simulate(
             check_place(plot, "plot", ["png"])
         stage = read_stage(scene, preset, mesh)
         with progress_bar("simulating") as advance:
-            record_all = record_several if len(stage.shapes) > 1 else record_path
+            alone = len(stage.shapes) <= 1 and all(stone.scale == 1 for stone in stage.scene.stones)
+            record_all = record_path if alone else record_several
             path = record_all(dropped(stage), seconds, advance)
         write(path, out)
         if plot is not None:
