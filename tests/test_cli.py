@@ -219,7 +219,7 @@ def test_a_path_that_could_not_be_kept_is_not_simulated(
 def test_a_stone_of_another_size_has_a_path_too(tmp_path: Path) -> None:
     scene = '{"version": 2, "stones": [{"id": "large", "scale": 2, "position": [0, 4, 0]}]}'
     run = invoke("simulate", "-", "--seconds", "0.1", "-o", tmp_path / "path.csv", stdin=scene)
-    assert run.exit_code == 0, run.output
+    assert run.returncode == 0, run.stderr
     last = (tmp_path / "path.csv").read_text().splitlines()[-1].split(",")
     assert last[:2] == ["large", "12"]
     assert float(last[4]) == pytest.approx(4 - 9.81 * 0.1**2 / 2)
