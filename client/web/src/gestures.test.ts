@@ -78,18 +78,26 @@ describe("the wheel", () => {
   });
 });
 
+const PICTURE = { x: 0, y: 0, width: 400, height: 200 };
+
 describe("a push", () => {
+  it("strikes where the picture is that does not fill the canvas", () => {
+    const beside = { x: 50, y: 0, width: 100, height: 200 };
+    expect(pushBy(100, 100, 0, 0, beside)).toMatchObject({ x: 0, y: 0 });
+    expect(pushBy(150, 200, 0, 0, beside)).toMatchObject({ x: 0.5, y: -1 });
+  });
+
   it("strikes where it began, in halves of the picture's height from its centre", () => {
-    expect(pushBy(300, 100, 0, 0, 400, 200)).toMatchObject({ type: "push", x: 1, y: 0 });
-    expect(pushBy(200, 0, 0, 0, 400, 200)).toMatchObject({ x: 0, y: 1 });
+    expect(pushBy(300, 100, 0, 0, PICTURE)).toMatchObject({ type: "push", x: 1, y: 0 });
+    expect(pushBy(200, 0, 0, 0, PICTURE)).toMatchObject({ x: 0, y: 1 });
   });
 
   it("goes with the finger, right and up, as far as it went", () => {
-    expect(pushBy(0, 0, 50, 0, 400, 200)).toMatchObject({ right: 3 });
-    expect(pushBy(0, 0, 0, -50, 400, 200)).toMatchObject({ up: 3 });
+    expect(pushBy(0, 0, 50, 0, PICTURE)).toMatchObject({ right: 3 });
+    expect(pushBy(0, 0, 0, -50, PICTURE)).toMatchObject({ up: 3 });
   });
 
   it("is gentle, however far the finger went", () => {
-    expect(pushBy(0, 0, -9000, 9000, 400, 200)).toMatchObject({ right: -10, up: -10 });
+    expect(pushBy(0, 0, -9000, 9000, PICTURE)).toMatchObject({ right: -10, up: -10 });
   });
 });

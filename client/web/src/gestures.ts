@@ -2,6 +2,7 @@
 
 import { STEP } from "./actions";
 import type { Dolly, Orbit, Push, Target } from "./events";
+import type { Rectangle } from "./picture-size";
 
 /** What fingers did since the last look: css pixels dragged, and the ratio of a pinch. */
 export interface Motion {
@@ -60,17 +61,17 @@ const PUSH = 6;
 /** R/s: the most that one blow gives. */
 const PUSH_LIMIT = 10;
 
-/** A place, css pixels from the picture's upper left corner, in halves of its height from its centre, y up. */
-export function placeOf(x: number, y: number, width: number, height: number): { x: number; y: number } {
-  const half = Math.max(height, 1) / 2;
-  return { x: (x - width / 2) / half, y: (height / 2 - y) / half };
+/** A place on the canvas, css pixels, as the picture in that area has it: halves of its height from its centre, y up. */
+export function placeOf(x: number, y: number, area: Rectangle): { x: number; y: number } {
+  const half = Math.max(area.height, 1) / 2;
+  return { x: (x - area.x - area.width / 2) / half, y: (area.y + area.height / 2 - y) / half };
 }
 
-/** A drag that began at (x, y), css pixels from the picture's upper left corner, as a blow at that place. */
-export function pushBy(x: number, y: number, dx: number, dy: number, width: number, height: number): Push {
-  const half = Math.max(height, 1) / 2;
+/** A drag that began at (x, y) on a canvas with the picture in that area, css pixels, as a blow at that place. */
+export function pushBy(x: number, y: number, dx: number, dy: number, area: Rectangle): Push {
+  const half = Math.max(area.height, 1) / 2;
   const blow = (pixels: number) => Math.max(-PUSH_LIMIT, Math.min(PUSH_LIMIT, (PUSH * pixels) / half));
-  return { type: "push", ...placeOf(x, y, width, height), right: blow(dx), up: blow(-dy) };
+  return { type: "push", ...placeOf(x, y, area), right: blow(dx), up: blow(-dy) };
 }
 
 /** R for a doubling of the distance between two fingers. */

@@ -83,7 +83,7 @@ const stones = new StoneCommands({
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
-  stones: { choose: (id) => chosen.choose(id), add: () => stones.add(), scatter: () => stones.scatter() },
+  stones,
   removals: () => stones.removals,
   saveTarga: () => attempt(() => savePicture("tga")),
   saveScene: () => attempt(saveScene),
@@ -102,9 +102,10 @@ listenToPointers(
   () => viewer?.state.target ?? INITIAL.target,
   (event) => viewer?.send(event),
   (x, y) => {
-    const at = placeOf(x, y, canvas.clientWidth, canvas.clientHeight);
+    const at = placeOf(x, y, screen.area);
     if (idsOf(viewer?.state.scene ?? null).length > 1) chosen.pick(at.x, at.y);
   },
+  () => screen.area,
 );
 
 function perform({ effect }: Action): void {

@@ -15,7 +15,7 @@ import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
 
 export interface PanelActions {
   perform: (action: Action) => void;
-  stones: Omit<StoneActions, "perform">;
+  stones: StoneActions;
   /** How many stones this viewer may put back. */
   removals: () => number;
   saveTarga: () => void;
@@ -48,8 +48,7 @@ export class Panel {
     this.actions = actions;
     this.gui = new GUI({ container, title: "culet", injectStyles: false });
     this.addMoves();
-    const { perform, stones } = actions;
-    this.stones = new StonePanel(this.gui.addFolder("Stones"), { perform, ...stones });
+    this.stones = new StonePanel(this.gui.addFolder("Stones"), actions.perform, actions.stones);
     const surroundings = this.addSwitches();
     this.cut = new CutPanel(this.gui.addFolder("Cut").close(), actions.patch);
     this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);

@@ -2,6 +2,7 @@
 
 import type { SessionEvent, Target } from "./events";
 import { Fingers, orbitBy, pinchBy, pushBy, wheelBy } from "./gestures";
+import type { Rectangle } from "./picture-size";
 
 /** Css pixels: by so little a finger moves that only taps. */
 const STILL = 6;
@@ -12,6 +13,8 @@ export function listenToPointers(
   send: (event: SessionEvent) => void,
   /** A click or tap, css pixels from the canvas' upper left corner. */
   click: (x: number, y: number) => void,
+  /** Where the picture is on the canvas, css pixels. */
+  area: () => Rectangle,
 ): void {
   const fingers = new Fingers();
   let pending: { target: Target; yaw: number; pitch: number; forward: number } | null = null;
@@ -62,7 +65,7 @@ export function listenToPointers(
     if (still?.id === event.pointerId) click(still.x, still.y);
     if (push?.id !== event.pointerId) return;
     const { x, y } = push;
-    send(pushBy(x, y, event.offsetX - x, event.offsetY - y, canvas.clientWidth, canvas.clientHeight));
+    send(pushBy(x, y, event.offsetX - x, event.offsetY - y, area()));
   });
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
     canvas.addEventListener(end, (event) => {

@@ -1,6 +1,6 @@
 /** The canvas: as many device pixels as it covers, and the picture last shown. */
 
-import { deviceLength, letterbox, pictureSize, type Size } from "./picture-size";
+import { deviceLength, letterbox, pictureSize, type Rectangle, type Size } from "./picture-size";
 
 export class Screen {
   private readonly context: CanvasRenderingContext2D;
@@ -24,6 +24,13 @@ export class Screen {
 
   get size(): Size {
     return { width: this.canvas.width, height: this.canvas.height };
+  }
+
+  /** Where the picture is on the canvas, css pixels: another viewer's picture may have another shape. */
+  get area(): Rectangle {
+    const { x, y, width, height } = letterbox(this.picture ?? this.size, this.size);
+    const css = this.canvas.clientWidth / this.canvas.width;
+    return { x: x * css, y: y * css, width: width * css, height: height * css };
   }
 
   /** Takes over the bitmap and closes it when the next one comes. */

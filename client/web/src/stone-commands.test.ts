@@ -63,6 +63,20 @@ it("removes no stone by guess, but the only one", () => {
   expect(sent).toEqual([{ type: "patch_scene", patch: { stones: { glass: null } } }]);
 });
 
+it("looks at, puts back and holds the chosen stone alone", () => {
+  commands.look();
+  expect([told, sent]).toEqual([[CHOOSE_FIRST], []]);
+  commands.choose("glass");
+  commands.look();
+  commands.reset();
+  commands.hold();
+  expect(sent).toEqual([
+    { type: "look_at_stone", stone: "glass" },
+    { type: "reset_stone", stone: "glass" },
+    { type: "toggle_fall", stone: "glass" },
+  ]);
+});
+
 it("lets what it scatters fall, and goes on with what falls", () => {
   commands.scatter();
   state = { ...state, falling: true };

@@ -34,6 +34,23 @@ export class StoneCommands {
     return this.removed.length;
   }
 
+  choose(id: string | null): void {
+    this.world.choose(id);
+  }
+
+  look(): void {
+    this.toChosen("look_at_stone");
+  }
+
+  reset(): void {
+    this.toChosen("reset_stone");
+  }
+
+  /** Keep the stone where it is while time goes on for others, or let it go. */
+  hold(): void {
+    this.toChosen("toggle_fall");
+  }
+
   add(): void {
     const { scene, stone } = this.world.state();
     if (stonesOf(scene).length >= MOST_STONES) {
@@ -81,6 +98,12 @@ export class StoneCommands {
   /** Another scene was opened: what was removed from the one before is not its. */
   forget(): void {
     this.removed.length = 0;
+  }
+
+  private toChosen(type: "look_at_stone" | "reset_stone" | "toggle_fall"): void {
+    const { stone } = this.world.state();
+    if (stone === null) this.world.tell(CHOOSE_FIRST);
+    else this.world.send({ type, stone });
   }
 
   private bring({ id, patch }: { id: string; patch: JsonObject }): void {

@@ -5,10 +5,13 @@ import { type Action, actionNamed, labelWithKey } from "./actions";
 import { idsOf } from "./stones";
 import type { ViewState } from "./view-state";
 
+/** What `StoneCommands` does. */
 export interface StoneActions {
-  perform: (action: Action) => void;
   choose: (id: string | null) => void;
   add: () => void;
+  look: () => void;
+  reset: () => void;
+  hold: () => void;
   scatter: () => void;
 }
 
@@ -16,19 +19,27 @@ const NONE = "none";
 
 export class StonePanel {
   private readonly shown = { stone: "" };
-  private readonly choose: StoneActions["choose"];
+  private readonly actions: StoneActions;
+  private readonly ofOne: readonly Controller[];
   private readonly putBack: Controller;
   private list: Controller;
   private ids: readonly string[] = [];
 
-  constructor(folder: GUI, { perform, choose, add, scatter }: StoneActions) {
-    this.choose = choose;
+  constructor(folder: GUI, perform: (action: Action) => void, actions: StoneActions) {
+    this.actions = actions;
     this.list = folder.add(this.shown, "stone", { [NONE]: "" });
     this.listen();
-    folder.add({ add }, "add").name("Add another like it");
-    this.addAction(folder, actionNamed("remove_stone"), perform);
-    this.putBack = this.addAction(folder, actionNamed("put_back_stone"), perform);
-    folder.add({ scatter }, "scatter").name("Scatter all");
+    const button = (label: string, act: () => void) => folder.add({ act }, "act").name(label);
+    const acting = (name: string) => button(labelWithKey(actionNamed(name)), () => perform(actionNamed(name)));
+    this.ofOne = [
+      button("Look at this stone", () => actions.look()),
+      button("Put this stone back", () => actions.reset()),
+      button("Hold this stone, or let go", () => actions.hold()),
+    ];
+    button("Add another like it", () => actions.add());
+    acting("remove_stone");
+    this.putBack = acting("put_back_stone");
+    button("Scatter all", () => actions.scatter());
   }
 
   /** `removed`: how many stones this viewer has removed, and may put back. */
@@ -41,14 +52,11 @@ export class StonePanel {
     }
     this.shown.stone = stone ?? "";
     this.list.updateDisplay();
+    for (const button of this.ofOne) button.show(stone !== null);
     this.putBack.enable(removed > 0);
   }
 
   private listen(): void {
-    this.list.name("Chosen").onChange((id: string) => this.choose(id || null));
-  }
-
-  private addAction(folder: GUI, action: Action, perform: StoneActions["perform"]): Controller {
-    return folder.add({ act: () => perform(action) }, "act").name(labelWithKey(action));
+    this.list.name("Chosen").onChange((id: string) => this.actions.choose(id || null));
   }
 }
