@@ -80,6 +80,46 @@ def test_one_stone_is_put_back_while_the_other_falls_on() -> None:
     assert motions(subject) == {"left": "paused", "right": "paused"}
 
 
+def test_once_each_stone_is_paused_by_itself_the_session_is_paused_and_falls_on_as_one() -> None:
+    subject = after(session(), ToggleFall())
+    positions = moved_on(subject)
+    after(subject, ToggleFall(stone="left"), ToggleFall(stone="right"))
+    assert motions(subject) == {"left": "paused", "right": "paused"}
+    assert not subject.condition().falling
+    after(subject, ToggleFall())
+    assert motions(subject) == {"left": "falling", "right": "falling"}
+    now = {name: position for name, (position, _) in subject.motion.latest().poses.items()}
+    assert now == positions, "from where they were"
+
+
+def test_the_last_stone_that_falls_is_put_back_and_the_session_is_paused() -> None:
+    subject = after(session(), ToggleFall(stone="left"))
+    moved_on(subject)
+    after(subject, ResetStone(stone="left"))
+    assert not subject.condition().falling
+    assert after(subject, ToggleFall()).condition().motions == {"left": "falling", "right": "falling"}
+
+
+def test_a_stone_that_was_paused_in_the_air_falls_on_from_there_though_no_other_moves() -> None:
+    """One is held in the air, the other asleep on the floor: nothing moves, but not all have come to rest for good."""
+    subject = after(session(), ToggleFall())
+    moved_on(subject)
+    after(subject, ToggleFall(stone="left"))
+    held, _ = subject.motion.latest().poses["left"]
+    now = 101.0
+    while subject.motion.moving and now < 160:
+        subject.advance(now)
+        now += 0.2
+    assert motions(subject) == {"left": "paused", "right": "asleep"}
+    assert not subject.condition().asleep
+    after(subject, ToggleFall())
+    assert motions(subject)["left"] == "falling"
+    assert subject.motion.latest().poses["left"][0] == held
+    subject.advance(now)
+    subject.advance(now + 0.2)
+    assert subject.motion.latest().poses["left"][0][1] < held[1]
+
+
 def test_a_push_moves_the_stone_that_is_seen_at_that_point_and_no_other() -> None:
     subject = after(session(), PatchScene(patch={"simulation": {"gravity": 0}}), Push(x=0.4, y=0, right=0, up=2))
     positions = moved_on(subject)

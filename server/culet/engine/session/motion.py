@@ -142,7 +142,8 @@ class Motion:
     @property
     def asleep(self) -> bool:
         """Whether all stones have come to rest for good, unless somebody changes something."""
-        return bool(self._instant.names) and self._instant.settled
+        instant = self._instant
+        return bool(instant.names) and instant.settled and all(body.asleep for body in instant.state.bodies)
 
     @property
     def fraction(self) -> float:
@@ -226,7 +227,7 @@ class Motion:
         self.world.reset(name)
         if name is not None and self.moving and len(self.world.bodies) > 1:
             self.world.hold(name, held=True)
-            self._write_down()
+            self._stop_if_all_are_held()
         else:
             self.stop()
 
@@ -251,7 +252,7 @@ class Motion:
             return
         if name is not None:
             self.world.number(name)
-        was_falling = self.falling
+        was_falling = self.moving or (self.falling and self.asleep)
         if self.asleep or (self.world.at_start and not was_falling):
             self.stop()
             self.world.drop()
@@ -392,7 +393,14 @@ class Motion:
             world.drop(name)
         else:
             world.hold(name, held=True)
-        self._write_down()
+        self._stop_if_all_are_held()
+
+    def _stop_if_all_are_held(self) -> None:
+        """Time would go on for no stone: the next fall of all lets go of all."""
+        if all(body.held for body in self.world.state.bodies):
+            self.stop()
+        else:
+            self._write_down()
 
     def _check_stones(self, verb: str) -> None:
         if not self.world.bodies:
