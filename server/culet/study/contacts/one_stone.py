@@ -29,10 +29,15 @@ from culet.study.contacts.worlds import (
     turned,
     turning,
 )  # fmt: skip
-from culet.study.extremes import brilliant
+from culet.study.extremes import box, brilliant
 
 TABLE = (0.0, 1.0, 0.0)
 """The normal of a brilliant's table."""
+LENGTH = (1.0, 0.0, 0.0)
+"""Of a needle."""
+
+
+needle = box(1, 1e-2, 1e-2)
 
 
 def table_facet() -> int:
@@ -41,26 +46,28 @@ def table_facet() -> int:
 
 
 def flight() -> Iterator[Finding]:
-    """A brilliant is a symmetric top: it turns about L at |L| / I and about its own axis at what is left, steadily."""
-    spin, orientation, time = (5.0, 20.0, 3.0), about((1.0, 0.0, 0.3), 0.7), 2.0
-    body = Body("one", brilliant(), (0.0, 60.0, 0.0), orientation, (1.0, 0.0, 0.5), spin)
-    moving = beside_another(body, law())
-    momentum = np.array(angular_momentum_by(body, moving.law, moving.state.bodies[0]))
-    inertia = body.shape.mass.inertia
-    across, along = (inertia[0, 0] + inertia[2, 2]) / 2, inertia[1, 1]
-    own = rotate_back(orientation, spin)[1] * (1 - along / across)
-    expected = product(
-        about(triple(momentum), float(np.linalg.norm(momentum)) / across * time),
-        product(orientation, about(TABLE, own * time)),
-    )
-    advance(moving, time)
-    state = moving.state.bodies[0]
-    after = np.array(angular_momentum_by(body, moving.law, state))
-    place = (time, 60 - G * time**2 / 2, 0.5 * time)
-    yield Finding("flight of 2 s at 20 rad/s, orientation", angle_between(expected, state.orientation), 1e-6, "rad")
-    change = float(np.linalg.norm(after - momentum) / np.linalg.norm(momentum))
-    yield Finding("flight, angular momentum, relative", change, 1e-12)
-    yield Finding("flight, place on the parabola", math.dist(place, state.position), 1e-10, "R")
+    """A brilliant and a needle: symmetric tops, which turn about L at |L| / I and about their own axis at the rest."""
+    for name, shape, axis in (("flight", brilliant(), TABLE), ("flight of a needle 100 : 1", needle(), LENGTH)):
+        spin, orientation, time = (5.0, 20.0, 3.0), about((1.0, 0.0, 0.3), 0.7), 2.0
+        body = Body("one", shape, (0.0, 60.0, 0.0), orientation, (1.0, 0.0, 0.5), spin)
+        moving = beside_another(body, law())
+        momentum = np.array(angular_momentum_by(body, moving.law, moving.state.bodies[0]))
+        inertia = np.array(body.shape.mass.inertia) * body.mass
+        along = float(np.array(axis) @ inertia @ axis)
+        across = (float(np.trace(inertia)) - along) / 2
+        own = sum(a * b for a, b in zip(rotate_back(orientation, spin), axis, strict=True)) * (1 - along / across)
+        expected = product(
+            about(triple(momentum), float(np.linalg.norm(momentum)) / across * time),
+            product(orientation, about(axis, own * time)),
+        )
+        advance(moving, time)
+        state = moving.state.bodies[0]
+        after = np.array(angular_momentum_by(body, moving.law, state))
+        place = (time, 60 - G * time**2 / 2, 0.5 * time)
+        yield Finding(f"{name}, 2 s at 20 rad/s, orientation", angle_between(expected, state.orientation), 1e-6, "rad")
+        change = float(np.linalg.norm(after - momentum) / np.linalg.norm(momentum))
+        yield Finding(f"{name}, angular momentum, relative", change, 1e-12)
+        yield Finding(f"{name}, place on the parabola", math.dist(place, state.position), 1e-10, "R")
 
 
 def bounces() -> Iterator[Finding]:
