@@ -124,7 +124,7 @@ async def test_a_stone_that_cannot_be_simulated_is_a_problem_of_its_session_alon
         assert (await peer.status())["problems"] == 1
 
 
-@pytest.mark.parametrize("event", ["toggle_fall", "toggle_walls", "push", "patch_scene", "set_scene"])
+@pytest.mark.parametrize("event", ["toggle_fall", "reset_stone", "toggle_walls", "push", "patch_scene", "set_scene"])
 async def test_what_may_take_long_does_not_run_where_all_sessions_are_served(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str
 ) -> None:
