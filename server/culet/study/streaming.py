@@ -14,7 +14,7 @@ import simplejpeg
 from numpy.typing import NDArray
 
 from culet.rendering.renderer import Renderer
-from culet.simulation.simulation import Simulation
+from culet.simulation.staged import world_of
 from culet.stage import Stage
 from culet.study.image_error import mean_ciede2000, structural_similarity
 from culet.study.journal import Journal
@@ -84,14 +84,14 @@ def _by_pillow(name: str, knobs: dict[str, Knob], format_: str, **options: objec
 
 
 def frames(renderer: Renderer, stage: Stage, width: int, height: int) -> dict[str, list[Frame]]:
-    """`moving`: one sample of the falling stone at several times; `still`: the stage as it is at rest."""
-    simulation = Simulation.of(stage)
+    """`moving`: one sample of the falling stones at several times; `still`: the stage as it is at rest."""
+    world = world_of(stage)
     moving = []
     for number in range(MOVING_FRAMES):
-        while simulation.state.time < number * SECONDS_APART - 1e-9:
-            simulation.step()
-        state = simulation.state
-        picture = renderer.picture(stage.posed([(state.position, state.orientation)]), width, height)
+        while world.state.time < number * SECONDS_APART - 1e-9:
+            world.step()
+        poses = [(body.position, body.orientation) for body in world.state.bodies]
+        picture = renderer.picture(stage.posed(poses), width, height)
         picture.refine()
         moving.append(picture.rgb())
     picture = renderer.picture(stage, width, height)

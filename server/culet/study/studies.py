@@ -175,8 +175,10 @@ def _run_race(
 
 
 def study_simulation(stage: Stage, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
-    """Sweep integrators and step sizes on the scene's stone."""
-    scene, (shape,) = stage.scene, stage.shapes
+    """Sweep integrators and step sizes on the scene's only stone; SceneError for several, which have but one solver."""
+    scene = stage.scene
+    scene.only_stone()
+    (shape,) = stage.shapes
     identity = _identity("simulation", stage, quick, code_digest(SIMULATION_STUDY))
     with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("motions", len(simulation.points_of(shape, quick=quick))) as advance:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from culet.engine.painting.live_picture import REST_SAMPLES, SETTLE_SECONDS, Liv
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.session.session import Session
-from culet.engine.session.stepper import Steps
+from culet.engine.session.stepper import Stepper, Steps
 from culet.engine.session.viewpoint import orbit
 from culet.optics.panoramas import Panorama
 from culet.scene import Scene
@@ -36,6 +37,8 @@ POINTER_RATE = 60
 """Events per second of a drag."""
 QUICKEST = min(rung.cost for rung in read_ladder() if rung.scale >= 0.5)
 """Cost of the quickest rung at the least size, over the first's."""
+PATIENCE = 30.0
+"""s, after which a test gives up."""
 IDLE = 0.005
 """s that pass when there is nothing to draw."""
 
@@ -345,6 +348,49 @@ async def test_of_dear_frames_at_most_every_other_is_given_up_for_something_newe
     given_up = [math.isnan(drawn.ended) for drawn in world.drawn[:-1]]
     assert given_up.count(False) >= 8
     assert not any(before and after for before, after in pairwise(given_up[4:]))
+
+
+async def test_no_frame_waits_for_a_step() -> None:
+    """A step that does not end: frames are drawn all the same, and show the stone where it was."""
+    world = World(0.05, with_stone=True)
+    motion, begun, go = world.session.motion, threading.Event(), threading.Event()
+
+    def endless() -> None:
+        begun.set()
+        assert go.wait(PATIENCE)
+
+    motion.world.step = endless  # type: ignore[method-assign]
+    world.session.set_falling(True)
+    stepper = Stepper(clock=lambda: world.now)
+    try:
+        with ThreadPoolExecutor(1) as thread:
+            painter = Painter(
+                world, thread, StillQueue(1, 2**25),
+                send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"",
+                still_seconds=math.inf, stepper=stepper, clock=lambda: world.now,
+            )  # fmt: skip
+            live = painter.pictures["a"] = LivePicture(world.session, watched=True, rate=30, size=WANTED)
+
+            async def paint(seconds: float) -> None:
+                end = world.now + seconds
+                while world.now < end:
+                    if not await painter.work():
+                        world.spend(IDLE)
+                    await done(live)
+
+            for _ in range(1000):
+                if begun.wait(0.01):
+                    break
+                await paint(0.05)
+            before = len(world.drawn)
+            world.turn(since=0, seconds=1)
+            await paint(1)
+            assert len(world.drawn) - before > 25, "measured 30: one for each thirtieth of a second"
+            assert motion.world.state.step == 0
+            assert motion.moving
+    finally:
+        go.set()
+        stepper.stop()
 
 
 WAKEFUL: dict[str, Any] = {

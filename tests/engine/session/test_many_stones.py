@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import struct
 from typing import Any
 
 import pytest
@@ -10,13 +12,15 @@ import pytest
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
-from culet.errors import InputError
+from culet.errors import CuletError, InputError
 from culet.scene import Scene
 from culet.simulation.bodies import BodyState
 from culet.stage import NOTHING, Stage
 from culet_protocol.messages import PatchScene
 
 NAME = "0123456789abcdef" * 2
+FIRST_MOMENTUM = 24 + 10 * 8
+"""Bytes of a saved world before the first stone's angular momentum: the header, position, orientation and velocity."""
 
 
 def stone(number: int, **settings: object) -> dict[str, object]:
@@ -187,3 +191,16 @@ def test_a_push_moves_the_stone_that_is_seen_there_alone() -> None:
     speeds = {name: state.velocity for name, state in session.motion.states().items()}
     assert speeds["s1"] == pytest.approx((0, 1, 0), abs=1e-9)
     assert speeds["s0"] == speeds["s2"] == (0, 0, 0)
+
+
+def test_stones_that_a_snapshot_makes_too_fast_for_numbers_stop_at_their_starts() -> None:
+    session = falling(2)
+    snapshot = session.snapshot().model_dump(mode="json")
+    saved = bytearray(base64.b64decode(snapshot["simulation"]["saved"]))
+    struct.pack_into("d", saved, FIRST_MOMENTUM, 1e300)
+    hostile = snapshot | {"simulation": snapshot["simulation"] | {"saved": base64.b64encode(bytes(saved)).decode()}}
+    restored = Session.restored(NAME, session.stage, Snapshot.read(hostile))
+    with pytest.raises(CuletError, match="faster than numbers"):
+        advance(restored, 0, 0.25)
+    assert not restored.motion.moving
+    assert shown(restored) == shown(session_of(stone(0), stone(1)))

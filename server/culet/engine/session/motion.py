@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import threading
 from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from time import thread_time
 from typing import Any, Literal
 
 from culet.engine.session.snapshot import LARGEST_FRACTION
-from culet.errors import InputError
+from culet.errors import CuletError, InputError
 from culet.scene.fields import Pose
 from culet.simulation import Allowance, FixedStepClock, Pace
 from culet.simulation.bodies import Body, BodyState, WorldState
@@ -424,11 +425,19 @@ class Motion:
                 self.clock.drop(due - taken)
                 break
             begun = self._timer()
-            self.world.step()
+            self._take_step()
             seconds = self._timer() - begun
             self._spent += seconds
             self._allowance.spend(seconds)
         self.pace.passed(elapsed, self.clock.dropped)
+
+    def _take_step(self) -> None:
+        """CuletError, and the stones are back where they started, if they came to be where no number is."""
+        self.world.step()
+        bodies = self.world.state.bodies
+        if not all(math.isfinite(sum((*body.position, *body.orientation))) for body in bodies):
+            self.world.reset()
+            raise CuletError("the stones moved faster than numbers can tell; they are back where they started")
 
     def _write_down(self) -> None:
         """The latest states, for those who look on."""
