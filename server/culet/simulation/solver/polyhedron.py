@@ -75,11 +75,13 @@ def polyhedron_of(shape: Shape) -> Polyhedron:
 
 def _spread(points: Points, count: int) -> NDArray[np.int64]:
     """So many of the points, each the farthest from those before (Gonzalez 1985), the first the farthest out."""
+    x, y, z = (np.ascontiguousarray(points[:, axis]) for axis in range(3))
     chosen = np.empty(count, np.int64)
-    chosen[0] = np.argmax((points**2).sum(axis=1))
+    chosen[0] = np.argmax(x * x + y * y + z * z)
     distance = np.full(len(points), np.inf)
     for k in range(1, count):
-        distance = np.minimum(distance, ((points - points[chosen[k - 1]]) ** 2).sum(axis=1))
+        last = chosen[k - 1]
+        np.minimum(distance, (x - x[last]) ** 2 + (y - y[last]) ** 2 + (z - z[last]) ** 2, out=distance)
         chosen[k] = np.argmax(distance)
     return chosen
 
