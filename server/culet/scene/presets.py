@@ -8,14 +8,14 @@ from types import MappingProxyType
 from typing import Literal
 
 from culet.errors import NotFoundError
-from culet.scene import showcase
+from culet.scene import piles, showcase
 from culet.scene.camera import Camera
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import Scene
 from culet.scene.report_scenes import CLASSIC, classic, tinted
 from culet.scene.room import Plane
 
-Group = Literal["diamonds", "instruments", "coloured stones", "the report"]
+Group = Literal["diamonds", "instruments", "coloured stones", "several stones", "the report"]
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,8 @@ _ALL = (
     Preset(
         "emerald", "Emerald", "An emerald in a cut of its own, green by chromium.", "coloured stones", showcase.EMERALD
     ),
+    Preset("trio", "Trio", "A diamond between a ruby and a sapphire that touch it.", "several stones", piles.TRIO),
+    Preset("heap", "Heap", "A dozen stones that have fallen into a corner.", "several stones", piles.HEAP),
     Preset(
         "classic",
         "Its own scene",
