@@ -17,7 +17,7 @@ from culet.rendering.features import Features, Geometry, Stones, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
-from culet.scene.model import StoneSettings
+from culet.scene.stone import StoneSettings
 from culet.stage import NOTHING, Stage
 from pictures import compared
 from rendering.views import BARE, Array, radiance

@@ -60,15 +60,18 @@ def test_a_size_made_absorption_one_per_millimetre(bands: int) -> None:
     sized = of_1(stones=[{"material": "bk7", "absorption": [1, 2, 3], "size_mm": 4}], optics={"bands": bands})
     per_r = of_1(stones=[{"material": "bk7", "absorption": [4, 8, 12]}], optics={"bands": bands})
     assert sized.millimetres == 4
-    assert absorption(sized) == (4, 8, 12)
+    assert absorption(sized, sized.stones[0]) == (4, 8, 12)
     tables = [chain_table(scene, 0, np.float64, common=False)["absorption"] for scene in (sized, per_r)]
     assert tables[0].tolist() == tables[1].tolist()
 
 
 def test_a_coloured_material_is_as_deep_as_by_its_size_or_by_a_carats() -> None:
-    per_mm = np.array(absorption(Scene.read({"millimetres": 1, "stones": [{"material": "ruby"}]})))
-    assert np.array(absorption(of_1(stones=[{"material": "ruby", "size_mm": 4}]))) == pytest.approx(4 * per_mm)
-    assert np.array(absorption(of_1(stones=[{"material": "ruby"}]))) == pytest.approx(3.25 * per_mm)
+    def of(scene: Scene) -> tuple[float, float, float]:
+        return absorption(scene, scene.stones[0])
+
+    per_mm = of(Scene.read({"millimetres": 1, "stones": [{"material": "ruby"}]}))
+    assert of(of_1(stones=[{"material": "ruby", "size_mm": 4}])) == pytest.approx([4 * channel for channel in per_mm])
+    assert of(of_1(stones=[{"material": "ruby"}])) == pytest.approx([3.25 * channel for channel in per_mm])
 
 
 def test_the_stone_has_the_mass_and_the_start_that_were_the_simulations() -> None:

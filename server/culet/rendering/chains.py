@@ -10,7 +10,8 @@ from culet.optics.dispersion import channel_indices
 from culet.optics.materials import material_of
 from culet.rendering.device import Real
 from culet.rendering.layout import constants, struct
-from culet.scene.model import Scene, StoneSettings
+from culet.scene.model import Scene
+from culet.scene.stone import StoneSettings
 
 GROUPS = constants("features.cl")["SPECTRAL_GROUPS"]
 """Sets of wavelengths that neighbouring pixels take."""

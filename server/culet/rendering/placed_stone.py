@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.scene.model import Scene, StoneSettings
+from culet.scene.model import Scene
+from culet.scene.stone import StoneSettings
 from culet.stage import Stage
 
 Array = NDArray[np.float64]
