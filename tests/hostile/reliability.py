@@ -19,7 +19,6 @@ import traceback
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 
 import psutil
@@ -87,10 +86,7 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
         Trial("resizes", beside("a flood of `resize`", shares.resizes, 0.8), Group.SHARES),
         Trial("orbits", beside("a flood of `orbit`", shares.orbits, 0.4), Group.SHARES),
         Trial("half-sent", lambda s: shares.half_sent_requests(s, 1300, within=2), Group.SHARES, files=1024),
-        *(
-            Trial(f"form: {shape}", partial(shares.form, shape=shape, mebibytes=size, within=0.1), Group.SHARES)
-            for shape, size in FORMS.items()
-        ),
+        Trial("forms", lambda s: shares.forms(s, FORMS, within=0.05), Group.SHARES),
         Trial("engine killed", lambda s: faults.killed(s, "engine", 5, within=3), Group.FAULTS),
         Trial("gateway killed", lambda s: faults.killed(s, "gateway", 5, within=5), Group.FAULTS),
         Trial("engine hung", lambda s: faults.hung(s, "engine"), Group.FAULTS),

@@ -26,6 +26,8 @@ from hostile.watching import watching
 TESTS = str(Path(__file__).parents[1])
 SETTLING = 1.0
 """s in which a governor finds its size."""
+SPARE_SECONDS = 8.0
+"""After which those that stand by are loaded."""
 PAUSE = 0.002
 """s between two small requests."""
 OTHER_ADDRESS = "127.0.0.2"
@@ -218,6 +220,12 @@ async def form(serving: Serving, shape: str, mebibytes: int, within: float) -> F
         f"read or refused, and nobody waits over {1000 * within:g} ms",
         (status == 201 or 400 <= status < 500) and max(pauses) < within,
     )
+
+
+async def forms(serving: Serving, sizes: Mapping[str, int], within: float) -> list[Finding]:
+    """One of each shape, of so many MiB, once the processes that stand by are there."""
+    await asyncio.sleep(SPARE_SECONDS)
+    return [await form(serving, shape, size, within) for shape, size in sizes.items()]
 
 
 @contextlib.asynccontextmanager
