@@ -87,12 +87,16 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
         Trial("orbits", beside("a flood of `orbit`", shares.orbits, 0.4), Group.SHARES),
         Trial("half-sent", lambda s: shares.half_sent_requests(s, 1300, within=2), Group.SHARES, files=1024),
         Trial("forms", lambda s: shares.forms(s, FORMS, within=0.05), Group.SHARES),
-        Trial("engine killed", lambda s: faults.killed(s, "engine", 5, within=3), Group.FAULTS),
-        Trial("gateway killed", lambda s: faults.killed(s, "gateway", 5, within=5), Group.FAULTS),
+        Trial("engine killed", lambda s: faults.killed(s, "engine", max(3, some(5)), within=3), Group.FAULTS),
+        Trial("gateway killed", lambda s: faults.killed(s, "gateway", max(3, some(5)), within=5), Group.FAULTS),
         Trial("engine hung", lambda s: faults.hung(s, "engine"), Group.FAULTS),
         Trial("gateway hung", lambda s: faults.hung(s, "gateway"), Group.FAULTS),
         Trial("cache removed", _cache_removed, Group.FAULTS),
-        Trial("chaos", lambda s: faults.chaos(s, 20, 5, seconds=600 * part, between=12, seed=SEED), Group.FAULTS),
+        Trial(
+            "chaos",
+            lambda s: faults.chaos(s, 20, 5, max(30, 600 * part), between=min(12, 5 + 60 * part), seed=SEED),
+            Group.FAULTS,
+        ),
         Trial("messages", lambda s: inputs.control_messages(s, some(10_000), SEED), Group.INPUTS),
         Trial("frames", lambda s: inputs.websocket_frames(s, some(300), SEED), Group.INPUTS),
         Trial("files", lambda s: inputs.mutated_files(s, some(2000), SEED), Group.INPUTS),
@@ -105,7 +109,7 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
         ),
         Trial(
             "interface",
-            lambda s: inputs.whole_interface(s, some(50), SEED, covering=part > 0.1),
+            lambda s: inputs.whole_interface(s, some(50), SEED),
             Group.INPUTS,
             ("--max-still-work", "1e8"),  # stills that take a second or two, not minutes
         ),
