@@ -16,8 +16,9 @@ import pytest
 from PIL import Image
 
 from command_line import Run, culet, invoke
+from culet.rendering.features import RUNTIME, features_of
 from culet.scene import PRESETS
-from culet.study.cases import CASES, FEATURE_CASES
+from culet.study.cases import CASES, FEATURE_CASES, stage_of
 from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
 
@@ -25,6 +26,7 @@ COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view",
 TINY = ("--width", "48", "--height", "27")
 ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
 """A scene of whose sky nothing is hidden."""
+MEASURED_FEATURES = tuple(FEATURE_CASES)
 
 
 def refused(run: Run) -> str:
@@ -132,12 +134,23 @@ def test_a_process_ends_as_its_command_does() -> None:
     assert culet("dance").returncode == 2
 
 
-def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "features",
+    [
+        pytest.param(("floor", "walls", "sky"), id="some"),
+        pytest.param(MEASURED_FEATURES, id="all", marks=pytest.mark.validation),
+    ],
+)
+def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, features: tuple[str, ...]
+) -> None:
+    """A feature takes three programs to compile, each twice: once to run, and once to know its size."""
+    for name in set(MEASURED_FEATURES) - set(features):
+        monkeypatch.delitem(FEATURE_CASES, name)
     out = tmp_path / "bench.jsonl"
-    for _ in range(2):
-        run = invoke("bench", *TINY, "--repeats", "1", "-o", out)
-        assert run.returncode == 0, run.stderr
-    shown = invoke("bench", *TINY, "--repeats", "2", "--features", "--against", out).stdout
+    run = invoke("bench", *TINY, "--repeats", "1", "-o", out)
+    assert run.returncode == 0, run.stderr
+    shown = invoke("bench", *TINY, "--repeats", "2", "--features", "-o", out, "--against", out).stdout
     assert len(re.findall(r"1\.000 +1\.000 +1\.000 *$", shown, re.MULTILINE)) == len(CASES), "the same work, as exact"
     rows = {line.strip().split("  ")[0]: line.split() for line in reversed(shown.splitlines())}  # ratios come last
     lines = [json.loads(line) for line in out.read_text().splitlines()]
@@ -147,10 +160,17 @@ def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(tmp_pa
     for case in lines[0]["cases"]:
         assert 0 < case["fastest"] <= case["seconds"]
         assert str(case["segments"]) in rows[case["name"]], "the same work, whatever the time"
-    assert set(FEATURE_CASES) <= set(rows)
+    assert rows.keys() & set(MEASURED_FEATURES) == set(features)
     for feature in ("floor", "walls", "sky"):
         without, idle = map(int, rows[feature][-2:])
         assert without < idle, "a program without the feature is smaller"
+
+
+@pytest.mark.parametrize("feature", MEASURED_FEATURES)
+def test_of_a_benchmarks_two_scenes_one_needs_the_feature_and_the_other_does_not(feature: str) -> None:
+    off, on = (features_of(stage_of(scene)) for scene in FEATURE_CASES[feature])
+    assert getattr(off, feature) not in (RUNTIME, getattr(on, feature))
+    assert off.without(feature) == on.without(feature), "and nothing else differs"
 
 
 def test_a_sky_takes_the_place_of_the_scenes(tmp_path: Path) -> None:

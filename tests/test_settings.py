@@ -6,8 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+import typer.core
+import typer.main
 
 from command_line import culet
+from culet.cli import app
 from culet.engine.process.limits import Limits
 from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
@@ -98,8 +101,10 @@ def test_the_variables_that_compose_hands_on_are_settings_of_their_service() -> 
     text = (Path(__file__).parents[1] / "docker" / "compose.yaml").read_text()
     engine, gateway = text.partition("services:")[2].split("\n  gateway:")
     of_compose_itself = {"CULET_ADDRESS", "CULET_PORT", "CULET_ENGINE_MEMORY", "CULET_GATEWAY_MEMORY"}
-    of_the_command = {"CULET_SPARE"}
-    for service, kind in ((engine, Limits), (gateway, GatewaySettings)):
-        named = set(re.findall(r"CULET_\w+", service)) - of_compose_itself - of_the_command
+    commands = typer.main.get_command(app)
+    assert isinstance(commands, typer.core.TyperGroup)
+    for name, service, kind in (("engine", engine, Limits), ("gateway", gateway, GatewaySettings)):
+        named = set(re.findall(r"CULET_\w+", service)) - of_compose_itself
         assert len(named) > 3
-        assert named <= {variable(name) for name in kind.model_fields}
+        own = {parameter.envvar for parameter in commands.commands[name].params}
+        assert named <= own | {variable(field) for field in kind.model_fields}

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import httpx
 from PIL import Image
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
 from websockets.typing import Origin, Subprotocol
 
 from culet.gateway.listener import Listener
@@ -105,7 +106,8 @@ class Viewer:
         frame = Frame.unpack(message)
         self.frames.append(frame)
         if self.acknowledges:
-            await self.websocket.send(json.dumps({"type": "ack", "sequence": frame.sequence}))
+            with contextlib.suppress(ConnectionClosed):  # in a browser too, what came before a close is still received
+                await self.websocket.send(json.dumps({"type": "ack", "sequence": frame.sequence}))
 
     def _whole(self, notice: dict[str, Any]) -> dict[str, Any]:
         """A change as the state that it makes of the one before; any other notice as it came."""

@@ -239,7 +239,6 @@ def big_ply(faces: int) -> bytes:
 MILLION = 1_000_000
 
 
-@pytest.mark.timed
 @pytest.mark.parametrize(
     ("file_type", "data"),
     [

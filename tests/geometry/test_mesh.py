@@ -320,7 +320,6 @@ def test_the_origin_is_the_centre_of_mass_or_the_mean_vertex() -> None:
         assert abs(height.max(axis=0)).max() < 1e-14
 
 
-@pytest.mark.timed
 def test_a_large_ball_loads_in_seconds() -> None:
     """81 920 triangles, every one a facet: 3.2 s of processor time measured with 0.9 of it in the hull."""
     ball = trimesh.creation.icosphere(subdivisions=6)

@@ -37,11 +37,12 @@ async def killed(serving: Serving, part: str, times: int, within: float) -> Find
     before = [described(serving, session) for session in sessions]
     seconds: list[float] = []
     async with watching(serving, sessions) as (watcher, _):
-        for _ in range(times):
+        for death in range(times):
+            if death > 0:
+                await asyncio.sleep(QUIET)
             process, moment = _process(serving, part), time.monotonic()
             serving.kill(process)
             seconds.append(await watcher.pause_after(moment))
-            await asyncio.sleep(QUIET)
     serving.until_ready()
     same = before == [described(serving, session) for session in sessions]
     serving.forget(*sessions)

@@ -19,7 +19,6 @@ import traceback
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 
 import psutil
@@ -29,14 +28,17 @@ from culet.rendering.device import open_device
 from hostile import faults, inputs, shares
 from hostile.finding import Finding, Group
 from hostile.forms import SHAPES
-from hostile.serving import MIB, Serving
+from hostile.serving import Serving
 
 BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
 SEED = 1
 PAGE = 640, 360
 FORMS = dict.fromkeys(SHAPES, 63) | {"chunks of one byte": 1}
 """MiB of each shape. Of chunks, of which there are 175 000 in each, a connection may send 10 000 a second."""
-MEMORY = psutil.virtual_memory().total / MIB
+MEMORY = 512
+"""MiB that sessions, uploads and pictures may take where that is tried."""
+PROGRAMS = 700
+"""MiB of the processes themselves, those that stand by among them."""
 
 
 @dataclass(frozen=True)
@@ -67,39 +69,44 @@ async def _cache_removed(_: Serving) -> Finding:
             return await faults.cache_removed(serving, cache)
 
 
-def _beside(name: str, attack: shares.Attack, keeps: float) -> Callable[[Serving], Awaitable[Finding]]:
-    return lambda serving: shares.beside(serving, name, attack, keeps, seconds=8)
-
-
 def trials(part: float = 1) -> tuple[Trial, ...]:
-    """All; with as many inputs and as much chaos as that part of the whole has, which takes an hour or two."""
+    """All; with as many inputs and as much chaos as that part of the whole has, which takes an hour."""
 
     def some(count: int) -> int:
         return max(1, round(part * count))
 
+    def beside(name: str, attack: shares.Attack, keeps: float) -> Callable[[Serving], Awaitable[Finding]]:
+        return lambda serving: shares.beside(serving, name, attack, keeps, seconds=max(4, 8 * part))
+
     return (
         Trial("viewers", lambda s: shares.viewers_of_one_session(s, 30, 10), Group.LOAD),
         Trial("sessions", lambda s: shares.falling_sessions(s, 20, 10, PAGE), Group.LOAD),
-        Trial("dearest scene", _beside("a session that asks for everything", shares.dearest_scene, 0.4), Group.SHARES),
-        Trial("dearest stills", _beside("eight stills of 8192x4096", shares.dearest_stills, 0.4), Group.SHARES),
-        Trial("resizes", _beside("a flood of `resize`", shares.resizes, 0.8), Group.SHARES),
-        Trial("orbits", _beside("a flood of `orbit`", shares.orbits, 0.4), Group.SHARES),
+        Trial("dearest scene", beside("a session that asks for everything", shares.dearest_scene, 0.4), Group.SHARES),
+        Trial("dearest stills", beside("eight stills of 8192x4096", shares.dearest_stills, 0.4), Group.SHARES),
+        Trial("resizes", beside("a flood of `resize`", shares.resizes, 0.8), Group.SHARES),
+        Trial("orbits", beside("a flood of `orbit`", shares.orbits, 0.4), Group.SHARES),
         Trial("half-sent", lambda s: shares.half_sent_requests(s, 1300, within=2), Group.SHARES, files=1024),
-        *(
-            Trial(f"form: {shape}", partial(shares.form, shape=shape, mebibytes=size, within=0.1), Group.SHARES)
-            for shape, size in FORMS.items()
-        ),
-        Trial("engine killed", lambda s: faults.killed(s, "engine", 5, within=3), Group.FAULTS),
-        Trial("gateway killed", lambda s: faults.killed(s, "gateway", 5, within=5), Group.FAULTS),
+        Trial("forms", lambda s: shares.forms(s, FORMS, within=0.05), Group.SHARES),
+        Trial("engine killed", lambda s: faults.killed(s, "engine", max(3, some(5)), within=3), Group.FAULTS),
+        Trial("gateway killed", lambda s: faults.killed(s, "gateway", max(3, some(5)), within=5), Group.FAULTS),
         Trial("engine hung", lambda s: faults.hung(s, "engine"), Group.FAULTS),
         Trial("gateway hung", lambda s: faults.hung(s, "gateway"), Group.FAULTS),
         Trial("cache removed", _cache_removed, Group.FAULTS),
-        Trial("chaos", lambda s: faults.chaos(s, 20, 5, seconds=600 * part, between=12, seed=SEED), Group.FAULTS),
+        Trial(
+            "chaos",
+            lambda s: faults.chaos(s, 20, 5, max(30, 600 * part), between=min(12, 5 + 60 * part), seed=SEED),
+            Group.FAULTS,
+        ),
         Trial("messages", lambda s: inputs.control_messages(s, some(10_000), SEED), Group.INPUTS),
         Trial("frames", lambda s: inputs.websocket_frames(s, some(300), SEED), Group.INPUTS),
         Trial("files", lambda s: inputs.mutated_files(s, some(2000), SEED), Group.INPUTS),
         Trial("bombs", lambda s: inputs.bombs(s, (8192, 4096)), Group.INPUTS),
-        Trial("skies", lambda s: inputs.ever_other_skies(s, 26, MEMORY / 2 + 400), Group.INPUTS),
+        Trial(
+            "skies",
+            lambda s: inputs.ever_other_skies(s, max(8, some(28)), MEMORY + PROGRAMS),
+            Group.INPUTS,
+            ("--memory", f"{MEMORY}MiB"),
+        ),
         Trial(
             "interface",
             lambda s: inputs.whole_interface(s, some(50), SEED),

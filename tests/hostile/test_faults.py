@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
 from hostile import faults
 from hostile.serving import PATIENCE, Serving
-
-pytestmark = pytest.mark.timed
 
 
 async def test_an_engine_that_dies_is_back_with_the_same_sessions(serving: Serving) -> None:

@@ -58,7 +58,7 @@ async def test_each_goes_on_by_the_one_that_stands_by_with_the_same_session_and_
 
             before = await described()
             assert before
-            for parent in (engine, gateway, engine):
+            for parent in (gateway, engine):
                 killed = working(parent)
                 os.kill(killed, signal.SIGKILL)
 

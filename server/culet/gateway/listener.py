@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import signal
 import socket
-import sys
 from collections.abc import Iterator
 from types import TracebackType
 from typing import Self
@@ -32,9 +31,6 @@ PONG_SECONDS = 40.0
 ACCEPTED_AT_ONCE = 64
 """Connections that are accepted before those that make room for them are closed."""
 ALIVE_SECONDS = 1.0
-SWITCH_SECONDS = 0.0005
-"""That a thread keeps Python's interpreter from others which want it; 5 ms unless one says so. The loop gives it back
-at each look at its sockets, and while a form is parsed would wait so long a dozen times for one answer."""
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -73,7 +69,6 @@ class Listener:
 
     async def run(self) -> None:
         """Serve until a stop signal or `stop`."""
-        sys.setswitchinterval(SWITCH_SECONDS)
         loop = asyncio.get_running_loop()
         for number in STOP_SIGNALS:
             loop.add_signal_handler(number, self.stop)

@@ -347,7 +347,6 @@ async def test_stills_beyond_the_limit_are_refused_and_the_others_done(engine: E
         assert all((data is not None) == (reply["status"] == 200) for reply, data in replies)
 
 
-@pytest.mark.timed
 async def test_live_frames_go_on_while_a_still_is_rendered(engine: EngineProcess) -> None:
     async with connected(engine) as (peer, watch):
         watcher = watch(await peer.open(PLAIN | {"stones": [{"position": [0, 400, 0]}]}))
