@@ -165,7 +165,8 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
       if (camera_inside)
         push_inside(&pools->inside, mask, &packet);
       else
-        enter(world, tile, pools, task, &packet, normal, mask, DECIDED(GLARE, world.scene->glare));
+        enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
+              DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
     } else if (pools->away.count > 0)
       look_away(world, tile, pools, task);

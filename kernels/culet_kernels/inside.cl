@@ -36,8 +36,9 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
       const realL cos_a = sqrt(fmax(squared_a, (realL)0));
       const splitL parts = meet_boundary(world, &packet, crossing.normal, cos_a, cos_s, squared_a, eta);
       if (any_lane(leaves))
-        leave(world, tile, pools, task, &packet, refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal),
-              (real)1 - parts.kept, parts.transmitted, leaves);
+        leave(tile, pools, task, &packet, from_own(stone, packet.origin),
+              refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal), (real)1 - parts.kept,
+              parts.transmitted, leaves);
       scale_weights(&packet, parts.kept);
       packet.polarisation = parts.reflected;
     }

@@ -20,11 +20,11 @@ static inline void put_off(tile_t *tile, pools_t *pools, task_t task, maskL mask
     lose(tile, mask, packet, over_channels(task, packet));
 }
 
-// Lets go what leaves a stone's surface, reflected or from inside. `packet` is as it meets the surface.
-static inline void leave(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet,
-                         vec3L direction, realL share, polarisationL polarisation, maskL mask) {
+// Lets go what leaves a stone's surface at a point of the frame, reflected or from inside. `packet` is as it meets the surface.
+static inline void leave(tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point, vec3L direction,
+                         realL share, polarisationL polarisation, maskL mask) {
   packetL outer = *packet;
-  outer.origin = to_frame(world, packet->stone, packet->origin);
+  outer.origin = point;
   outer.direction = direction;
   outer.polarisation = polarisation;
   scale_weights(&outer, share);
@@ -51,16 +51,16 @@ static inline chainL eta_of_each(world_t world, task_t task, const packetL *pack
 }
 #endif
 
-// Splits light that meets a stone from outside, at the origin of the packet: what is reflected goes into the room, if
+// Splits light that meets a stone from outside, at the origin of the packet, which is this point of the frame: what is reflected goes into the room, if
 // `glare` says so, and what enters starts a chain.
-static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L normal,
-                         maskL mask, bool glare) {
+static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point,
+                         vec3L normal, maskL mask, bool glare) {
   const realL cos_a = clamp(-dot3(packet->direction, normal), (realL)0, (realL)1);
   const chainL eta = eta_of_each(world, task, packet);
   const realL cos_s = cosine_in_stone(cos_a, eta);
   const splitL parts = meet_boundary(world, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
   if (glare)
-    leave(world, tile, pools, task, packet, reflect3(packet->direction, -cos_a, normal), parts.kept, parts.reflected,
+    leave(tile, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept, parts.reflected,
           mask);
   packetL inner = *packet;
   inner.direction = refract_inward(packet->direction, cos_a, cos_s, eta, normal);
@@ -108,10 +108,11 @@ static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task
   maskL hits = taken & meets;
   if (STONES == MANY) hits = settle(world, tile, task, &packet, hits, misses & !misses);
   if (any_lane(hits)) {
+    const vec3L point = along(packet.origin, met.t, packet.direction);
     packet.origin = met.point;
     if (STONES == MANY)
       packet.stone = blend_ints_by(hits, met.stone, (intL)(0)); // no lane names a stone that is not there
-    enter(world, tile, pools, task, &packet, met.normal, hits, true);
+    enter(world, tile, pools, task, &packet, point, met.normal, hits, true);
   }
 }
 

@@ -39,6 +39,7 @@ typedef struct {
   real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
   real light[MAX_LIGHTS][3];        // position
   real light_colour[MAX_LIGHTS][3]; // by channel
+  real least_shade;                 // part of the floor's light below which a stone's contact shadow is none
   int stones, groups;
   int lights, lamps, boxes;
   int max_bounces;   // interior segments of a chain, at most
@@ -63,6 +64,7 @@ typedef struct {
   real absorption[3];               // per radius, by channel
   real contact[3][3];               // its contact shadow's ellipsoid, see room.cl
   real contact_shadow;              // part of the floor's light that it takes at most
+  real shade_reach;                 // R from the centre within which it takes any
   int first_facet, facets;          // its half-spaces
   int first_block, blocks;          // the same, TREE_WIDTH abreast
   int root;                         // of its tree
@@ -77,6 +79,7 @@ typedef struct {
 // Stones that are near each other, at most eight: a ray that passes their common sphere by need not be tested against each.
 typedef struct {
   real centre[3], reach;
+  real shade_reach;
   int first, last; // stones: first <= number < last
 } group_t;
 

@@ -87,23 +87,17 @@ static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const 
   inside->stone[inside->full++] = stone;
 }
 
-// The number of a lane's stone, of the first lane that the mask names.
-static inline int first_of(maskL mask, intL stone) {
-  int named[LANES], number[LANES];
-  store_mask(mask, named);
-  store_ints(stone, number);
-  int lane = 0;
-  while (lane < LANES - 1 && !named[lane]) lane++;
-  return number[lane];
-}
-
 // Appends the lanes that the mask names, each to its own stone.
 static inline void push_inside(inside_t *inside, maskL mask, const packetL *packet) {
-  while (any_lane(mask)) {
-    const int stone = first_of(mask, packet->stone);
+  int named[LANES], number[LANES];
+  store_mask(mask, named);
+  store_ints(packet->stone, number);
+  for (int lane = 0; lane < LANES; lane++) {
+    if (!named[lane]) continue;
+    const int stone = number[lane];
     const maskL same = mask & widen(packet->stone == (intL)(stone));
     push_to_stone(inside, stone, same, packet);
-    mask &= !same;
+    for (int other = lane + 1; other < LANES; other++) named[other] = number[other] == stone ? 0 : named[other];
   }
 }
 

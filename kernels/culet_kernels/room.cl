@@ -112,8 +112,15 @@ static inline realL past_stones(world_t world, vec3L point) {
   if (GEOMETRY == EMPTY) return splat(1);
   if (STONES == ONE) return 1 - contact_shadow(world.stones, point);
   realL part = splat(1);
-  for (int number = 0; number < world.scene->stones; number++)
-    part *= 1 - contact_shadow(world.stones + number, to_own(world, number, point));
+  for (int i = 0; i < world.scene->groups; i++) {
+    __constant const group_t *group = world.groups + i;
+    const vec3L apart = vec3(point.x - group->centre[0], point.y - group->centre[1], point.z - group->centre[2]);
+    if (!any_lane(dot3(apart, apart) < group->shade_reach * group->shade_reach)) continue;
+    for (int number = group->first; number < group->last; number++) {
+      const realL shade = contact_shadow(world.stones + number, to_own(world, number, point));
+      part *= 1 - fmax(shade - world.scene->least_shade, splat(0));
+    }
+  }
   return part;
 }
 

@@ -23,6 +23,9 @@ typedef struct {
 #define TOUCH ((real)2e-6)
 // R of a stone's own radius by which a ray may start inside a stone of triangles and still enter it there.
 #define DEPTH ((real)1e-4)
+// Lanes up to which the rays of a packet are quicker one by one: a packet's facets cost some 12 operations each, those of one
+// ray as much for TREE_WIDTH of them, and some 50 more.
+#define FEW_LANES (LANES == 16 ? 6 : LANES == 8 ? 3 : LANES == 4 ? 2 : 1)
 
 #if STONES == MANY
 // Positions in a stone's measure, and back. Each lane's stone may be another.
@@ -45,8 +48,14 @@ static inline vec3L to_own(world_t world, int number, vec3L point) {
   return scale3(splat(stone->inverse_radius),
                 vec3(point.x - stone->centre[0], point.y - stone->centre[1], point.z - stone->centre[2]));
 }
+static inline vec3L from_own(__constant const stone_t *stone, vec3L point) {
+  return vec3(fma(point.x, splat(stone->radius), splat(stone->centre[0])),
+              fma(point.y, splat(stone->radius), splat(stone->centre[1])),
+              fma(point.z, splat(stone->radius), splat(stone->centre[2])));
+}
 #else
 static inline vec3L to_frame(world_t world, intL stone, vec3L point) { return point; }
+static inline vec3L from_own(__constant const stone_t *stone, vec3L point) { return point; }
 static inline vec3L to_own(world_t world, int number, vec3L point) { return point; }
 #endif
 
@@ -89,6 +98,80 @@ static inline maskL passes_stones(world_t world, vec3L origin, vec3L direction, 
 }
 
 #if STONES == MANY
+#if TREE_WIDTH == 16
+#define LOWER lo
+#define UPPER hi
+#else
+#define LOWER s01234567
+#define UPPER s01234567
+#endif
+// The extreme of a row of numbers.
+#define EXTREME(name, of_two)                                                                                          \
+  static inline real name(realW row) {                                                                                 \
+    const JOIN(REAL, 8) eight = TREE_WIDTH == 16 ? of_two(row.LOWER, row.UPPER) : row.LOWER;                           \
+    const real4 four = of_two(eight.lo, eight.hi);                                                                     \
+    const JOIN(REAL, 2) two = of_two(four.lo, four.hi);                                                                \
+    return of_two(two.x, two.y);                                                                                       \
+  }
+EXTREME(largest, fmax)
+EXTREME(smallest, fmin)
+
+// Where one ray enters a convex stone, as hull_entry_from has it; its facets are looked at TREE_WIDTH abreast. Returns whether
+// it does.
+static inline int enters_alone(__global const real *blocks, int count, const real origin[3], const real direction[3],
+                               real t_min, real *t, real normal[3]) {
+  realW latest = (realW)(-1e30f), soonest = (realW)(1e30f), place = (realW)(0);
+  for (int i = 0; i < count; i++) {
+    const realW nx = load_wide(blocks, 4 * i), ny = load_wide(blocks, 4 * i + 1), nz = load_wide(blocks, 4 * i + 2);
+    const realW speed = fma(nx, (realW)(direction[0]), fma(ny, (realW)(direction[1]), nz * direction[2]));
+    const realW gap =
+        load_wide(blocks, 4 * i + 3) - fma(nx, (realW)(origin[0]), fma(ny, (realW)(origin[1]), nz * origin[2]));
+    const maskW entering = speed <= 0;
+    const realW crossing = gap / select(fmax(speed, (realW)(PARALLEL)), fmin(speed, (realW)(-PARALLEL)), entering);
+    const maskW later = entering & (crossing > latest);
+    latest = select(latest, crossing, later);
+    place = select(place, (realW)((real)i), later);
+    soonest = select(fmin(soonest, crossing), soonest, entering);
+  }
+  const real t_in = largest(latest), t_out = smallest(soonest);
+  *t = fmax(t_in, t_min);
+  if (!(t_in < t_out && t_out - *t > (t_in < t_min ? TOUCH : 0))) return 0;
+  const int column = lowest_bit(mask_bits(latest == (realW)(t_in)));
+  real places[TREE_WIDTH];
+  JOIN(vstore, TREE_WIDTH)(place, 0, places);
+  __global const real *facet = blocks + (int)places[column] * 4 * TREE_WIDTH + column;
+  EACH (k, 3) normal[k] = facet[k * TREE_WIDTH];
+  return 1;
+}
+
+// The same for the rays of a packet, one after the other: quicker where few of them are near the stone.
+static inline crossingL enter_one_by_one(__global const real *blocks, int count, vec3L origin, vec3L direction,
+                                         realL t_min, maskL mask) {
+  int wanted[LANES];
+  real rows[7][LANES], t[LANES], normal[3][LANES], hit[LANES];
+  store_mask(mask, wanted);
+  store_lanes(origin.x, rows[0]);
+  store_lanes(origin.y, rows[1]);
+  store_lanes(origin.z, rows[2]);
+  store_lanes(direction.x, rows[3]);
+  store_lanes(direction.y, rows[4]);
+  store_lanes(direction.z, rows[5]);
+  store_lanes(t_min, rows[6]);
+  for (int lane = 0; lane < LANES; lane++) {
+    hit[lane] = t[lane] = 0;
+    EACH (k, 3) normal[k][lane] = 0;
+    if (!wanted[lane]) continue;
+    const real from[3] = {rows[0][lane], rows[1][lane], rows[2][lane]},
+               towards[3] = {rows[3][lane], rows[4][lane], rows[5][lane]};
+    real facet[3] = {0, 0, 0};
+    hit[lane] = enters_alone(blocks, count, from, towards, rows[6][lane], t + lane, facet);
+    EACH (k, 3) normal[k][lane] = facet[k];
+  }
+  const crossingL crossing = {load_lanes(hit) > 0, load_lanes(t),
+                              vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2]))};
+  return crossing;
+}
+
 // Looks whether rays enter this stone before the one that they met so far. `from` is the stone that each comes from.
 static inline void meet_stone(world_t world, int number, vec3L origin, vec3L direction, realL t_min, maskL mask,
                               intL from, meetingL *first) {
@@ -103,7 +186,10 @@ static inline void meet_stone(world_t world, int number, vec3L origin, vec3L dir
   const realL start = (t_min - way.middle) * stone->inverse_radius;
   crossingL crossing;
   if (by_half_spaces(stone))
-    crossing = hull_entry_from(world.facets + stone->first_facet, stone->facets, foot, direction, start, TOUCH);
+    crossing = packing_of(near).count <= FEW_LANES
+                   ? enter_one_by_one(world.blocks + stone->first_block * 4 * TREE_WIDTH, stone->blocks, foot,
+                                      direction, start, near)
+                   : hull_entry_from(world.facets + stone->first_facet, stone->facets, foot, direction, start, TOUCH);
   else {
     crossing = mesh_crossing(stone, tree_of(world), foot, direction, blend(returns, start, start - DEPTH), (real)1e30,
                              near, 1);

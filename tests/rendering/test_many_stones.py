@@ -11,6 +11,7 @@ import pytest
 
 from conftest import RendererOf
 from culet.errors import SceneError
+from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.rendering.features import Features, Geometry, Stones, features_of
@@ -117,3 +118,62 @@ def test_convex_stones_and_others_share_a_scene(renderer: Renderer, exact: Rende
 def test_the_classic_estimator_keeps_to_one_stone() -> None:
     with pytest.raises(SceneError, match=r"optics.estimator: expected chain.* got classic and 3 stones"):
         features_of(stage(TRIO, optics={"estimator": "classic"}))
+
+
+def brick(half_height: float) -> Shape:
+    """2 x 2 and twice the half height, scaled to circumradius 1."""
+    extents = (1.0, half_height, 1.0)
+    planes = [[*(sign * np.eye(3)[axis]), extent] for axis, extent in enumerate(extents) for sign in (1, -1)]
+    return shape_from_half_spaces("brick", np.array(planes))
+
+
+def bricks(*places: tuple[float, float]) -> Stage:
+    """Bricks of glass by their height and half height, seen from straight below, under a sky that is 1 above."""
+    glass = {"material": {"ior": [1.5] * 3}, "orientation": [1, 0, 0, 0]}
+    stones = [{**glass, "position": [0, y, 0], "scale": np.sqrt(2 + h * h)} for y, h in places]
+    camera = {"kind": "orthographic", "position": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1], "height": 0.5}
+    sky = {"kind": "half", "radiance": [1, 1, 1]}
+    shapes = [brick(h) for _, h in places]
+    return stage(stones, shapes, **{**FURNACE, "environment": sky, "camera": camera})
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-5, 0.1, -1e-5])
+def test_halves_of_a_cut_stone_have_two_more_surfaces_whatever_the_gap(exact: Renderer, gap: float) -> None:
+    """Of n surfaces that each reflect R of the light that falls on them straight, (1 - R) / (1 + (n - 1) R) goes
+    through (G. G. Stokes, Proc. R. Soc. Lond. 11, 545 (1862)). A gap of nothing is a gap; so is a small overlap."""
+    reflected = (0.5 / 2.5) ** 2
+    halves = radiance(take(exact, bricks((0.3 + gap / 2, 0.3), (-0.3 - gap / 2, 0.3)), size=(8, 8)))
+    whole = radiance(take(exact, bricks((0, 0.6)), size=(8, 8)))
+    assert whole == pytest.approx((1 - reflected) / (1 + reflected), abs=2e-6)  # the cut-off; measured 3.3e-7
+    assert halves == pytest.approx((1 - reflected) / (1 + 3 * reflected), abs=2e-5)
+
+
+EXTREMES: dict[str, list[dict[str, Any]]] = {
+    "one in another": [{**TRIO[0], "position": [0, 0, 0]}, {**TRIO[1], "position": [0.1, 0, 0], "scale": 0.2}],
+    "two in one place": [{**TRIO[0], "position": [0, 0, 0]}, {**TRIO[0], "position": [0, 0, 0]}],
+    "a grain on a boulder": [
+        {**TRIO[0], "position": [0, -30.6, 0], "scale": 30.0, "orientation": [1, 0, 0, 0]},
+        {**TRIO[1], "position": [0, 0.1, 0], "scale": 0.05},
+    ],
+    "points that touch": [{**TRIO[0], "position": [-1, 0, 0]}, {**TRIO[1], "position": [1, 0, 0], "scale": 1.0}],
+    "as many as may be": [
+        {**TRIO[k % 3], "position": [0.6 * (k % 8) - 2.1, -0.5, 0.6 * (k // 8) - 2.1], "scale": 0.3} for k in range(64)
+    ],
+}
+
+
+@pytest.mark.parametrize("stones", EXTREMES.values(), ids=EXTREMES.keys())
+def test_light_is_neither_lost_nor_made_however_stones_lie(renderer: Renderer, stones: list[dict[str, Any]]) -> None:
+    of = stage(stones, **{**FURNACE, "optics": {"cutoff": 1e-4, "max_bounces": 65536}})
+    picture = take(renderer, of)
+    seen, cut = radiance(picture).mean(axis=-1), picture.cut_map().astype(float)
+    assert seen + cut == pytest.approx(1, abs=2e-6)
+    assert 0 < cut.mean() < 1e-3
+
+
+def test_a_stone_out_of_sight_changes_nothing_that_is_seen(exact: Renderer) -> None:
+    """But what light it throws back, some millionths of the sky."""
+    far = {**TRIO[1], "position": [0, 0, 3000]}
+    near, both = (radiance(take(exact, stage(stones, **{**BARE, **VIEW}))) for stones in (TRIO, [*TRIO, far]))
+    difference: Array = abs(near - both).max(axis=-1)
+    assert (difference > 1e-3).mean() < 0.01

@@ -19,9 +19,9 @@ export function listenToPointers(
   const fingers = new Fingers();
   let pending: { target: Target; yaw: number; pitch: number; forward: number } | null = null;
 
-  /** Where a push began, css pixels; it is given when the pointer goes up. */
   /** A pointer that went down alone and has not been moved since. */
   let still: { id: number; x: number; y: number } | null = null;
+  /** Where a push began, css pixels; it is given when the pointer goes up. */
   let push: { id: number; x: number; y: number } | null = null;
 
   function flush(): void {

@@ -13,14 +13,16 @@ import culet_kernels
 from culet.errors import DeviceError, KernelCacheError
 from culet.rendering import kernel_cache
 from culet.rendering.device import Device, Real
-from culet.rendering.features import Features
+from culet.rendering.features import Features, Stones
 from culet.rendering.layout import arguments, constants, in_order, struct
 from culet.rendering.making import alone
 
 FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 
-TILE = 32
-"""Pixels on each side of what a core renders at a time."""
+
+def tile_of(features: Features) -> int:
+    """Pixels on each side of what a core renders at a time."""
+    return constants("tile.cl")["TILE_OF_MANY" if features.stones == Stones.MANY else "TILE_OF_ONE"]
 
 
 TILES_DEALT, WORK_BYTES, OF_ITEMS, ITEM_NUMBERS = (
@@ -62,7 +64,6 @@ class Variant:
         return [
             f"-DLANES={self.lanes}",
             f"-DREAL={'double' if self.real is np.float64 else 'float'}",
-            f"-DTILE={TILE}",
         ]
 
 

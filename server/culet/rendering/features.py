@@ -129,7 +129,7 @@ def features_of(stage: Stage) -> Features:
             "optics.estimator",
         )
     lit = floor.kind in ("matte", "mirror") or walls.kind != "none"
-    indices = [channel_indices(stone.material) for stone in scene.stones]
+    indices = [channel_indices(material) for material in {stone.material for stone in scene.stones}]
     return Features(
         geometry=geometry_of(shapes),
         floor=SURFACE[floor.kind],

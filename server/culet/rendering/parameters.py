@@ -12,7 +12,7 @@ from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.layout import struct
 from culet.rendering.placed_stone import PlacedStone, camera_stone, origin_of
 from culet.rendering.projection import project
-from culet.rendering.studio import set_studio
+from culet.rendering.studio import least_shade, set_studio
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
 from culet.scene.sky import (
@@ -60,7 +60,7 @@ def parameters(scene: Scene, stones: Sequence[PlacedStone], width: int, height: 
     What depends on other buffers (the table of stones, chains, panorama) is left zero.
     """
     p = np.zeros((), struct("parameters_t", real))
-    origin = origin_of(stones)
+    origin = origin_of(scene, stones)
     projection = project(scene, stones, width, height)
     p["foot"], p["foot_column"], p["foot_row"] = projection.foot
     p["direction"], p["direction_column"], p["direction_row"] = projection.direction
@@ -81,13 +81,15 @@ def parameters(scene: Scene, stones: Sequence[PlacedStone], width: int, height: 
     p["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
     p["end_kind"] = END[scene.optics.end]
     p["glare"] = scene.optics.glare
+    p["least_shade"] = least_shade(len(stones))
     host = camera_stone(scene, stones)
     p["camera_inside"], p["camera_stone"] = host is not None, host or 0
-    p["pierces"] = any(_pierces(scene, stone) for stone in stones)
+    p["pierces"] = any(_pierces(shown_surfaces(scene, stone.centre), stone) for stone in stones)
     return p
 
 
-def _pierces(scene: Scene, stone: PlacedStone) -> bool:
-    """Whether a stone reaches through the floor or a wall that is there."""
-    surfaces = shown_surfaces(scene, stone.centre)
+def _pierces(surfaces: NDArray[np.float64], stone: PlacedStone) -> bool:
+    """Whether a stone reaches through one of the surfaces, which are relative to its centre."""
+    if (surfaces[:, 3] < -stone.scale).all():
+        return False
     return bool((stone.scale * stone.vertices @ surfaces[:, :3].T < surfaces[:, 3]).any())

@@ -86,17 +86,24 @@ def _place(stone: PlacedStone) -> tuple[tuple[float, ...], float, tuple[float, .
     return settings.position, stone.scale, settings.orientation, len(stone.shape.planes), repr(settings.material)
 
 
-def origin_of(stones: Sequence[PlacedStone]) -> Array:
-    """(3,) the origin of the kernels' frame, in the world: the middle of the stones' centres, which is the centre of
-    one stone; the world's origin where there is none."""
+def origin_of(scene: Scene, stones: Sequence[PlacedStone]) -> Array:
+    """(3,) the origin of the kernels' frame, in the world, about which positions are told most exactly: the middle of
+    the stones, above all of those at the camera's target. That is the centre of one stone, and the world's origin where
+    there is none."""
     if not stones:
         return np.zeros(3)
-    return np.array([math.fsum(stone.centre[k] for stone in stones) / len(stones) for k in range(3)])
+    away = [float(np.linalg.norm(stone.centre - scene.camera.target)) for stone in stones]
+    weights = [(stone.scale / (stone.scale + distance)) ** 4 for stone, distance in zip(stones, away, strict=True)]
+    if len(stones) == 1:
+        return stones[0].centre
+    total = math.fsum(weights)
+    return np.array(
+        [math.fsum(w * stone.centre[k] for w, stone in zip(weights, stones, strict=True)) / total for k in range(3)]
+    )
 
 
-def extent_of(stones: Sequence[PlacedStone]) -> float:
-    """R from that origin within which all stones are."""
-    origin = origin_of(stones)
+def extent_of(stones: Sequence[PlacedStone], origin: Array) -> float:
+    """R from a place within which all stones are."""
     return max((float(np.linalg.norm(stone.centre - origin)) + stone.scale for stone in stones), default=0.0)
 
 

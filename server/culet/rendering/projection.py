@@ -35,7 +35,8 @@ class Projection:
 def project(scene: Scene, stones: Sequence[PlacedStone], width: int, height: int) -> Projection:
     """The rays of a picture of that size. A foot is never behind the eye: there the eye itself takes its place."""
     camera = scene.camera
-    eye = np.array(camera.position, dtype=float) - origin_of(stones)
+    origin = origin_of(scene, stones)
+    eye = np.array(camera.position, dtype=float) - origin
     forward = np.array(camera.target, dtype=float) - np.array(camera.position, dtype=float)
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, np.array(camera.up, dtype=float))
@@ -48,7 +49,7 @@ def project(scene: Scene, stones: Sequence[PlacedStone], width: int, height: int
         return Projection(
             foot=np.array([corner, column, row]),
             direction=np.array([forward, np.zeros(3), np.zeros(3)]),
-            reach=max(along, extent_of(stones) + NEAREST_PLANE),
+            reach=max(along, extent_of(stones, origin) + NEAREST_PLANE),
         )
     half_height = np.tan(np.radians(camera.fov_degrees) / 2)
     column, row = right * (2 * half_height / height), -up * (2 * half_height / height)

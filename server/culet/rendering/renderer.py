@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
 from culet.rendering.bounds import largest_radiance
-from culet.rendering.build import OF_ITEMS, TILE, TILES_DEALT, Kernel, Variant, build, progress_size
+from culet.rendering.build import OF_ITEMS, TILES_DEALT, Kernel, Variant, build, progress_size, tile_of
 from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, by_half_spaces, features_of
@@ -165,10 +165,13 @@ class Picture:
         features = features or needed
         if features.estimator != needed.estimator:
             raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
+        if features.stones < needed.stones:
+            raise ValueError(f"features: expected stones {needed.stones}, the scene's, got {features.stones}")
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._kernel = get(features, renderer.variant)
         self._inputs = Inputs(renderer.device, stage, width, height, features, real)
-        self._tiles = math.ceil(width / TILE), math.ceil(height / TILE)
+        tile = tile_of(features)
+        self._tiles = math.ceil(width / tile), math.ceil(height / tile)
         size = width * height * 4 * np.dtype(real).itemsize
         self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])

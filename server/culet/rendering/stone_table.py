@@ -15,10 +15,10 @@ from culet.rendering.features import Features, Geometry, by_half_spaces
 from culet.rendering.layout import struct
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.parameters import shown_surfaces
-from culet.rendering.placed_stone import PlacedStone, extent_of, origin_of
+from culet.rendering.placed_stone import PlacedStone, origin_of
 from culet.rendering.projection import Projection, project
 from culet.rendering.shadows import shadow_planes
-from culet.rendering.studio import contact_form
+from culet.rendering.studio import contact_form, shade_reach
 from culet.rendering.tree import WIDTH, Tree, tree_of
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y, StudioFloor
@@ -64,23 +64,23 @@ class StoneTable:
         """For a picture of that size. The stones must be in groups: see `grouped`."""
         rows = np.zeros(max(1, len(stones)), struct("stone_t", real))
         rows["radius"] = rows["inverse_radius"] = 1
-        origin, rounding = origin_of(stones), ROUNDING * extent_of(stones)
-        projection = project(scene, stones, width, height)
-        sets, _ = chains_of_stones(scene)
+        origin = origin_of(scene, stones)
+        sets, kinds = chains_of_stones(scene)
+        absorbed = [stone.scale * np.array(absorption(scene, stone)) for stone in kinds]
         facets, blocks, shadows, trees = [np.zeros((1, 4))], [np.zeros((0, 4, WIDTH))], [np.zeros((1, 4))], []
         first_facet, first_block, first_plane, root, leaves = 1, 0, 1, 0, 0
         for row, stone in zip(rows, stones, strict=False):
             centre = stone.centre - origin
             row["centre"], row["radius"], row["inverse_radius"] = centre, stone.scale, 1 / stone.scale
-            row["reach"] = REACH * stone.scale + rounding
+            row["reach"] = REACH * stone.scale + ROUNDING * float(np.linalg.norm(centre))
             row["axes"] = stone.rotation
-            row["absorption"] = stone.scale * np.array(absorption(scene, stone.settings))
+            row["absorption"] = absorbed[sets[stone.number]]
             row["convex"] = stone.shape.convex
             row["few_mirrors"] = makes_finite_group(stone.shape)
             row["first_chain"] = sets[stone.number]
-            row["columns"], row["rows"] = _seen(projection, centre, float(row["reach"]), width, height)
             if isinstance(scene.floor, StudioFloor) and stone.centre[1] > FLOOR_Y:
                 row["contact"], row["contact_shadow"] = contact_form(stone), scene.floor.shadow
+                row["shade_reach"] = stone.scale * shade_reach(stone, len(stones))
             by_triangles = features.geometry == Geometry.MESH and (
                 not by_half_spaces(stone.shape) or features.stones == 1
             )
@@ -103,6 +103,9 @@ class StoneTable:
                 row["shadow_start"][: len(starts)] = starts
                 shadows += volumes
                 first_plane = int(starts[-1])
+        if stones:
+            centres, reach = rows["centre"].astype(float), rows["reach"].astype(float)
+            rows["columns"], rows["rows"] = _seen(project(scene, stones, width, height), centres, reach, width, height)
         # One stone has its facets from the first on: kernels need not ask where they begin.
         one = features.stones == 1 and len(facets) > 1
         rows["first_facet"] -= one
@@ -139,6 +142,7 @@ def _groups(rows: NDArray[np.void], real: Real) -> NDArray[np.void]:
         group = groups[number]
         group["centre"] = centre
         group["reach"] = (1 + 1e-6) * (np.linalg.norm(centres - centre, axis=1) + members["reach"]).max()
+        group["shade_reach"] = (np.linalg.norm(centres - centre, axis=1) + members["shade_reach"]).max()
         group["first"], group["last"] = number * GROUP, number * GROUP + len(members)
     return groups
 
@@ -160,40 +164,36 @@ def _shadow_volumes(scene: Scene, stone: PlacedStone, planes: Array) -> list[Arr
     return [shadow_planes(planes, stone.vertices, edges, stone.own(light.position), surfaces) for light in scene.points]
 
 
-def _seen(
-    projection: Projection, centre: Array, reach: float, width: int, height: int
-) -> tuple[tuple[int, int], tuple[int, int]]:
-    """First and last column, and row, of the pixels whose rays may meet a sphere. None: the last is before the first.
+def _seen(projection: Projection, centres: Array, reach: Array, width: int, height: int) -> tuple[Array, Array]:
+    """(N, 2) first and last column, and row, of the pixels whose rays may meet each of N spheres. None: the last is
+    before the first.
 
     By column a pinhole's rays are those of a plane angle, in which the sphere is a disc.
     """
     corner, column, row = projection.direction
+    forward = corner + column * (width / 2) + row * (height / 2)
+    eye = projection.foot[0] - projection.reach * corner
     ranges = []
-    for step, foot_step, size in ((column, 1, width), (row, 2, height)):
-        pitch = float(np.linalg.norm(projection.foot[foot_step]))
-        across = projection.foot[foot_step] / max(pitch, 1e-300)
-        forward = corner + column * (width / 2) + projection.direction[2] * (height / 2)
+    for number, size in ((1, width), (2, height)):
+        step = projection.direction[number]
         if not step.any():  # parallel rays
-            middle = float((centre - projection.foot[0]) @ across) / max(pitch, 1e-300)
-            ranges.append(_pixels(middle - reach / pitch, middle + reach / pitch) if pitch > 0 else (0, FAR))
+            pitch = float(np.linalg.norm(projection.foot[number]))
+            middle = (centres - projection.foot[0]) @ projection.foot[number] / pitch**2
+            ranges.append(_pixels(middle - reach / pitch, middle + reach / pitch))
             continue
         pitch = float(np.linalg.norm(step))
-        across = step / pitch
-        eye = projection.foot[0] - projection.reach * corner
-        x, z = float((centre - eye) @ across), float((centre - eye) @ forward)
+        x, z = (centres - eye) @ step / pitch, (centres - eye) @ forward
         distance = np.hypot(x, z)
-        if distance <= reach:
-            ranges.append((0, FAR))
-            continue
-        angle, half = np.arctan2(x, z), np.arcsin(reach / distance)
-        if angle - half >= np.pi / 2 or angle + half <= -np.pi / 2:
-            ranges.append((FAR, -FAR))
-            continue
-        low = np.tan(angle - half) / pitch + size / 2 if angle - half > -np.pi / 2 else -FAR
-        high = np.tan(angle + half) / pitch + size / 2 if angle + half < np.pi / 2 else FAR
-        ranges.append(_pixels(low, high))
+        angle, half = np.arctan2(x, z), np.arcsin(np.minimum(reach / np.maximum(distance, 1e-300), 1))
+        low, high = angle - half, angle + half
+        first = np.where(low > -np.pi / 2, np.tan(low) / pitch + size / 2, -FAR)
+        last = np.where(high < np.pi / 2, np.tan(high) / pitch + size / 2, FAR)
+        behind = (low >= np.pi / 2) | (high <= -np.pi / 2)
+        first, last = np.where(behind, FAR, first), np.where(behind, -FAR, last)
+        within = distance <= reach
+        ranges.append(_pixels(np.where(within, -FAR, first), np.where(within, FAR, last)))
     return ranges[0], ranges[1]
 
 
-def _pixels(low: float, high: float) -> tuple[int, int]:
-    return int(np.clip(low, -FAR, FAR)) - MARGIN, int(np.clip(high, -FAR, FAR)) + MARGIN
+def _pixels(first: Array, last: Array) -> Array:
+    return np.column_stack([np.clip(first, -FAR, FAR) - MARGIN, np.clip(last, -FAR, FAR) + MARGIN]).astype(np.int64)

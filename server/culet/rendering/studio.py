@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 from numpy.typing import NDArray
 
+from culet.geometry.shape import Shape
 from culet.rendering.placed_stone import PlacedStone
 from culet.scene.backdrop import Backdrop, GradientBackdrop, PlainBackdrop
 from culet.scene.emitters import BoxLamp, boxes, discs
 from culet.scene.model import Scene
-from culet.scene.room import StudioFloor
+from culet.scene.room import FLOOR_Y, StudioFloor
 
 Array = NDArray[np.float64]
 
@@ -95,12 +98,46 @@ def _set_floor(p: NDArray[np.void], floor: StudioFloor) -> None:
 
 
 def contact_form(stone: PlacedStone) -> Array:
-    """(3, 3) det S S^-1 in the stone's own measure: x' S^-1 x = 1 is the ellipsoid of even density that has the
-    stone's second moments, which are S / 5."""
-    inertia = stone.shape.mass.inertia
-    spread = 5 * (np.trace(inertia) / 2 * np.eye(3) - inertia)
-    adjugate = np.linalg.det(spread) * np.linalg.inv(spread)
-    return np.asarray(stone.rotation @ adjugate @ stone.rotation.T)
+    """(3, 3) det S S^-1 in the stone's own measure: x' S^-1 x = 1 is the ellipsoid of even density that has the stone's
+    second moments, which are S / 5."""
+    return np.asarray(stone.rotation @ _form_of(stone.shape)[0] @ stone.rotation.T)
+
+
+_FORMS: WeakKeyDictionary[Shape, tuple[Array, float]] = WeakKeyDictionary()
+
+
+def _form_of(shape: Shape) -> tuple[Array, float]:
+    """The same in the shape's own axes, and its largest axis; made once."""
+    form = _FORMS.get(shape)
+    if form is None:
+        inertia = shape.mass.inertia
+        spread = 5 * (np.trace(inertia) / 2 * np.eye(3) - inertia)
+        adjugate = np.asarray(np.linalg.det(spread) * np.linalg.inv(spread))
+        form = _FORMS[shape] = adjugate, float(np.linalg.eigvalsh(adjugate).max())
+    return form
+
+
+LEAST_SHADE = 1 / 1024
+"""Part of the floor's light below which one of several stones takes none of it: a fourth of the least step of a shown
+picture."""
+
+
+def least_shade(stones: int) -> float:
+    """That part, in a scene of so many stones: one alone shades the whole floor."""
+    return LEAST_SHADE if stones > 1 else 0.0
+
+
+def shade_reach(stone: PlacedStone, stones: int) -> float:
+    """Radii of a stone within which its contact shadow takes more: it falls at least as height sqrt(s) / distance^3,
+    where s is the largest axis of the contact form."""
+    if stones < 2:
+        return FAR_REACH
+    height = (float(stone.centre[1]) - FLOOR_Y) / stone.scale
+    return float(np.cbrt(height * np.sqrt(_form_of(stone.shape)[1]) / LEAST_SHADE))
+
+
+FAR_REACH = 1e9
+"""R. Beyond all that a scene may hold; its square is a number in single precision."""
 
 
 def _unit(vector: object) -> Array:
