@@ -73,6 +73,8 @@ BARE = CHECKER.model_copy(
 )
 """A stone under a sky, with nothing that could be left out."""
 
+UNDER_THE_SKY = BARE.model_copy(update={"environment": LEGACY_DEFAULT.environment})
+
 FEATURE_CASES: dict[str, tuple[Scene, Scene]] = {
     "floor": (BARE, BARE.model_copy(update={"floor": Plane(kind="matte")})),
     "walls": (BARE, BARE.model_copy(update={"walls": Plane(kind="matte")})),
@@ -80,10 +82,8 @@ FEATURE_CASES: dict[str, tuple[Scene, Scene]] = {
         BARE.model_copy(update={"floor": Plane(kind="matte")}),
         BARE.model_copy(update={"floor": Plane(kind="matte"), "emitters": LEGACY_POINTS}),
     ),
-    "sky": (
-        BARE,
-        BARE.model_copy(update={"environment": LEGACY_DEFAULT.environment, "emitters": LEGACY_LAMPS}),
-    ),
+    "sky": (BARE, UNDER_THE_SKY),
+    "lamps": (UNDER_THE_SKY, UNDER_THE_SKY.model_copy(update={"emitters": LEGACY_LAMPS})),
     "dispersion": (BARE, BARE.model_copy(update={"stones": CHECKER.stones})),
     "absorption": (
         BARE,
