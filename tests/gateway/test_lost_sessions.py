@@ -73,7 +73,7 @@ async def snapshot_of(gateway: Gateway, scene: dict[str, Any]) -> dict[str, Any]
         ({"sequence": "many"}, "snapshot.sequence"),
         ({"fraction": 1}, "snapshot.fraction"),
         ({"home": {"position": [0, 0, 0]}}, None),
-        ({"simulation": {"version": 2}}, "version"),
+        ({"simulation": {"version": 3}}, "version"),
         ({"simulation": []}, "snapshot.simulation"),
         ({"environment": {"kind": "lava"}}, "snapshot.environment.kind"),
         ({"more": 1}, "snapshot.more"),

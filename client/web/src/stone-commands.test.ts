@@ -84,6 +84,14 @@ it("lets what it scatters fall, and goes on with what falls", () => {
   expect(sent.map(({ type }) => type)).toEqual(["patch_scene", "toggle_fall", "patch_scene"]);
 });
 
+it("keeps what cannot be put back for want of room", () => {
+  scene(RUBY);
+  commands.remove();
+  scene(...Array.from({ length: 64 }, (_, k) => ({ ...GLASS, id: `${k}` })));
+  commands.putBack();
+  expect([told, commands.removals]).toEqual([[NO_ROOM], 1]);
+});
+
 it("says why there is nothing to do", () => {
   scene(...Array.from({ length: 64 }, (_, k) => ({ ...RUBY, id: `${k}` })));
   commands.add();

@@ -53,11 +53,7 @@ export class StoneCommands {
 
   add(): void {
     const { scene, stone } = this.world.state();
-    if (stonesOf(scene).length >= MOST_STONES) {
-      this.world.tell(NO_ROOM);
-      return;
-    }
-    this.bring(anotherLike(scene, stone ?? undefined));
+    if (this.hasRoom()) this.bring(anotherLike(scene, stone ?? undefined));
   }
 
   remove(): void {
@@ -76,12 +72,13 @@ export class StoneCommands {
 
   /** The stone that was removed last. */
   putBack(): void {
-    const stone = this.removed.pop();
+    const stone = this.removed.at(-1);
     if (!stone) {
       this.world.tell(NOTHING_REMOVED);
-      return;
+    } else if (this.hasRoom()) {
+      this.removed.pop();
+      this.bring(additionOf(this.world.state().scene, stone));
     }
-    this.bring(additionOf(this.world.state().scene, stone));
   }
 
   /** All stones into the air, from where they fall. */
@@ -98,6 +95,12 @@ export class StoneCommands {
   /** Another scene was opened: what was removed from the one before is not its. */
   forget(): void {
     this.removed.length = 0;
+  }
+
+  private hasRoom(): boolean {
+    const room = stonesOf(this.world.state().scene).length < MOST_STONES;
+    if (!room) this.world.tell(NO_ROOM);
+    return room;
   }
 
   private toChosen(type: "look_at_stone" | "reset_stone" | "toggle_fall"): void {

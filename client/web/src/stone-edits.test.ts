@@ -57,6 +57,14 @@ describe("scattered stones", () => {
     }
   });
 
+  it("find a place however large they are", () => {
+    const large = Array.from({ length: 24 }, (_, k) => ({ id: `large-${k}`, scale: 100 }));
+    const placed = Object.values(object(scatterPatch({ stones: large }).stones)).map(object);
+    for (const [k, one] of placed.entries()) {
+      for (const other of placed.slice(k + 1)) expect(distance(one, other)).toBeGreaterThan(200);
+    }
+  });
+
   it("are turned by rotations, no two alike", () => {
     const turns = stones.map(({ id }) => object(scattered[id]).orientation as number[]);
     for (const turn of turns) expect(Math.hypot(...turn)).toBeCloseTo(1, 12);

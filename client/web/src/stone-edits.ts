@@ -16,6 +16,7 @@ const MOST_FALL = 2.5;
 /** R from the middle, within which no wall is. */
 const WALLS = 7;
 const LONGEST_ID = 32;
+/** Places that are tried for a stone before it may be higher up by its radius. */
 const TRIES = 200;
 
 /** The merge patch that takes a stone away. */
@@ -99,7 +100,7 @@ function freePlace(radius: number, placed: readonly Ball[], all: readonly JsonOb
   for (let tries = 0; ; tries++) {
     const reach = widest * Math.sqrt(random());
     const angle = 2 * Math.PI * random();
-    const height = FLOOR + radius + LEAST_FALL + (MOST_FALL - LEAST_FALL + tries / TRIES) * random();
+    const height = FLOOR + radius + LEAST_FALL + (MOST_FALL - LEAST_FALL + (radius * tries) / TRIES) * random();
     const at: Place = [reach * Math.cos(angle), height, reach * Math.sin(angle)];
     if (isFree({ at, radius }, placed)) return at;
   }

@@ -15,7 +15,8 @@ export interface StoneActions {
   scatter: () => void;
 }
 
-const NONE = "none";
+/** No id has brackets. */
+const NONE = "(none)";
 
 export class StonePanel {
   private readonly shown = { stone: "" };
