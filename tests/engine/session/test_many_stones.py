@@ -134,6 +134,15 @@ def test_a_stone_that_comes_back_moves_on_as_it_did() -> None:
     assert is_as(session.motion.states()["s1"], before["s1"])
 
 
+def test_the_last_stone_comes_back_where_it_was() -> None:
+    session = falling(1)
+    before, stage = session.motion.states(), session.stage
+    patch(session, stones={"s0": None})
+    assert session.motion.states() == {}
+    session.motion.follow(stage, before)
+    assert is_as(session.motion.states()["s0"], before["s0"])
+
+
 def test_several_stones_go_on_in_another_engine_to_the_same_bits() -> None:
     session = falling(3)
     patch(session, stones={"s0": None})

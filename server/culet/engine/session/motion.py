@@ -206,8 +206,9 @@ class Motion:
         else:
             self.replace(stage)
             for name, state in (states or {}).items():
-                self.world.remove(name)
-                self.world.add(bodies[name], state)
+                if name in bodies:
+                    self.world.remove(name)
+                    self.world.add(bodies[name], state)
         self._stage = stage
         time_step = stage.scene.simulation.time_step
         if time_step != self.clock.time_step:
@@ -283,7 +284,11 @@ class Motion:
         """
         if not self.moving:
             return False
-        self._advance_to(now, share)
+        try:
+            self._advance_to(now, share)
+        except Exception:
+            self.stop()
+            raise
         return True
 
     def look_on(self, now: float, share: float) -> bool:
@@ -317,8 +322,9 @@ class Motion:
             end = min(now, lease.until)
             try:
                 self._advance_to(end - lease.lost, lease.share)
-            except Exception as error:  # the stones have stopped
-                self.problem = error
+            except Exception as error:
+                self.problem = error  # before they stop, or who sees them at rest would look no more
+                self.stop()
                 return None
             due = end + (1 - self.fraction + LATE) * self.clock.time_step
             return due if due < lease.until else None  # the next run finds out whether all sleep
@@ -410,11 +416,7 @@ class Motion:
     def _advance_to(self, now: float, share: float) -> None:
         elapsed = 0.0 if self._advanced_at is None else max(now - self._advanced_at, 0.0)
         self._advanced_at = now
-        try:
-            self._step(elapsed, share)
-        except Exception:
-            self.stop()
-            raise
+        self._step(elapsed, share)
         self._write_down()
 
     def _step(self, elapsed: float, share: float) -> None:
