@@ -99,10 +99,11 @@ def test_a_stone_that_is_put_elsewhere_begins_there_alone() -> None:
 @pytest.mark.parametrize("change", [{"friction": 0.9}, {"restitution": 0.1}, {"mass": 7.0}, {"material": "ruby"}])
 def test_a_stones_own_settings_act_at_once_and_leave_all_where_they_are(change: dict[str, object]) -> None:
     session = falling(3)
-    before = session.motion.states()
+    before, bodies = session.motion.states(), session.motion.world.bodies
     patch(session, stones={"s1": change})
     after = session.motion.states()
     assert all(is_as(after[name], before[name]) for name in before)
+    assert [old.like(new) for old, new in zip(bodies, session.motion.world.bodies, strict=True)] == [True, False, True]
 
 
 def test_another_order_of_the_stones_moves_none() -> None:

@@ -111,6 +111,18 @@ def test_time_between_two_looks_beyond_that_is_lost_and_the_pace_says_so() -> No
     assert motion.pace.dropped == pytest.approx(4 * (1 - MAX_CATCH_UP), abs=STEP)
 
 
+def test_time_that_nobody_saw_after_the_last_step_is_not_made_up_for() -> None:
+    motion = falling()
+    motion.look_on(0, 1)
+    motion.run(0)
+    motion.run(MAX_CATCH_UP)
+    taken = motion.world.state.step
+    motion.look_on(10, 1)
+    motion.run(10)
+    assert motion.world.state.step <= taken + 1
+    assert motion.pace.dropped == pytest.approx(10 - MAX_CATCH_UP)
+
+
 def test_a_pause_is_neither_made_up_for_nor_lost() -> None:
     motion = falling()
     for now in (0.0, 0.1):
