@@ -46,12 +46,17 @@ it("a stone that was removed comes back as it was, by another id if that is take
 
 describe("scattered stones", () => {
   const stones = Array.from({ length: 64 }, (_, k) => ({ id: `stone-${k}`, scale: 0.4 + (k % 5) / 4 }));
-  const scattered = object(scatterPatch({ stones }).stones);
+  const camera = { target: [3, 0, -4] };
+  const scattered = object(scatterPatch({ stones, camera, walls: { kind: "matte" } }).stones);
 
   it("are all there, in the air between the walls, and apart", () => {
     const placed = stones.map(({ id, scale }) => ({ scale, position: object(scattered[id]).position as number[] }));
     for (const [k, one] of placed.entries()) {
-      expect(Math.hypot(one.position[0] ?? 99, one.position[2] ?? 99) + one.scale).toBeLessThanOrEqual(7);
+      const [x, , z] = one.position as [number, number, number];
+      for (const wall of [z, z / 2 + x * Math.sqrt(0.75), z / 2 - x * Math.sqrt(0.75)]) {
+        expect(wall).toBeGreaterThan(one.scale - 8);
+      }
+      expect(Math.hypot(x - 3, z + 4)).toBeLessThan(40);
       expect(one.position[1]).toBeGreaterThan(-1 + one.scale);
       for (const other of placed.slice(k + 1)) expect(distance(one, other)).toBeGreaterThan(one.scale + other.scale);
     }

@@ -1,7 +1,7 @@
 /** The merge patches that add, remove and scatter stones. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { number, text, triple } from "./json";
+import { number, part, text, triple } from "./json";
 import { stoneOf, stonesOf } from "./stones";
 
 type Place = readonly [number, number, number];
@@ -13,10 +13,15 @@ const FLOOR = -1;
 /** R above the floor, of the balls about scattered stones: so high they are when they begin to fall. */
 const LEAST_FALL = 0.5;
 const MOST_FALL = 2.5;
-/** R from the middle, within which no wall is. */
-const WALLS = 7;
+/** The room's walls: how far from the middle they are, R, and where they face, x and z. */
+const WALLS = 8;
+const WALLS_FACE = [
+  [0, 1],
+  [Math.sqrt(0.75), 0.5],
+  [-Math.sqrt(0.75), 0.5],
+] as const;
 const LONGEST_ID = 32;
-/** Places that are tried for a stone before it may be higher up by its radius. */
+/** Places that are tried for a stone before it may be higher up by its radius, and as much farther off as it is from there. */
 const TRIES = 200;
 
 /** The merge patch that takes a stone away. */
@@ -80,29 +85,41 @@ function isFree(ball: Ball, others: readonly Ball[]): boolean {
 }
 
 /**
- * The merge patch that has all stones in the air, at random places and turned at random, apart from each other. The more
- * they are, the wider they lie, and the higher where there is no room left between the walls. `random` is a number from 0 to 1.
+ * The merge patch that has all stones in the air about what the camera looks at, at random places and turned at random,
+ * apart from each other and within the walls. The more they are, the wider they lie. `random` is a number from 0 to 1.
  */
 export function scatterPatch(scene: JsonObject | null, random = Math.random): JsonObject {
   const placed: Ball[] = [];
+  const [x, , z] = triple(part(scene, "camera").target) ?? [0, 0, 0];
+  const inside = part(scene, "walls").kind === "none" ? () => true : isWithinWalls;
   const stones = stonesOf(scene).map((stone): [string, JsonObject] => {
     const { radius } = ballOf(stone);
-    const at = freePlace(radius, placed, stonesOf(scene), random);
+    const at = freePlace(radius, [x, z], (ball) => inside(ball) && isFree(ball, placed), stonesOf(scene), random);
     placed.push({ at, radius });
     return [idOf(stone), { position: at, orientation: randomTurn(random) }];
   });
   return { stones: Object.fromEntries(stones) };
 }
 
-function freePlace(radius: number, placed: readonly Ball[], all: readonly JsonObject[], random: () => number): Place {
+function isWithinWalls({ at, radius }: Ball): boolean {
+  return WALLS_FACE.every(([x, z]) => x * at[0] + z * at[2] >= radius + GAP - WALLS);
+}
+
+function freePlace(
+  radius: number,
+  [x, z]: readonly [number, number],
+  fits: (ball: Ball) => boolean,
+  all: readonly JsonObject[],
+  random: () => number,
+): Place {
   const area = all.reduce((sum, stone) => sum + (ballOf(stone).radius + GAP) ** 2, 0);
-  const widest = Math.max(Math.min(1.5 * Math.sqrt(area), WALLS - radius), 0);
+  const widest = 1.2 * Math.sqrt(area);
   for (let tries = 0; ; tries++) {
-    const reach = widest * Math.sqrt(random());
+    const reach = widest * (1 + tries / TRIES) * Math.sqrt(random());
     const angle = 2 * Math.PI * random();
     const height = FLOOR + radius + LEAST_FALL + (MOST_FALL - LEAST_FALL + (radius * tries) / TRIES) * random();
-    const at: Place = [reach * Math.cos(angle), height, reach * Math.sin(angle)];
-    if (isFree({ at, radius }, placed)) return at;
+    const at: Place = [x + reach * Math.cos(angle), height, z + reach * Math.sin(angle)];
+    if (fits({ at, radius })) return at;
   }
 }
 
