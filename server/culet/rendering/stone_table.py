@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from culet.geometry.polygons import edges_of_facets
 from culet.rendering.chains import absorption, chains_of_stones
 from culet.rendering.device import Real
-from culet.rendering.features import Features, Geometry, by_half_spaces
+from culet.rendering.features import Features, Geometry, Stones, by_half_spaces
 from culet.rendering.layout import struct
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.parameters import shown_surfaces
@@ -82,7 +82,7 @@ class StoneTable:
                 row["contact"], row["contact_shadow"] = contact_form(stone), scene.floor.shadow
                 row["shade_reach"] = stone.scale * shade_reach(stone, len(stones))
             by_triangles = features.geometry == Geometry.MESH and (
-                not by_half_spaces(stone.shape) or features.stones == 1
+                not by_half_spaces(stone.shape) or features.stones == Stones.ONE
             )
             row["by_triangles"] = by_triangles
             row["first_facet"], row["facets"] = first_facet, len(stone.shape.planes)
@@ -103,11 +103,11 @@ class StoneTable:
                 row["shadow_start"][: len(starts)] = starts
                 shadows += volumes
                 first_plane = int(starts[-1])
-        if stones:
+        if features.stones == Stones.MANY and stones:
             centres, reach = rows["centre"].astype(float), rows["reach"].astype(float)
             rows["columns"], rows["rows"] = _seen(project(scene, stones, width, height), centres, reach, width, height)
         # One stone has its facets from the first on: kernels need not ask where they begin.
-        one = features.stones == 1 and len(facets) > 1
+        one = features.stones == Stones.ONE and len(facets) > 1
         rows["first_facet"] -= one
         return cls(
             rows,
