@@ -34,6 +34,8 @@ class SessionRecord:
         self.scene = scene
         self.revision: int | None = None
         """Of the scene, by the engine's count; None until the engine has said so."""
+        self.findings: tuple[str, ...] = ()
+        """What the engine said about the stones when it last described the session."""
         self.condition = Condition(falling=False)
         self.snapshot: dict[str, Any] | None = None
         self.snapshot_told: dict[str, Any] | None = None
@@ -57,6 +59,7 @@ class SessionRecord:
     def learn(self, described: Mapping[str, Any]) -> None:
         """What the engine said of the session, as it is now."""
         self.revision, self.scene, self.snapshot = described["revision"], described["scene"], described["snapshot"]
+        self.findings = tuple(described["findings"])
         self.condition = Condition.model_validate({name: described[name] for name in Condition.model_fields})
 
     def hear(self, change: SessionChange) -> bool:

@@ -68,6 +68,10 @@ class SessionAnswer(Model):
     motions: Annotated[dict[str, StoneMotion], Field(description="What each stone does, by its id.")]
     exactness: Annotated[float, Field(description="While things move: 0 is many frames, 1 few and good ones.")]
     pinned: Annotated[bool, Field(description="Whether `exactness` fixes the quality of moving frames instead.")]
+    findings: Annotated[
+        tuple[str, ...],
+        Field(description="What was found in uploaded meshes, and which stones overlap, a sentence each."),
+    ]
     viewers: int
     stream: Annotated[str, Field(description="Path of the WebSocket; see the protocol's specification.")]
 
@@ -213,6 +217,7 @@ def _answer(session: SessionRecord) -> SessionAnswer:
         watch=session.topic.hex(),
         scene=session.scene,
         **session.condition.model_dump(),
+        findings=session.findings,
         viewers=len(session.viewers),
         stream=f"/api/sessions/{session.id}/stream",
     )

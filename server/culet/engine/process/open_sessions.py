@@ -12,6 +12,7 @@ from culet.engine.painting.painter import Painter
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.engine.session import events
+from culet.engine.session.overlaps import overlaps
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import BusyError, NotFoundError
@@ -158,7 +159,7 @@ async def described(live: LivePicture) -> dict[str, Any]:
     """A session as the gateway is told of it."""
     session = live.session
     async with session.motion.still():
-        state = session.described()
+        state, found = session.described(), overlaps(session.motion.world)
     return state | {
         "watched": live.watched,
         "step": session.shown.step,
@@ -166,5 +167,5 @@ async def described(live: LivePicture) -> dict[str, Any]:
         "pose": session.pose(),
         "width": live.size[0],
         "height": live.size[1],
-        "findings": [finding for shape in session.stage.shapes for finding in shape.findings],
+        "findings": [*(finding for shape in session.stage.shapes for finding in shape.findings), *found],
     }

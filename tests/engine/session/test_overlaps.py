@@ -1,0 +1,36 @@
+"""Stones inside each other are allowed, and told."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from culet.engine.session.overlaps import MOST, overlaps
+from culet.scene import PRESETS, Scene
+from culet.simulation.staged import world_of
+from culet.stage import Stage
+
+FLAT = [1, 0, 0, 0]
+
+
+def said(*stones: dict[str, Any]) -> list[str]:
+    return overlaps(world_of(Stage.of(Scene.read({"stones": list(stones)}))))
+
+
+def test_stones_that_overlap_are_named_with_how_deep() -> None:
+    apart = {"orientation": FLAT, "position": [5, 0, 0]}
+    (sentence,) = said(
+        {"id": "a", "orientation": FLAT}, {"id": "b", "orientation": FLAT, "position": [1.5, -0.37, 0]}, apart
+    )
+    assert sentence.startswith("the stones 'a' and 'b' overlap by 0.")
+
+
+def test_stones_that_only_touch_are_not_told_of() -> None:
+    for name in ("trio", "heap"):
+        assert overlaps(world_of(Stage.of(PRESETS[name].scene))) == []
+    assert said() == said({}) == []
+
+
+def test_of_many_overlaps_some_are_named_and_the_rest_counted() -> None:
+    sentences = said(*({"position": [0, number / 10, 0]} for number in range(12)))
+    assert len(sentences) == MOST + 1
+    assert sentences[-1] == f"{66 - MOST} more pairs of stones overlap"
