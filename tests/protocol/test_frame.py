@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from culet_protocol.fixtures import FIXTURES, MOVING, STILL
-from culet_protocol.frame import FIELDS, HEADER_SIZE, LAYOUT, MAGIC, Flags, Frame, FrameError
+from culet_protocol.frame import FIELDS, HEADER_SIZE, LAYOUT, MAGIC, Flags, Frame, FrameError, refusal
 
 LISTING: dict[str, dict[str, Any]] = json.loads((FIXTURES / "frames.json").read_text())
 VALID = [name for name, case in LISTING.items() if "fields" in case]
@@ -82,3 +82,12 @@ def test_flags_are_bits() -> None:
 def test_a_watch_id_of_the_wrong_length_is_refused_before_it_is_sent() -> None:
     with pytest.raises(FrameError, match="16 bytes, got 3"):
         replace(MOVING, watch=b"abc").pack()
+
+
+def test_a_refusal_says_why_and_readers_of_other_versions_see_that_it_is_none_of_theirs() -> None:
+    """Mark and version are where version 1 of the protocol looked for them, in no fewer bytes than its header had."""
+    message = refusal(bytes(range(16)), "by another topic")
+    assert (message[:16], message[16:20], message[20]) == (bytes(range(16)), MAGIC, 4)
+    assert len(message) >= 93
+    with pytest.raises(FrameError, match=r"^by another topic$"):
+        Frame.unpack(message)

@@ -9,7 +9,7 @@ import pytest
 from culet.errors import SceneError
 from culet.scene import Scene
 from culet.scene.emitters import MOST_LAMPS, lamps
-from culet.scene.patch import merge_patch, patched
+from culet.scene.patch import merge_patch, patched, read_patched
 
 # RFC 7396, appendix A: every example.
 EXAMPLES = [
@@ -129,6 +129,17 @@ def test_a_patch_that_reaches_no_stone_is_refused_by_name(patch: dict[str, Any],
     with pytest.raises(SceneError, match=message) as refusal:
         patched(DOCUMENT, {"stones": patch})
     assert refusal.value.field == field
+
+
+def test_what_a_patch_makes_unusable_is_named_by_the_stones_id() -> None:
+    with pytest.raises(SceneError, match=r"^stones\.glass\.scale: expected at most 100; got 1000000000\.0$") as refusal:
+        read_patched(DOCUMENT, {"stones": {"glass": {"scale": 1e9}}})
+    assert refusal.value.field == "stones.glass.scale"
+    with pytest.raises(SceneError, match=r"^stones\.0\.scale: "):
+        read_patched(DOCUMENT, {"stones": [{"scale": 0}]})
+    with pytest.raises(SceneError, match=r"^camera\.fov_degrees: "):
+        read_patched(DOCUMENT, {"stones": {"glass": {"scale": 2}}, "camera": {"fov_degrees": 0}})
+    assert read_patched(DOCUMENT, {"stones": {"glass": {"scale": 2}}}).stones[1].scale == 2
 
 
 def sky(document: dict[str, Any], **patch: Any) -> Scene:  # noqa: ANN401

@@ -11,6 +11,7 @@ from typing import Any
 
 from culet.errors import SceneError
 from culet.scene.atelier import LAMPS
+from culet.scene.model import Scene
 from culet.scene.sky import SKIES_WITHOUT_LAMPS
 
 TAGS = ("kind", "name", "shape")
@@ -52,6 +53,21 @@ def patched(scene: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any
     if kind != before and "emitters" not in patch and isinstance(after.get("emitters"), list):
         after["emitters"] = emitters_under(kind, after["emitters"])
     return after
+
+
+def read_patched(scene: Mapping[str, Any], patch: Mapping[str, Any]) -> Scene:
+    """The scene that a patch makes of a whole scene's JSON; SceneError, which names a stone by the id that the patch
+    reached it by."""
+    after = patched(scene, patch)
+    try:
+        return Scene.read(after)
+    except SceneError as error:
+        _, _, place = (error.field or "").partition("stones.")
+        number, dot, rest = place.partition(".")
+        if not (isinstance(patch.get("stones"), dict) and number.isdecimal() and int(number) < len(after["stones"])):
+            raise
+        field = f"stones.{after['stones'][int(number)]['id']}{dot}{rest}"
+        raise SceneError(f"{field}{str(error).removeprefix(error.field or '')}", field) from error
 
 
 def emitters_under(sky: object, emitters: list[Any]) -> list[Any]:

@@ -13,7 +13,7 @@ from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
 from culet.scene import Camera, Plane, Scene
 from culet.scene.emitters import PointLight
-from culet.scene.patch import patched
+from culet.scene.patch import read_patched
 from culet.scene.sky import DarkEnvironment, LightEnvironment
 from culet.scene.sky_seen import Surroundings, back_under, under
 from culet.simulation.lying import put_down
@@ -172,11 +172,11 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
     """Apply a merge patch to the scene as it is now, and to the camera that a reset goes back to."""
     before = session.scene
     document = before.model_dump(mode="json")
-    after = Scene.read(patched(document, patch))
+    after = read_patched(document, patch)
     home = session.home
     if "camera" in patch:
         at_home = document | {"camera": home.model_dump(mode="json")}
-        home = Scene.read(patched(at_home, patch)).camera
+        home = read_patched(at_home, patch).camera
     stage = stage_for(after, session, library)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
     session.change(put_down(stage, session.stage), home=home, sky=sky)
