@@ -177,3 +177,15 @@ def test_a_stone_out_of_sight_changes_nothing_that_is_seen(exact: Renderer) -> N
     near, both = (radiance(take(exact, stage(stones, **{**BARE, **VIEW}))) for stones in (TRIO, [*TRIO, far]))
     difference: Array = abs(near - both).max(axis=-1)
     assert (difference > 1e-3).mean() < 0.01
+
+
+def test_a_stone_of_twice_the_size_looks_the_same_from_twice_as_far(exact: Renderer) -> None:
+    """If it absorbs half as much on each R."""
+    pictures = []
+    for scale in (1.0, 2.0):
+        stone = {**TRIO[0], "position": [0, 0, 0], "scale": scale, "absorption": [c / scale for c in (0.1, 0.5, 2)]}
+        camera = {"position": [0, 1.8 * scale, 3 * scale], "target": [0, 0, 0]}
+        pictures.append(take(exact, stage([stone], **{**BARE, "environment": {"kind": "gradient"}, "camera": camera})))
+    small, large = map(radiance, pictures)
+    assert pictures[0].segments() == pytest.approx(pictures[1].segments(), rel=1e-4)
+    assert large == pytest.approx(small, abs=1e-9)
