@@ -54,6 +54,24 @@ def test_every_sky_is_as_described(exact: Renderer, environment: dict[str, Any])
     compare(exact, scene, None, 5e-12, 0)  # measured 1.1e-12, the studio; 5e-16 the others
 
 
+SUN = {"shape": "sun", "direction": [0.1, 0.6, 0.3], "colour": [1e-3, 2e-3, 3e-3], "half_angle_degrees": 4}
+BOX = {
+    "shape": "box", "direction": [0.5, 0.6, 0.3], "radiance": [1, 2, 3],
+    "half_width_degrees": 9, "half_height_degrees": 14,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ["constant", "half", "gradient", "studio", "dark", "light"])
+def test_lamps_and_suns_are_seen_before_any_sky_but_the_reports(exact: Renderer, kind: str) -> None:
+    """A sun's radiance is such that a surface which faces it gets pi times its colour, by quadrature."""
+    camera = {"position": [0, 0, 0], "target": [0.1, 0.6, 0.3], "fov_degrees": 90}
+    common = {"stones": [], "floor": {"kind": "none"}, "environment": {"kind": kind}, "camera": camera}
+    scene, bare = (legacy({**common, "emitters": emitters}) for emitters in ([SUN, BOX], []))
+    compare(exact, scene, None, 1e-9, 0)  # measured between 1e-10 and 1e-9: the quadrature
+    seen = radiance(take(exact, scene, None, SIZE)) - radiance(take(exact, bare, None, SIZE))
+    assert (seen.max() > 0.1) == (kind not in ("dark", "light"))
+
+
 @pytest.mark.parametrize(("floor", "walls"), ROOMS)
 def test_every_room_is_as_described(renderer: Renderer, exact: Renderer, floor: str, walls: str) -> None:
     """Without a stone: checkers, both lights, mirrors in mirrors."""
