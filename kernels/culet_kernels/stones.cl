@@ -221,8 +221,13 @@ static inline meetingL stone_entry(world_t world, vec3L origin, vec3L direction,
         passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach);
     const maskL near = mask & way.passes & (way.middle - group->reach < first.t);
     if (!any_lane(near)) continue;
-    for (int number = group->first; number < group->last; number++)
-      meet_stone(world, number, origin, direction, t_min, near, from, &first);
+    for (int number = group->first; number < group->last; number++) {
+      __constant const stone_t *stone = world.stones + number; // to ask here saves most of the calls
+      const passageL past =
+          passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach);
+      if (any_lane(near & past.passes & (past.middle - stone->reach < first.t)))
+        meet_stone(world, number, origin, direction, t_min, near, from, &first);
+    }
   }
   return first;
 #else
