@@ -47,7 +47,7 @@ def test_a_phone_shows_picture_status_and_a_folded_panel(view_of: ViewOf) -> Non
         heading.wait_for()
         assert box(heading)["height"] >= FINGER
         assert inside(box(heading))
-    folded, below = (box(page.get_by_role("button", name=name)) for name in ("Move", "Stone and surroundings"))
+    folded, below = (box(page.get_by_role("button", name=name)) for name in ("Move", "Stones"))
     assert below["y"] - folded["y"] - folded["height"] == pytest.approx(0, abs=2), "a folded folder takes no room"
     page.get_by_role("button", name="Stone and surroundings").tap()
     checkbox = page.get_by_role("checkbox", name="Mirror")
