@@ -89,7 +89,7 @@ def test_a_stone_is_added_removed_and_put_back(view: View) -> None:
     view.change_by("Delete")
     assert ids(view) == ["left", "right"]
     chosen(view, None)
-    view.change_by("z")
+    view.change_by("u")
     assert view.scene["stones"] == before
     assert view.problems == []
 

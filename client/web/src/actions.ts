@@ -71,7 +71,7 @@ export const ACTIONS: readonly Action[] = [
     repeats: false,
     effect: { kind: "stones", command: "remove" },
   },
-  letter("put_back_stone", "Z", "Take a removal back", { kind: "stones", command: "putBack" }),
+  letter("put_back_stone", "U", "Take a removal back", { kind: "stones", command: "putBack" }),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
 ];
 

@@ -42,8 +42,9 @@ export function framingPatch(scene: JsonObject | null, aspect: number): JsonObje
   };
 }
 
-/** Of a picture with room for the balls about all stones that the camera frames, width by height. */
+/** Of a picture with room for the balls about all stones, if there are several, that the camera frames: width by height. */
 function wantedAspect(scene: JsonObject | null, position: Vector, target: Vector): number {
+  if (stonesOf(scene).length < 2) return NARROWEST;
   const camera = part(scene, "camera");
   const forward = unit(minus(target, position));
   const right = unit(cross(forward, triple(camera.up) ?? [0, 1, 0]));
