@@ -264,7 +264,7 @@ async def test_frames_of_a_session_are_taken_without_a_gateway(tmp_path: Path) -
 def test_a_session_that_nobody_publishes_is_given_up(tmp_path: Path) -> None:
     endpoint = f"ipc://{tmp_path}/nobody"
     run = invoke("view", endpoint, "--session", "0" * 32, "--timeout", "0.2", "-o", tmp_path / "out")
-    assert "no frame of session" in refused(run)
+    assert "no frame of watch id" in refused(run)
     assert "32 hexadecimal digits" in refused(invoke("view", endpoint, "--session", "x", "-o", tmp_path / "out"))
 
 

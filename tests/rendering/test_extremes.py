@@ -15,7 +15,7 @@ from rendering.views import BARE, UPRIGHT, radiance, take
 from shared.extremes import GLOW, SCENES, THIN_STONES, looking
 
 SIZE = 64, 36
-EVEN: dict[str, Any] = {"environment": {"kind": "gradient", "bottom": [1, 1, 1], "top": [1, 1, 1]}, "lights": []}
+EVEN: dict[str, Any] = {"environment": {"kind": "gradient", "bottom": [1, 1, 1], "top": [1, 1, 1]}, "emitters": []}
 """As `GLOW`, in the same programs as the gradient that shows which way light came."""
 
 

@@ -77,7 +77,7 @@ def test_the_general_program_serves_until_there_is_room_again(monkeypatch: pytes
         asked.append(features)
         raise KernelCacheError("no space left")
 
-    monkeypatch.setattr(precompile, "precompile", refuse)
+    monkeypatch.setattr(program, "precompile", refuse)
     monkeypatch.setattr(program, "RETRY_SECONDS", 0)
     deadline = time.monotonic() + 30
     while len(asked) < 3:

@@ -155,6 +155,8 @@ class Motion:
         """Where the stones are at `now` (s, steady clock), or when the latest step was taken. From any thread."""
         instant, lease = self._instant, self._lease
         fraction = instant.fraction if now is None else instant.fraction_at(now, lease)
+        if instant.settled:  # nothing changes, not even the time shown: another time would be another picture
+            fraction = 1.0
         before, after = instant.previous.time, instant.state.time
         poses = between(instant.previous, instant.state, fraction)
         return Seen(
