@@ -29,7 +29,7 @@ def test_shift_and_drag_pushes_the_stone_and_leaves_the_camera(view: View) -> No
 
 
 def test_a_push_past_the_stone_does_nothing(view: View) -> None:
-    push_from(view, 4, 4)
+    push_from(view, 4, 108)
     view.settle_messages()
     assert [message["type"] for message in view.sent] == ["push"]
     assert not view.state["falling"]
