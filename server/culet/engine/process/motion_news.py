@@ -22,12 +22,14 @@ class _Told(NamedTuple):
     sequence: int = 0
     sleeping: frozenset[str] = frozenset()
     """Ids of stones."""
+    asleep: bool = False
+    """All sleep, and nothing moves any more: a step later than when the last one fell asleep."""
 
     @classmethod
     def of(cls, session: Session) -> Self:
         """As the session is now."""
         sleeping = frozenset(name for name, motion in session.motion.motions().items() if motion == "asleep")
-        return cls(session.shown.step, session.sequence, sleeping)
+        return cls(session.shown.step, session.sequence, sleeping, session.motion.asleep)
 
 
 class MotionNews:
@@ -56,7 +58,7 @@ class MotionNews:
             async with session.lock, session.motion.still():
                 before, now = self._told.get(session, _Told()), _Told.of(session)
                 self._told[session] = now
-                if now.sleeping != before.sleeping:
+                if (now.sleeping, now.asleep) != (before.sleeping, before.asleep):
                     self._tell(session.change_told(edited=False))
                 else:
                     self._tell(session.motion_told())
