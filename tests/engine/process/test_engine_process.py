@@ -152,6 +152,7 @@ async def test_a_falling_stone_moves_from_frame_to_frame_in_order(engine: Engine
                 told["type"] == "session_motion"
                 and told["session"] == peer.session
                 and told["moved"].get("step", 0) >= frames[-1].step
+                and "simulation" in told["moved"]  # a busy machine may have taken no step since it was told last
             )
         )
         assert "falling" not in motion["moved"], "which was told with the event"
