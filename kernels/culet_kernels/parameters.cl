@@ -91,4 +91,27 @@ typedef struct {
   real summed_share; // without their signs
 } chain_t;
 
+// Photons of one emitter, from one place or one direction, at one stone: spread evenly over the circle that holds the stone as the
+// emitter sees it.
+typedef struct {
+  real axis[3];      // the way of its light to the middle of the stone, of unit length
+  real across[2][3]; // two directions at right angles to it, and to each other
+  real distance;     // R from a point light to the middle of the stone; 0: light from infinity
+  real spread;       // of a point light: 1 - cosine of half the angle that the circle fills there
+  real radius;       // R of the circle
+  real centre[3];    // of the stone, in the frame
+  real flux[3];      // of each photon, by channel: R^2 times irradiance over pi
+  real growth;       // of a point light: 1 over the squared distance where its irradiance is what its colour says
+  real shift[2];     // of the sequence over the circle
+  int stone;
+} bundle_t;
+
+// Where the light maps of the room's surfaces lie: along each surface, and across it.
+typedef struct {
+  real along[MAX_SURFACES][3], across[MAX_SURFACES][3];
+  real centre[MAX_SURFACES][2]; // of the maps, in the frame
+  real half_size[2];            // of each level, R
+  int held;                     // surfaces that have maps, from the first on
+} map_frame_t;
+
 #endif

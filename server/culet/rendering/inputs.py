@@ -8,7 +8,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.rendering.chains import chain_table, chains_of_stones, is_spectral
+from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_spectral
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
 from culet.rendering.parameters import parameters
@@ -72,6 +72,13 @@ class Inputs:
             self._sample = sample
         struct, table, chains = self._uploaded
         return {"scene": struct, "stones": table, **self._fixed, "chains": chains, "panorama": self._panorama}
+
+    @property
+    def chain_steps(self) -> int:
+        """How often chains are followed for each ray: one for each index, or four neighbouring wavelengths at a time.
+        Known once `of_sample` was asked."""
+        groups = GROUPS if is_spectral(self._scene) else 1
+        return -(-int(self._struct["chains"]) // groups)
 
     def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401 - pyopencl has no types
         flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR

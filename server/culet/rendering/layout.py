@@ -74,14 +74,19 @@ class Argument:
 
 
 @cache
+def buffers() -> tuple[str, ...]:
+    """Names of the world's buffers, a kernel's first arguments."""
+    return tuple(name for _, name in _BUFFER.findall(_text("world.cl")))
+
+
+@cache
 def arguments() -> tuple[Argument, ...]:
     """Those of the render kernel, in its order: the world's buffers, then the others."""
-    buffers = [Argument(name, None) for _, name in _BUFFER.findall(_text("world.cl"))]
     (declared,) = _RENDER.findall(_text("render.cl"))
     scalars: dict[str, type[np.generic]] = {"double": np.float64, **_WHOLE}
     others = [declaration.split() for declaration in declared.split(",")]
     return (
-        *buffers,
+        *(Argument(name, None) for name in buffers()),
         *(Argument(words[-1].lstrip("*"), None if "*" in words[-1] else scalars[words[0]]) for words in others),
     )
 

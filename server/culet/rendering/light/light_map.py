@@ -38,7 +38,7 @@ class Surface:
 
     def coordinates(self, points: Array) -> Array:
         """(..., 2) u and v of points (..., 3)."""
-        return points @ np.array([self.along, self.across]).T
+        return np.asarray(points @ np.array([self.along, self.across]).T)
 
     def point(self, u: float, v: float) -> Array:
         """(3,) where u and v are."""
