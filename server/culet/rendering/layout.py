@@ -37,27 +37,34 @@ def constants(name: str) -> Mapping[str, int]:
     return {constant: int(value) for constant, value in _CONSTANT.findall(_text(name))}
 
 
-def struct(name: str, real: Real) -> np.dtype[np.void]:
-    """A struct of parameters.cl for kernels of that precision, aligned as C does."""
-    return _struct(name, np.dtype(real).char)
+def struct(name: str, real: Real, file: str = "parameters.cl") -> np.dtype[np.void]:
+    """A struct of a source file for kernels of that precision, aligned as C does."""
+    return _struct(name, np.dtype(real).char, file)
 
 
 @cache
-def _struct(name: str, real: str) -> np.dtype[np.void]:
-    members = next(members for members, found in _STRUCT.findall(_text("parameters.cl")) if found == name)
-    types: dict[str, Any] = {"real": real, "double": np.float64, **_WHOLE}
+def _struct(name: str, real: str, file: str) -> np.dtype[np.void]:
+    members = next(members for members, found in _STRUCT.findall(_text(file)) if found == name)
+    types: dict[str, Any] = {"real": real, "double": np.float64, "float": np.float32, **_WHOLE}
     fields: list[tuple[str, Any, tuple[int, ...]]] = []
     for declaration in filter(None, (part.strip() for part in members.split(";"))):
         kind, _, names = declaration.partition(" ")
         for field, sizes in _MEMBER.findall(names):
-            fields.append((field, types[kind], tuple(_size(size) for size in re.findall(r"\[([\w +]+)\]", sizes))))
+            shape = tuple(_size(size, file) for size in re.findall(r"\[([\w +]+)\]", sizes))
+            fields.append((field, types[kind], shape))
     return np.dtype(fields, align=True)
 
 
-def _size(written: str) -> int:
-    """Of an array: a sum of numbers and names."""
+def _size(written: str, file: str) -> int:
+    """Of an array: a sum of numbers, and of names that are defined in the file or in what it includes."""
     terms = [term.strip() for term in written.split("+")]
-    return sum(int(term) if term.isdigit() else constants("parameters.cl")[term] for term in terms)
+    return sum(int(term) if term.isdigit() else _known(file)[term] for term in terms)
+
+
+@cache
+def _known(file: str) -> Mapping[str, int]:
+    """Whole numbers that a source file and those that it includes define."""
+    return {constant: int(value) for constant, value in _CONSTANT.findall(_COMMENT.sub("", culet_kernels.source(file)))}
 
 
 @dataclass(frozen=True)

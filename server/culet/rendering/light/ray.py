@@ -1,23 +1,26 @@
-"""Light of one direction, or from one point."""
+"""Light of one direction, or of one point: what shadows and caustics are made of."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-Triple = tuple[float, float, float]
-
 
 @dataclass(frozen=True)
 class Ray:
-    """Light that comes from one direction of the sky, or from one point of the room."""
+    """A lamp is several of them, which share its light."""
 
-    towards: Triple | None
-    """Of unit length, the way to where it comes from; None: from a point."""
-    position: Triple | None
-    """Of the point, R; None: from infinity."""
-    colour: Triple
-    """Irradiance over pi of what faces it, by channel."""
-    follows: bool
-    """Whether it is followed through the stones; else it only throws a shadow."""
-    emitter: int
-    """Its number among the sources."""
+    colour: tuple[float, float, float]
+    """Irradiance over pi of a surface that faces it; of a point, at the middle of the stones."""
+    towards: tuple[float, float, float] | None = None
+    """Unit vector to a light that is infinitely far away; None of a point."""
+    position: tuple[float, float, float] | None = None
+    """Of a point, in the world, R."""
+    follows: bool = True
+    """Into the stones and out again; else it only makes shadows."""
+    emitter: int = 0
+    """Whose it is: rays of one emitter share its light."""
+
+    @property
+    def brightness(self) -> float:
+        """Mean of the channels."""
+        return sum(self.colour) / 3

@@ -1,0 +1,422 @@
+// The light that convex stones throw on floor and walls, by exact beams: all facets are planes, so light of one direction
+// goes through a stone in beams with flat sides, each way through it a polygon of even light where it lands (Heckbert &
+// Hanrahan, Beam tracing polygonal objects, SIGGRAPH 1984; Watt, Light-water interaction using backward beam tracing, 1990).
+//
+// A work-item takes one (facet, light, index of refraction) after another.
+#include "light_shadow.cl"
+
+typedef struct {
+  real d[3];
+  real flux;
+  int count, facet;
+  corner_t corner[CORNERS];
+} beam_t;
+
+// A polygon on the plane in which it is cut.
+typedef struct {
+  real x[CORNERS + 2], y[CORNERS + 2];
+#if DIVERGING
+  real dx[CORNERS + 2], dy[CORNERS + 2], dz[CORNERS + 2], a[CORNERS + 2], b[CORNERS + 2];
+#endif
+} flat_t;
+
+// Fresnel's equations for unpolarised light, the mean of both polarisations (Born & Wolf, Principles of Optics, 1.5.2).
+static inline real reflected_part(real cos_a, real cos_s, real eta) {
+  const real r_perpendicular = (cos_a - eta * cos_s) / (cos_a + eta * cos_s);
+  const real r_parallel = (eta * cos_a - cos_s) / (eta * cos_a + cos_s);
+  return (real)0.5 * (r_perpendicular * r_perpendicular + r_parallel * r_parallel);
+}
+
+#if DIVERGING
+#define LEAST_SINE                                                                                                     \
+  ((real)1e-6)             // squared cosine in air at which a corner's ray, past the critical angle, leaves instead
+#define STEEP ((real)1e-3) // cosine to a facet below which a corner's ray meets it too far away
+// Refraction outward.
+static inline void refract_out(const real *d, const real *normal, real eta, real *out) {
+  real unit[3] = {d[0], d[1], d[2]};
+  normalise_3(unit);
+  const real cos_s = dot_3(unit, normal), cos_a = sqrt(fmax(1 - eta * eta * (1 - cos_s * cos_s), LEAST_SINE));
+  for (int k = 0; k < 3; k++) out[k] = eta * unit[k] + (cos_a - eta * cos_s) * normal[k];
+}
+#endif
+
+static inline void copy_point(flat_t *to, int at, const flat_t *from, int i) {
+  to->x[at] = from->x[i];
+  to->y[at] = from->y[i];
+#if DIVERGING
+  to->dx[at] = from->dx[i];
+  to->dy[at] = from->dy[i];
+  to->dz[at] = from->dz[i];
+  to->a[at] = from->a[i];
+  to->b[at] = from->b[i];
+#endif
+}
+
+static inline void mix_points(flat_t *to, int at, const flat_t *from, int i, int j, real part) {
+  to->x[at] = mix_of(from->x[i], from->x[j], part);
+  to->y[at] = mix_of(from->y[i], from->y[j], part);
+#if DIVERGING
+  real d[3] = {mix_of(from->dx[i], from->dx[j], part), mix_of(from->dy[i], from->dy[j], part),
+               mix_of(from->dz[i], from->dz[j], part)};
+  normalise_3(d);
+  to->dx[at] = d[0];
+  to->dy[at] = d[1];
+  to->dz[at] = d[2];
+  to->a[at] = mix_of(from->a[i], from->a[j], part);
+  to->b[at] = mix_of(from->b[i], from->b[j], part);
+#endif
+}
+
+static inline real flat_area(const flat_t *flat, int count) {
+#if DIVERGING
+  return fabs(polygon_area(flat->a, flat->b, count));
+#else
+  return fabs(polygon_area(flat->x, flat->y, count));
+#endif
+}
+
+// The two axes along which a plane is seen best.
+static inline void axes_of(const real *normal, int *k, int *u, int *v) {
+  const real x = fabs(normal[0]), y = fabs(normal[1]), z = fabs(normal[2]);
+  *k = z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+  *u = *k == 0 ? 1 : *k == 1 ? 2 : 0;
+  *v = *k == 0 ? 2 : *k == 1 ? 0 : 1;
+}
+
+// Light that leaves the stone.
+static inline void leave(const job_t *job, tally_t *tally, const corner_t *corners, int count, const real *d, real flux,
+                         int doubtful) {
+  land(job->room, job->light_map, job->shade_map, tally, job->light, corners, count, d, flux, job->colour, job->weight,
+       job->power, doubtful, LIGHT_ITSELF);
+}
+
+// One beam inside the stone: parts of it meet facets, where they leave, and are reflected as beams of their own.
+static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, int *top) {
+  const beam_t beam = stack[--*top];
+  const real d0 = beam.d[0], d1 = beam.d[1], d2 = beam.d[2], eta = job->eta;
+  const int facets = job->solid->facets, padded = job->solid->padded, count = beam.count;
+  __global const real *nx = job->facets.planes + job->solid->first_plane, *ny = nx + padded, *nz = ny + padded,
+                      *offset = nz + padded;
+  tally->beams++;
+  // The facet under the middle of the beam.
+  real c0 = 0, c1 = 0, c2 = 0;
+  for (int i = 0; i < count; i++) {
+    c0 += beam.corner[i].p[0];
+    c1 += beam.corner[i].p[1];
+    c2 += beam.corner[i].p[2];
+  }
+  c0 /= count;
+  c1 /= count;
+  c2 /= count;
+  real rate[MOST_FACETS], best = 0;
+  for (int f = 0; f < padded; f++) {
+    const real speed = d0 * nx[f] + d1 * ny[f] + d2 * nz[f], gap = offset[f] - (c0 * nx[f] + c1 * ny[f] + c2 * nz[f]);
+    const real r = speed / fmax(gap, (real)1e-7);
+    rate[f] = f == beam.facet ? (real)0 : r;
+    best = fmax(best, rate[f]);
+  }
+  int first = 0;
+  while (first < facets && rate[first] != best) first++;
+  if (first >= facets || !(best > 0)) {
+    tally->unresolved += job->weight * beam.flux;
+    return;
+  }
+  flat_t flat[2];
+#if DIVERGING
+  real area = 0;
+  for (int i = 1; i + 1 < count; i++)
+    area += (beam.corner[i].a - beam.corner[0].a) * (beam.corner[i + 1].b - beam.corner[0].b) -
+            (beam.corner[i + 1].a - beam.corner[0].a) * (beam.corner[i].b - beam.corner[0].b);
+  area = (real)0.5 * fabs(area);
+  int k, u, v;
+#else
+  // The beam seen along its direction, without the direction's largest component.
+  int k, u, v;
+  axes_of(beam.d, &k, &u, &v);
+  const real ru = beam.d[u] / beam.d[k], rv = beam.d[v] / beam.d[k], turn = beam.d[k] > 0 ? 1 : -1;
+  flat_t seen;
+  for (int i = 0; i < count; i++) {
+    seen.x[i] = beam.corner[i].p[u] - ru * beam.corner[i].p[k];
+    seen.y[i] = beam.corner[i].p[v] - rv * beam.corner[i].p[k];
+  }
+  const real area = flat_area(&seen, count);
+#endif
+  if (!(area > 0)) {
+    tally->unresolved += job->weight * beam.flux;
+    return;
+  }
+  const real per_area = beam.flux / area;
+  ulong queued[MOST_FACETS / 64 + 1];
+  for (int i = 0; i <= MOST_FACETS / 64; i++) queued[i] = 0;
+  int queue[MOST_FACETS], head = 0, tail = 0;
+  queued[first >> 6] |= 1ul << (first & 63);
+  queue[tail++] = first;
+  real given = 0;
+  while (head < tail) {
+    const int f = queue[head++];
+    const real normal[3] = {nx[f], ny[f], nz[f]}, speed = normal[0] * d0 + normal[1] * d1 + normal[2] * d2;
+    int left = count, side = 0, gone = 0;
+#if DIVERGING
+    if (speed <= STEEP || f == beam.facet) continue;
+    axes_of(normal, &k, &u, &v);
+    const real turn = normal[k] > 0 ? 1 : -1;
+    for (int i = 0; i < count; i++) {
+      const real *p = beam.corner[i].p, *d = beam.corner[i].d;
+      const real t = (offset[f] - dot_3(normal, p)) / fmax(dot_3(normal, d), STEEP);
+      flat[0].x[i] = p[u] + t * d[u];
+      flat[0].y[i] = p[v] + t * d[v];
+      flat[0].dx[i] = d[0];
+      flat[0].dy[i] = d[1];
+      flat[0].dz[i] = d[2];
+      flat[0].a[i] = beam.corner[i].a;
+      flat[0].b[i] = beam.corner[i].b;
+    }
+#define SEEN_X(vertex) vertex[u]
+#define SEEN_Y(vertex) vertex[v]
+#else
+    if (speed <= (real)1e-7 || f == beam.facet) continue;
+    for (int i = 0; i < count; i++) {
+      flat[0].x[i] = seen.x[i];
+      flat[0].y[i] = seen.y[i];
+    }
+#define SEEN_X(vertex) (vertex[u] - ru * vertex[k])
+#define SEEN_Y(vertex) (vertex[v] - rv * vertex[k])
+#endif
+    const int begin = job->facets.start[job->solid->first_facet + f],
+              end = job->facets.start[job->solid->first_facet + f + 1];
+    __global const real *vertex = job->facets.vertices + 3 * job->facets.corners[end - 1];
+    real x = SEEN_X(vertex), y = SEEN_Y(vertex);
+    for (int e = begin, before = end - 1; e < end; before = e++) {
+      vertex = job->facets.vertices + 3 * job->facets.corners[e];
+      const real next_x = SEEN_X(vertex), next_y = SEEN_Y(vertex), along_x = (next_x - x) * turn,
+                 along_y = (next_y - y) * turn;
+      real inside[CORNERS + 2];
+      int out = 0;
+      for (int i = 0; i < left; i++) {
+        inside[i] = along_x * (flat[side].y[i] - y) - along_y * (flat[side].x[i] - x);
+        out += inside[i] < 0;
+      }
+      x = next_x;
+      y = next_y;
+      if (!out) continue;
+      const int beyond = job->facets.across[before];
+      if (!(queued[beyond >> 6] >> (beyond & 63) & 1)) {
+        queued[beyond >> 6] |= 1ul << (beyond & 63);
+        queue[tail++] = beyond;
+      }
+      if (out == left) {
+        gone = 1;
+        break;
+      }
+      int kept = 0;
+      for (int i = 0; i < left; i++) {
+        const int next = i + 1 == left ? 0 : i + 1;
+        if (inside[i] >= 0) copy_point(&flat[1 - side], kept++, &flat[side], i);
+        if ((inside[i] < 0) != (inside[next] < 0))
+          mix_points(&flat[1 - side], kept++, &flat[side], i, next, inside[i] / (inside[i] - inside[next]));
+      }
+      side = 1 - side;
+      left = min(kept, CORNERS);
+    }
+    if (gone || left < 3) continue;
+    const real part = flat_area(&flat[side], left);
+    if (!(part > 0)) continue;
+    const real arriving = per_area * part;
+    given += arriving;
+#if DIVERGING
+    real d[3] = {0, 0, 0};
+    for (int i = 0; i < left; i++) {
+      d[0] += flat[side].dx[i];
+      d[1] += flat[side].dy[i];
+      d[2] += flat[side].dz[i];
+    }
+    normalise_3(d);
+    const real cos_s = fmin(dot_3(normal, d), (real)1);
+#else
+    const real *d = beam.d;
+    const real cos_s = fmin(speed, (real)1);
+#endif
+    real flux = arriving;
+    if (job->absorption > 0) { // along the ray in the middle
+      real middle[3] = {0, 0, 0};
+      for (int i = 0; i < left; i++) {
+        middle[u] += flat[side].x[i] / left;
+        middle[v] += flat[side].y[i] / left;
+      }
+      const real from[3] = {nx[beam.facet], ny[beam.facet], nz[beam.facet]};
+#if DIVERGING
+      middle[k] = (offset[f] - normal[u] * middle[u] - normal[v] * middle[v]) / normal[k];
+#endif
+      // Of the line through the middle: how far it is from one facet's plane to the other's.
+      const real far = (offset[f] - dot_3(normal, middle)) / dot_3(normal, d),
+                 near = (offset[beam.facet] - dot_3(from, middle)) / fmin(dot_3(from, d), (real)-1e-7);
+      flux *= exp(-job->absorption * fmax(far - near, (real)0));
+      tally->absorbed += job->weight * (arriving - flux);
+    }
+    const real squared = 1 - eta * eta * (1 - cos_s * cos_s);
+    const int exits = squared > 0;
+    real cos_a = 0, reflected = 1;
+    if (exits) {
+      cos_a = sqrt(squared);
+      reflected = reflected_part(cos_a, cos_s, eta);
+    }
+    const real rest = reflected * flux;
+    const int goes = rest >= job->cutoff && *top < BEAMS;
+    if (!goes) tally->cut += job->weight * rest;
+    if (!exits && !goes) continue;
+    corner_t corner[CORNERS];
+    for (int i = 0; i < left; i++) {
+#if DIVERGING
+      corner[i].p[u] = flat[side].x[i];
+      corner[i].p[v] = flat[side].y[i];
+      corner[i].p[k] = (offset[f] - normal[u] * flat[side].x[i] - normal[v] * flat[side].y[i]) / normal[k];
+      corner[i].a = flat[side].a[i];
+      corner[i].b = flat[side].b[i];
+#else
+      const real height = (offset[f] - normal[u] * flat[side].x[i] - normal[v] * flat[side].y[i]) / speed;
+      corner[i].p[k] = d[k] * height;
+      corner[i].p[u] = flat[side].x[i] + d[u] * height;
+      corner[i].p[v] = flat[side].y[i] + d[v] * height;
+#endif
+    }
+    if (exits) {
+      const real g = cos_a - eta * cos_s,
+                 out[3] = {eta * d[0] + g * normal[0], eta * d[1] + g * normal[1], eta * d[2] + g * normal[2]};
+#if DIVERGING
+      for (int i = 0; i < left; i++) {
+        const real own[3] = {flat[side].dx[i], flat[side].dy[i], flat[side].dz[i]};
+        refract_out(own, normal, eta, corner[i].d);
+      }
+#endif
+      leave(job, tally, corner, left, out, (1 - reflected) * flux, beam.flux < 3 * job->cutoff);
+    }
+    if (goes) {
+      beam_t *next = stack + (*top)++;
+      next->count = left;
+      next->facet = f;
+      next->flux = rest;
+      for (int i = 0; i < 3; i++) next->d[i] = d[i] - 2 * cos_s * normal[i];
+      normalise_3(next->d);
+      for (int i = 0; i < left; i++) {
+#if DIVERGING
+        const real own[3] = {flat[side].dx[i], flat[side].dy[i], flat[side].dz[i]}, twice = 2 * dot_3(own, normal);
+        for (int j = 0; j < 3; j++) corner[i].d[j] = own[j] - twice * normal[j];
+#endif
+        next->corner[i] = corner[i];
+      }
+    }
+  }
+  tally->unresolved += job->weight * (beam.flux - given);
+}
+
+// Light that comes to a convex part of a facet from outside.
+static inline void enter(const job_t *job, tally_t *tally, int facet, const corner_t *part, int count) {
+  beam_t stack[BEAMS];
+  int top = 0;
+  const real normal[3] = {plane_of(job, 0, facet), plane_of(job, 1, facet), plane_of(job, 2, facet)}, eta = job->eta;
+  beam_t *beam = stack;
+  corner_t mirrored[CORNERS];
+  real d[3] = {0, 0, 0};
+#if DIVERGING
+  int k, u, v;
+  axes_of(normal, &k, &u, &v);
+  real per_area = 0;
+  for (int i = 0; i < count; i++) {
+    corner_t *corner = beam->corner + i;
+    real way[3];
+    for (int j = 0; j < 3; j++) way[j] = part[i].p[j] - job->light->place[j];
+    const real squared = fmax(dot_3(way, way), (real)1e-12);
+    normalise_3(way);
+    const real cos_a = fmax(-dot_3(way, normal), GRAZING), cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta));
+    per_area += job->light->squared / squared * cos_a / count;
+    mirrored[i] = part[i];
+    for (int j = 0; j < 3; j++) {
+      d[j] += way[j];
+      corner->p[j] = part[i].p[j];
+      corner->d[j] = way[j] / eta + (cos_a / eta - cos_s) * normal[j];
+      mirrored[i].d[j] = way[j] + 2 * cos_a * normal[j];
+    }
+    mirrored[i].a = corner->a = part[i].p[u];
+    mirrored[i].b = corner->b = part[i].p[v];
+  }
+  normalise_3(d);
+  const real cos_a = fmax(-dot_3(d, normal), GRAZING), area = (real)0.5 * measure(beam->corner, count);
+  const real flux = per_area / fabs(normal[k]) * area;
+#else
+  for (int i = 0; i < count; i++) beam->corner[i] = mirrored[i] = part[i];
+  for (int j = 0; j < 3; j++) d[j] = -job->light->place[j];
+  const real cos_a = -dot_3(d, normal), area = (real)0.5 * measure(part, count), flux = cos_a * area;
+#endif
+  if (!(flux > 0)) return;
+  const real cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta)), reflected = reflected_part(cos_a, cos_s, eta);
+  real out[3];
+  for (int j = 0; j < 3; j++) out[j] = d[j] + 2 * cos_a * normal[j];
+  tally->incident += job->weight * flux;
+  leave(job, tally, mirrored, count, out, reflected * flux, 0);
+  for (int j = 0; j < 3; j++) beam->d[j] = d[j] / eta + (cos_a / eta - cos_s) * normal[j];
+  beam->flux = (1 - reflected) * flux;
+  beam->facet = facet;
+  beam->count = count;
+  if (beam->flux < job->cutoff) {
+    tally->cut += job->weight * beam->flux;
+    return;
+  }
+  for (top = 1; top > 0;) split_beam(job, tally, stack, &top);
+}
+
+#define GEOMETRY_BUFFERS                                                                                               \
+  __constant const throwing_t *room, __constant const light_t *lights, __constant const solid_t *solids,               \
+      __global const real *planes, __global const real *vertices, __global const int *start,                           \
+      __global const int *corners, __global const int *across, __global const int4 *entries,                           \
+      __global const chain_t *chains, __global float4 *light_maps, __global float *shade_maps, __global int *next,     \
+      __global tally_t *tallies
+#define GEOMETRY_OF {planes, vertices, start, corners, across}
+
+// Jobs are numbered: of each entry the lights, of each light the bands. `next` counts those that are dealt out; a launch
+// deals out those before `end`.
+__kernel void throw_light(GEOMETRY_BUFFERS, int end) {
+  tally_t tally = tallies[get_global_id(0)];
+  const facets_t facets = GEOMETRY_OF;
+  const size_t plane = (size_t)MAP_SIZE * MAP_STRIDE * MAP_LEVELS * room->maps;
+  __global float4 *light_map = light_maps + get_global_id(0) * plane;
+  __global float *shade_map = shade_maps + get_global_id(0) * plane * room->points;
+  for (;;) {
+    const int number = atomic_inc(next);
+    if (number >= end) break;
+    const int per_entry = room->lights * room->bands, entry = number / per_entry, rest = number - entry * per_entry;
+    __constant const light_t *light = lights + rest / room->bands;
+    __constant const solid_t *solid = solids + entries[entry].x;
+    if (!light->follows) continue;
+    const job_t job =
+        job_of(room, light, solid, facets, chains + solid->first_chain + rest % room->bands, light_map, shade_map);
+    const int facet = entries[entry].y;
+    if (!is_lit(&job, facet)) continue;
+    corner_t part[CORNERS];
+    const int count = facet_in_room(&job, facet, entries[entry].z, entries[entry].w, part);
+    if (count < 3) continue;
+    enter(&job, &tally, facet, part, count);
+  }
+  tallies[get_global_id(0)] = tally;
+}
+
+// Shadows are numbered: of each stone the lights.
+__kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
+  const facets_t facets = GEOMETRY_OF;
+  const size_t plane = (size_t)MAP_SIZE * MAP_STRIDE * MAP_LEVELS * room->maps;
+  __global float4 *light_map = light_maps + get_global_id(0) * plane;
+  __global float *shade_map = shade_maps + get_global_id(0) * plane * room->points;
+  for (;;) {
+    const int number = atomic_inc(next);
+    if (number >= end) break;
+    const int stone = number / room->lights;
+    const job_t job = job_of(room, lights + number % room->lights, solids + stone, facets, 0, light_map, shade_map);
+    if (!job.solid->pierces && shade_outline(&job)) continue;
+    for (int entry = job.solid->first_entry; entry < job.solid->last_entry; entry++) {
+      const int facet = entries[entry].y;
+      if (!is_lit(&job, facet)) continue;
+      corner_t part[CORNERS];
+      const int count = facet_in_room(&job, facet, entries[entry].z, entries[entry].w, part);
+      if (count > 2) shade(&job, part, count);
+    }
+  }
+}

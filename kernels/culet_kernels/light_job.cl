@@ -1,0 +1,86 @@
+// What one light of one index of refraction does at one stone: a job.
+#ifndef CULET_LIGHT_JOB
+#define CULET_LIGHT_JOB
+#include "landing.cl"
+
+// What a job needs wherever light goes.
+typedef struct {
+  __constant const throwing_t *room;
+  __constant const light_t *light;
+  __constant const solid_t *solid;
+  facets_t facets;
+  __global float4 *light_map;
+  __global float *shade_map;
+  float4 colour;
+  real weight;     // mean of the channels of its colour,
+  real power;      // and of their squares
+  real eta;
+  real absorption; // per R
+  real cutoff;     // flux, R^2
+} job_t;
+
+static inline real plane_of(const job_t *job, int k, int facet) {
+  return job->facets.planes[job->solid->first_plane + k * job->solid->padded + facet];
+}
+
+// The part of a facet that lies before those surfaces of the room that hide it from its light. `corners` of a facet are its
+// first, and those from `first` on.
+static inline int facet_in_room(const job_t *job, int facet, int first, int corners, corner_t *part) {
+  corner_t cut[2][CLIPPED];
+  const int begin = job->facets.start[job->solid->first_facet + facet];
+  int count = min(corners, CORNERS), side = 0;
+  for (int i = 0; i < count; i++) {
+    const int at = begin + (i == 0 ? 0 : first + i - 1);
+    for (int k = 0; k < 3; k++) cut[0][i].p[k] = job->facets.vertices[3 * job->facets.corners[at] + k];
+  }
+  if (job->solid->pierces)
+    for (int s = 0; s < MAP_SURFACES && count > 2; s++) {
+      if (!job->room->present[s]) continue;
+      real inside[CLIPPED];
+      int out = 0;
+      for (int i = 0; i < count; i++) {
+        real way[3];
+        for (int k = 0; k < 3; k++)
+          way[k] = DIVERGING ? cut[side][i].p[k] - job->light->place[k] : -job->light->place[k];
+        inside[i] = speed_to(job->room, s, way) > 0 ? gap_to(job->room, s, cut[side][i].p) : (real)1;
+        out += inside[i] < 0;
+      }
+      if (!out) continue;
+      count = clip_corners(cut[side], count, inside, cut[1 - side], CORNERS);
+      side = 1 - side;
+    }
+  for (int i = 0; i < count; i++) part[i] = cut[side][i];
+  return count;
+}
+
+// Whether a facet is lit, at all.
+static inline int is_lit(const job_t *job, int facet) {
+  real towards = 0;
+  for (int k = 0; k < 3; k++) towards += plane_of(job, k, facet) * job->light->place[k];
+  return DIVERGING ? towards > plane_of(job, 3, facet) : towards > 0;
+}
+
+static inline job_t job_of(__constant const throwing_t *room, __constant const light_t *light,
+                           __constant const solid_t *solid, facets_t facets, __global const chain_t *chain,
+                           __global float4 *light_map, __global float *shade_map) {
+  job_t job;
+  job.room = room;
+  job.light = light;
+  job.solid = solid;
+  job.facets = facets;
+  job.light_map = light_map;
+  job.shade_map = shade_map;
+  job.colour = (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
+  job.weight = job.power = 1;
+  if (chain) {
+    job.colour *= (float4)((float)chain->share[0], (float)chain->share[1], (float)chain->share[2], 0);
+    job.eta = chain->eta;
+    job.absorption = chain->absorption;
+    job.weight = (fabs(job.colour.x) + fabs(job.colour.y) + fabs(job.colour.z)) / 3;
+    job.power = dot(job.colour, job.colour) / 3;
+    job.cutoff = room->cutoff * light->dimness;
+  }
+  return job;
+}
+
+#endif

@@ -1,0 +1,302 @@
+"""Light maps by exact beams: each way of light through a convex stone is a polygon of even light where it lands."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+from numpy.typing import NDArray
+
+from culet.rendering.build import build
+from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_coloured, is_spectral
+from culet.rendering.device import Device, Real
+from culet.rendering.layout import constants, struct
+from culet.rendering.light.light_map import LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
+from culet.rendering.light.ray import Ray
+from culet.rendering.light.solids import Solids, takes_beams
+from culet.rendering.placed_stone import PlacedStone, placed_stones
+from culet.scene.model import Scene
+from culet.stage import Stage
+
+STRIDE = constants("raster.cl")["MAP_STRIDE"]
+PIECE = 0.06
+"""Diameter of the parts in which light from a point enters a stone, in distances from the point, at most. Of the light
+of a point 8 R away 0.3 % falls between facets then."""
+FIRST_JOBS = 64
+"""Of a launch, while nobody knows how long they take."""
+ALMOST = 1 - 2**-20
+"""The part that is done when the light is thrown, but not summed."""
+
+
+@dataclass(frozen=True)
+class Tally:
+    """What was counted, as `tally_t` has it: fluxes in R^2 times irradiance over pi, mean of the channels."""
+
+    incident: float
+    landed: float
+    """On maps."""
+    outside: float
+    """On surfaces that have a map, beyond it."""
+    away: float
+    """Past the room's surfaces, or on one that has no map."""
+    behind: float
+    """Out of stones beyond a surface of the room that they reach through."""
+    absorbed: float
+    cut: float
+    unresolved: float
+    doubt: float
+    beams: float
+
+
+class Beams:
+    """Makes light maps of convex stones on one device; one thread at a time. Its buffers are kept for the next maps."""
+
+    def __init__(self, device: Device, real: Real = np.float32, *, items: int | None = None) -> None:
+        """`items`: work-items at a time, a core each."""
+        self.device, self.real = device, real
+        self.items = items or device.units
+        self.tally: Tally | None = None
+        """Of the last pass."""
+        self._programs: dict[tuple[int, int], Any] = {}
+        self._scratch: dict[tuple[int, int], tuple[Any, Any]] = {}
+        self._clean = True
+
+    def make(
+        self,
+        stage: Stage,
+        rays: Sequence[Ray],
+        frame: MapFrame,
+        target: Any,  # noqa: ANN401 - pyopencl has no types
+        *,
+        cutoff: float,
+        number: int = 0,
+        keep: float = 0.0,
+        gain: float = 1.0,
+        piece: float = PIECE,
+    ) -> Figures:
+        """See `pieces`."""
+        found = self.pieces(
+            stage, rays, frame, target, cutoff=cutoff, seconds=math.inf, number=number, keep=keep, gain=gain,
+            piece=piece,
+        )  # fmt: skip
+        try:
+            while True:
+                next(found)
+        except StopIteration as end:
+            figures: Figures = end.value
+            return figures
+
+    def pieces(
+        self,
+        stage: Stage,
+        rays: Sequence[Ray],
+        frame: MapFrame,
+        target: Any,  # noqa: ANN401
+        *,
+        cutoff: float,
+        seconds: float,
+        number: int = 0,
+        keep: float = 0.0,
+        gain: float = 1.0,
+        piece: float = PIECE,
+    ) -> Generator[float, None, Figures]:
+        """Throw the light of these rays: the target, of `frame.nbytes`, becomes `keep` times what it was, plus `gain`
+        times what shadows and caustics add to each texel's radiance of a white surface. In launches of about so many
+        seconds; yields the part that is done, and returns the figures.
+
+        `cutoff`: flux of a beam that ends, in R^2 of the brightest emitter's irradiance. `number` of the pass chooses
+        the wavelengths of a spectral scene. Stones that take no beams are left out: see `takes_beams`.
+        """
+        began, queue = time.perf_counter(), self.device.queue
+        stones = [stone for stone in placed_stones(stage) if takes_beams(stone.shape)]
+        points = [ray for ray in rays if ray.position is not None]
+        parallel = [ray for ray in rays if ray.position is None]
+        light_maps, shade_maps = self._buffers(frame.held, len(points))
+        chains, bands, first_chains = _chains(stage.scene, stones, number, self.real)
+        origin = np.array(frame.middle)
+        room = _room(stage.scene, frame, origin, self.real)
+        room["cutoff"], room["piece"] = cutoff, piece
+        room["stones"], room["bands"], room["points"] = len(stones), bands, len(points)
+        solids = Solids.of(stones, first_chains, origin, room["surface"][room["present"] != 0].astype(float), self.real)
+        room["entries"] = int(solids.solids["last_entry"].max(initial=0))
+        arrays = [self._upload(array) for array in (
+            solids.planes, solids.vertices, solids.start, solids.corners, solids.across, solids.entries, chains,
+        )]  # fmt: skip
+        solid_buffer = self._upload(solids.solids)
+        tally_type = struct("tally_t", self.real, "light_beam.cl")
+        tallies = np.zeros(self.items, tally_type)
+        tally_buffer, next_buffer = self._upload(tallies), self._upload(np.zeros(1, np.int32))
+        brightest = _brightness(rays)
+        point_lights = self._upload(_lights(points, brightest, origin, self.real))
+        self._clean = False
+        for diverging, group in enumerate((parallel, points)):
+            if not group or not stones:
+                continue
+            room["lights"] = len(group)
+            light_buffer = point_lights if diverging else self._upload(_lights(group, brightest, origin, self.real))
+            program = self._program(diverging, solids.most_facets)
+            buffers = (
+                self._upload(room), light_buffer, solid_buffer, *arrays, light_maps, shade_maps, next_buffer,
+                tally_buffer,
+            )  # fmt: skip
+            self._launch(program.cast_shadows, buffers, 0, len(group) * len(stones))
+            followed = any(ray.follows for ray in group)
+            jobs = int(room["entries"]) * len(group) * bands if followed else 0
+            done, chunk = 0, FIRST_JOBS if math.isfinite(seconds) else jobs
+            while done < jobs:
+                end, start = min(done + chunk, jobs), time.perf_counter()
+                self._launch(program.throw_light, buffers, done, end)
+                if math.isfinite(seconds):
+                    queue.finish()
+                    pace = max(time.perf_counter() - start, 1e-6) / (end - done)
+                    chunk = max(1, min(2 * chunk, int(seconds / pace)))
+                    yield ALMOST * end / jobs
+                done = end
+        self._sum(self._upload(room), point_lights, (light_maps, shade_maps), target, keep, gain)
+        cl.enqueue_copy(queue, tallies, tally_buffer)
+        self._clean = True
+        self.tally = Tally(**{name: float(tallies[name].sum()) for name in tally_type.names or ()})
+        return self._figures(self.tally, frame, cutoff, time.perf_counter() - began)
+
+    def _figures(self, tally: Tally, frame: MapFrame, cutoff: float, seconds: float) -> Figures:
+        area = max(1, len(frame.matte)) * (2 * frame.halves[0]) ** 2
+        return Figures(
+            incident=tally.incident,
+            cut=tally.cut,
+            unresolved=max(tally.unresolved, 0.0),
+            outside=tally.outside,
+            rmse=math.sqrt(tally.doubt / area) * _of_doubt(cutoff),
+            seconds=seconds,
+        )
+
+    def _program(self, diverging: int, most_facets: int) -> Any:  # noqa: ANN401
+        key = diverging, most_facets
+        if key not in self._programs:
+            options = [*self._options, f"-DDIVERGING={diverging}", f"-DMOST_FACETS={most_facets}"]
+            program = build(self.device, "beams.cl", options)
+            self._programs[key] = _Kernels(cl.Kernel(program, "cast_shadows"), cl.Kernel(program, "throw_light"))
+        return self._programs[key]
+
+    @property
+    def _options(self) -> list[str]:
+        return [f"-DREAL={'double' if self.real is np.float64 else 'float'}"]
+
+    def _launch(self, kernel: Any, buffers: Sequence[Any], begin: int, end: int) -> None:  # noqa: ANN401
+        cl.enqueue_fill_buffer(self.device.queue, buffers[-2], np.array(begin, np.int32), 0, 4)
+        kernel(self.device.queue, (self.items,), (1,), *buffers, np.int32(end))
+
+    def _sum(self, room: Any, points: Any, maps: tuple[Any, Any], target: Any, keep: float, gain: float) -> None:  # noqa: ANN401
+        if (-1, 0) not in self._programs:
+            self._programs[-1, 0] = cl.Kernel(build(self.device, "light_sum.cl", self._options), "sum_map")
+        self._programs[-1, 0](
+            self.device.queue, (self.items,), (1,), room, points, *maps, np.int32(self.items), target,
+            np.float32(keep), np.float32(gain),
+        )  # fmt: skip
+
+    def _buffers(self, held: int, points: int) -> tuple[Any, Any]:
+        """Where light and the shadows of points accumulate, of all work-items; empty."""
+        key = held, points
+        if key not in self._scratch:
+            self._scratch.clear()
+            texels = self.items * held * LEVELS * SIZE * STRIDE
+            flags = cl.mem_flags.READ_WRITE
+            self._scratch[key] = (
+                cl.Buffer(self.device.context, flags, 16 * texels),
+                cl.Buffer(self.device.context, flags, max(4, 4 * texels * points)),
+            )
+            self._clean = False
+        if not self._clean:
+            for buffer in self._scratch[key]:
+                cl.enqueue_fill_buffer(self.device.queue, buffer, np.array(0, np.float32), 0, buffer.size)
+            self._clean = True
+        return self._scratch[key]
+
+    def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401
+        flags = cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR
+        return cl.Buffer(self.device.context, flags, hostbuf=np.ascontiguousarray(array))
+
+
+@dataclass(frozen=True)
+class _Kernels:
+    cast_shadows: Any
+    throw_light: Any
+
+
+def _room(scene: Scene, frame: MapFrame, origin: NDArray[np.float64], real: Real) -> NDArray[np.void]:
+    """`throwing_t` but for what is thrown, relative to the origin."""
+    room = np.zeros((), struct("throwing_t", real, "light_beam.cl"))
+    room["half_size"] = frame.halves
+    room["maps"] = frame.held
+    present = [scene.floor.kind != "none", *[scene.walls.kind != "none"] * (SURFACES - 1)]
+    for number, surface in enumerate(surfaces()):
+        normal = np.array(surface.normal)
+        room["surface"][number, :3], room["surface"][number, 3] = normal, surface.offset - normal @ origin
+        room["across"][number], room["up"][number] = surface.along, surface.across
+        room["centre"][number] = np.array(frame.centres[number]) - surface.coordinates(origin)
+        room["present"][number], room["mapped"][number] = present[number], number in frame.matte
+    return room
+
+
+def _brightness(rays: Sequence[Ray]) -> dict[int, float]:
+    """Of each emitter that is followed, over that of the brightest."""
+    sums: dict[int, float] = {}
+    for ray in rays:
+        if ray.follows:
+            sums[ray.emitter] = sums.get(ray.emitter, 0.0) + ray.brightness
+    brightest = max(sums.values(), default=0.0)
+    return {emitter: value / brightest if brightest > 0 else 1.0 for emitter, value in sums.items()}
+
+
+FAINTEST = 1e-9
+"""Of an emitter's light over that of the brightest: what is fainter is cut as if it were so bright."""
+
+
+def _lights(
+    rays: Sequence[Ray], brightness: dict[int, float], origin: NDArray[np.float64], real: Real
+) -> NDArray[np.void]:
+    """(N,) `light_t`; one of nothing if there is none."""
+    rows = np.zeros(max(1, len(rays)), struct("light_t", real, "light_beam.cl"))
+    for number, (row, ray) in enumerate(zip(rows, rays, strict=False)):
+        place = np.array(ray.towards if ray.position is None else ray.position, dtype=float)
+        row["place"] = place if ray.position is None else place - origin
+        row["squared"] = 1 if ray.position is None else max(float(((place - origin) ** 2).sum()), 1e-12)
+        row["colour"][:3] = ray.colour
+        row["dimness"] = 1 / max(brightness.get(ray.emitter, 1.0), FAINTEST)
+        row["follows"] = ray.follows and any(ray.colour)
+        row["shade"] = number
+    return rows
+
+
+def _chains(
+    scene: Scene, stones: Sequence[PlacedStone], number: int, real: Real
+) -> tuple[NDArray[np.void], int, list[int]]:
+    """Indices of refraction with what they light, how many each stone has, and where each stone's begin. Absorption is
+    per R."""
+    if not stones:
+        return np.zeros(1, struct("chain_t", real)), 1, []
+    sets, kinds = chains_of_stones(scene)
+    table = chain_table(scene, number, np.float64, common=False)
+    each = len(table) // len(kinds)
+    rows = table.reshape(len(kinds), each)
+    if is_spectral(scene):
+        rows = rows[:, number % GROUPS :: GROUPS]
+    elif not is_coloured(scene) and (rows["eta"] == rows["eta"][:, :1]).all():
+        rows = rows[:, :1]
+        rows["share"] = 1
+    bands = rows.shape[1]
+    flat = np.zeros(len(kinds) * bands, struct("chain_t", real))
+    for name in ("eta", "absorption", "share"):
+        flat[name] = rows[name].reshape(flat[name].shape)
+    scales = np.repeat([stone.scale for stone in kinds], bands)
+    flat["absorption"] /= scales
+    return flat, bands, [sets[stone.number] * bands for stone in stones]
+
+
+def _of_doubt(cutoff: float) -> float:
+    """The error of a map over the root mean square of what beams from one to three times the cut-off gave it."""
+    return float(np.clip(1.16 * (cutoff / 1e-3) ** 0.156, 0.6, 1.5))
