@@ -188,7 +188,7 @@ static inline void follow(world_t world, __constant const map_frame_t *frame, __
 // Shoots BATCH photons for each of the jobs from `first` to before `last`, of which each work-item takes its share. A job is of
 // one bundle and one chain, or group of chains; `begun` is how many photons of each bundle and chain were shot before.
 __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *frame, __global const bundle_t *bundles,
-                    int bundle_count, int first, int last, __global float *landings, int capacity,
+                    int bundle_count, int first, int last, int follow_on, __global float *landings, int capacity,
                     __global double *counts) {
   const world_t world = {WORLD_BUFFERS(AS_VALUE)};
   const int item = get_global_id(0);
@@ -226,6 +226,7 @@ __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *fra
       packet.stone = blend_ints_by(meets, met.stone, (intL)(0));
       const vec3L point = along(ray.origin, blend(meets, met.t, splat(0)), ray.direction);
       own[INCIDENT] -= land(world, frame, bundles, &photons, task, &packet, point, ray.direction, meets, -1, &to);
+      if (!follow_on) continue;
       enter(world, &photons.tile, &photons.pools, task, &packet, point, met.normal, meets, true);
       follow(world, frame, bundles, &photons, task, &to, false);
     }
@@ -320,4 +321,11 @@ __kernel void spread(__constant const map_frame_t *frame, __global const float *
       }
     }
   }
+}
+
+// The mean of passes: the map becomes `keep` times what it was, plus `gain` times what was made.
+__kernel void join(__global float *map, __global const float *made, int count, float keep, float gain) {
+  const int items = get_global_size(0), item = get_global_id(0);
+  const int first = (int)((long)count * item / items), end = (int)((long)count * (item + 1) / items);
+  for (int i = first; i < end; i++) map[i] = keep > 0 ? fma(keep, map[i], gain * made[i]) : gain * made[i];
 }

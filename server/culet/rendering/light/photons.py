@@ -97,6 +97,10 @@ class Photons:
         """Whether `maps` would not wait for a compiler."""
         return needed(stage) in self._programs
 
+    def prepare(self, stage: Stage) -> None:
+        """Make it so, in any thread."""
+        self.program(needed(stage))
+
 
 def needed(stage: Stage) -> Features:
     """The program of photons for a stage."""
@@ -144,11 +148,13 @@ class PhotonMaps:
         stage = self.stage.showing(scene.model_copy(update={"optics": optics}))
         self._features = needed(self.stage)
         self._program = self._of.program(self._features)
-        self._shoot, self._count, self._spread = (
-            cl.Kernel(self._program, name) for name in ("shoot", "count", "spread")
+        self._shoot, self._count, self._spread, self._join = (
+            cl.Kernel(self._program, name) for name in ("shoot", "count", "spread", "join")
         )
         self._inputs = Inputs(self._device, stage, 16, 16, self._features, np.float32)
         self._batch = BATCH[self._features.stones - 1]
+        self._inputs.of_sample(0)
+        self._steps = self._inputs.chain_steps
 
     def pieces(
         self,
@@ -158,9 +164,11 @@ class PhotonMaps:
         number: int,
         photons: int,
         seconds: float = math.inf,
+        follow: bool = True,
     ) -> Iterator[float]:
         """Fill the target with pass `number`: at least so many photons of each channel, of these rays, whose colours
-        sum to the lights'. Launches of about so many seconds each; yields the part that is done between them."""
+        sum to the lights'. Launches of about so many seconds each; yields the part that is done between them. Without
+        `follow` only what stones take away is shown: what goes through them counts as unresolved."""
         started = time.perf_counter()
         device, frame = self._device, self.frame
         cl.enqueue_fill_buffer(device.queue, target, np.zeros(1, np.float32), 0, frame.nbytes)
@@ -171,7 +179,7 @@ class PhotonMaps:
         total = np.zeros(COUNTS)
         shot = 0
         if bundles:
-            steps = self._inputs.chain_steps
+            steps = self._steps
             rounds = max(1, math.ceil(photons / (len(bundles) * self._batch)))
             table = bundle_table(bundles, rounds * self._batch, number, frame, origin_of(self.stage.scene, stones))
             jobs = len(bundles) * rounds * steps
@@ -182,7 +190,7 @@ class PhotonMaps:
                 begun = time.perf_counter()
                 many = JOBS if math.isinf(seconds) else int(seconds / self._job_seconds) * device.units
                 last = min(jobs, first + min(max(many, device.units), JOBS))
-                self._launch(given, buffers_, len(bundles), first, last, counts)
+                self._launch(given, buffers_, len(bundles), first, last, counts, follow=follow)
                 whole = (last - first) / (len(bundles) * steps)  # rounds of all bundles; or some bundles in one round
                 self._land(buffers_, target, number, max(1.0, whole) / rounds)
                 total += counts.sum(axis=0)
@@ -200,7 +208,7 @@ class PhotonMaps:
         self.figures = Figures(
             incident=float(total[_KERNEL["INCIDENT"]]),
             cut=float(total[_KERNEL["CUT_FLUX"]]),
-            unresolved=float(total[_KERNEL["OVERFLOWN"]]),
+            unresolved=float(total[_KERNEL["OVERFLOWN"]] + (0 if follow else total[_KERNEL["INCIDENT"]])),
             outside=float(abs(total[_KERNEL["OUTSIDE"]])),
             rmse=math.nan,
             seconds=time.perf_counter() - started,
@@ -211,7 +219,7 @@ class PhotonMaps:
         device = self._device
         self._shoot(
             device.queue, (device.units,), (1,), *(given[name] for name in buffers()), to.frame, to.bundles,
-            np.int32(bundles), np.int32(first), np.int32(last), to.landings, np.int32(to.capacity), to.counts,
+            np.int32(bundles), np.int32(first), np.int32(last), np.int32(follow), to.landings, np.int32(to.capacity), to.counts,
         )  # fmt: skip
         cl.enqueue_copy(device.queue, counts, to.counts)
 

@@ -1,0 +1,16 @@
+"""How much a picture's light map may take."""
+
+from __future__ import annotations
+
+from enum import Enum, auto
+
+
+class Effort(Enum):
+    """Of a picture, on its light map."""
+
+    MOVING = auto()
+    """One pass at the scene's cut-off: the next frame needs another map."""
+    RESTING = auto()
+    """Some passes at first, and then more, in step with the picture's samples."""
+    PATIENT = auto()
+    """All that it needs before the picture's first sample."""

@@ -1,0 +1,278 @@
+"""The light maps of a device: made in passes, and kept while neither stones nor emitters change."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from enum import Enum, auto
+from typing import Any, NamedTuple
+
+import numpy as np
+import pyopencl as cl
+from numpy.typing import NDArray
+
+from culet.rendering.chains import is_spectral
+from culet.rendering.device import Device
+from culet.rendering.light.beams import Beams
+from culet.rendering.light.effort import Effort
+from culet.rendering.light.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
+from culet.rendering.light.photons import PhotonMaps, Photons
+from culet.rendering.light.ray import Ray
+from culet.rendering.light.solids import takes_beams
+from culet.rendering.light.sources import mapped_surfaces, rays_of
+from culet.stage import Stage
+
+KEPT = 4
+"""Stages whose maps are kept, the latest used last. A map of a floor takes 6 MiB, with walls 24."""
+TARGET = 2e-3
+"""Estimated root mean square error at which a map is good enough, in parts of the brightest emitter's irradiance over
+pi: a quarter of a step of 8 bits in the middle of the scale."""
+MOST_PASSES = 256
+FALL = 0.5
+"""Cut-off of a pass over that of the one before."""
+LEAST_CUTOFF = 1e-6
+"""R^2 of the brightest emitter's irradiance. What remains is 1 % of the light, and costs a quarter of a second."""
+RANDOM_CUTOFF = 3e-5
+"""The same, of lamps that are as many directions as there are passes: one is not worth more."""
+FIRST_SECONDS = 0.05
+"""s of passes before a resting picture's first sample: nobody sees a picture meanwhile."""
+PHOTONS = 30.0
+"""Of each channel, over the cut-off: at 1e-3 then 30,000 photons, whose error is like that of beams."""
+LEAST_PHOTONS = 3000
+"""Of a moving frame: fewer make blots that jump, and nothing is better."""
+MOVING_PHOTON_SECONDS = 0.012
+"""s of a moving frame that photons may take: a third of the time at 30 frames/s."""
+
+
+class Maker(Enum):
+    """How light is followed through the stones."""
+
+    NOTHING = auto()
+    """Not at all: only shadows are shown. The scene asks for that, or photons would take too long."""
+    BEAMS = auto()
+    PHOTONS = auto()
+
+
+class Lighting:
+    """Of one device. One thread at a time makes maps."""
+
+    def __init__(self, device: Device, pool: Any) -> None:  # noqa: ANN401 - pyopencl has no types
+        """Memory of maps is taken from that pool."""
+        self.device = device
+        self._pool = pool
+        self._kept: dict[_Key, Illumination] = {}
+        self._beams: list[Beams] = []
+        self.photons = Photons(device)
+
+    def of(self, stage: Stage) -> Illumination | None:
+        """What there is, or will be, of a stage's map; None where no surface has one."""
+        if not mapped_surfaces(stage):
+            return None
+        key = _key(stage)
+        known = self._kept.pop(key, None)
+        if known is None:
+            frame = frame_of(stage)
+            known = Illumination(self, stage, BoundMap(self._pool.allocate(frame.nbytes), frame))
+        self._kept[key] = known
+        while len(self._kept) > KEPT:
+            del self._kept[next(iter(self._kept))]
+        return known
+
+    def is_ready(self, stage: Stage) -> bool:
+        """Whether a map can be begun without waiting for a compiler."""
+        return not mapped_surfaces(stage) or takes_only_beams(stage) or self.photons.is_ready(stage)
+
+    def make_ready(self, stage: Stage) -> None:
+        """Have programs compiled that are needed, in any thread."""
+        if not self.is_ready(stage):
+            self.photons.prepare(stage)
+
+    def take_beams(self) -> Beams:
+        """For one pass; passes of several pictures may be under way by turns."""
+        return self._beams.pop() if self._beams else Beams(self.device)
+
+    def give_back(self, beams: Beams) -> None:
+        """For the next pass."""
+        self._beams.append(beams)
+
+    def scratch(self, size: int) -> Any:  # noqa: ANN401
+        """Memory for a pass that is not whole yet."""
+        return self._pool.allocate(size)
+
+
+def takes_only_beams(stage: Stage) -> bool:
+    """Whether all stones are such that beams are followed, or else photons."""
+    return all(map(takes_beams, stage.shapes))
+
+
+class _Key(NamedTuple):
+    """What a map depends on."""
+
+    stones: object
+    shapes: tuple[int, ...]
+    light: object
+    room: tuple[str, str]
+    optics: tuple[object, ...]
+
+
+def _key(stage: Stage) -> _Key:
+    scene = stage.scene
+    optics = scene.optics
+    return _Key(
+        scene.stones.__repr__(),
+        tuple(map(id, stage.shapes)),
+        (scene.emitters.__repr__(), scene.environment.__repr__(), id(stage.panorama)),
+        (scene.floor.kind, scene.walls.kind),
+        (optics.fresnel, optics.bands, optics.polarised, optics.caustics, optics.max_bounces, scene.millimetres),
+    )
+
+
+class Illumination:
+    """The light map of one stage: the mean of its passes."""
+
+    def __init__(self, of: Lighting, stage: Stage, bound: BoundMap) -> None:
+        self.stage, self.bound = stage, bound
+        self.passes = 0
+        self.seconds = 0.0
+        """Spent on all passes."""
+        self.maker = Maker.NOTHING
+        self.cutoff = math.inf
+        """Of the finest pass."""
+        self.figures: Figures | None = None
+        """Of the finest pass, but for the error, which is the mean's."""
+        self._of = of
+        self._begun = 0
+        self._weight = 0.0
+        self._squared = 0.0
+        self._bias = 0.0
+        """Weights' sum times what the cut-offs of passes let expect of the mean's error."""
+        self._spread: list[float] = []
+        """Estimates of a single pass's variance, of weight 1."""
+        self._before: NDArray[np.float32] | None = None
+        self._photons: PhotonMaps | None = None
+        self._brightness = max(_whole(rays_of(stage, 0)), default=0.0)
+
+    @property
+    def rmse(self) -> float:
+        """Estimated error of the map, root mean square over its finer level, as radiance of a white surface."""
+        if self.passes == 0:
+            return math.nan
+        bias = self._bias / self._weight
+        variance = float(np.mean(self._spread)) * self._squared / self._weight**2 if self._spread else 0.0
+        return math.hypot(bias, math.sqrt(variance))
+
+    @property
+    def good_enough(self) -> bool:
+        """Whether more passes are not worth their time."""
+        if self.maker is Maker.NOTHING and self.passes and not self._random:
+            return True
+        settled = self.passes > 0 and (not self._random or len(self._spread) > 1)
+        return self.passes >= MOST_PASSES or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
+
+    @property
+    def _random(self) -> bool:
+        """Whether passes differ in more than their cut-offs."""
+        scene = self.stage.scene
+        return (
+            is_spectral(scene)
+            or not takes_only_beams(self.stage)
+            or any(ray.position is None for ray in rays_of(self.stage, 0))
+        )
+
+    def pieces(self, cutoff: float, effort: Effort, seconds: float, picture_seconds: float) -> Iterator[None]:
+        """Make the map as good as is fitting, in launches of about so many seconds; yields between them.
+
+        A map that is as fine as the cut-off asks serves a moving picture as it is. A resting one has put
+        `picture_seconds` into its samples so far, which is what its map may take too.
+        """
+        if self.passes == 0 or (effort is Effort.MOVING and self.cutoff > cutoff):
+            yield from self._pass(cutoff, effort, seconds)
+        if effort is Effort.MOVING:
+            return
+        while not self.good_enough and (
+            effort is Effort.PATIENT or self.seconds < max(FIRST_SECONDS, picture_seconds)
+        ):
+            least = RANDOM_CUTOFF if self._random else LEAST_CUTOFF
+            if not self._random and self.cutoff <= least:
+                return
+            yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
+
+    def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[None]:
+        """One pass more."""
+        number, self._begun = self._begun, self._begun + 1
+        started, scene = time.perf_counter(), self.stage.scene
+        rays = rays_of(self.stage, number)
+        follows = scene.optics.caustics == "on"
+        if takes_only_beams(self.stage):
+            weight = cutoff**-0.5  # the error that lamps' directions make does not fall with the cut-off
+            before, keep, gain = self._weigh(weight, anew=not self._random)
+            beams = self._of.take_beams()
+            figures = yield from beams.pieces(
+                self.stage, rays, self.bound.frame, self.bound.buffer, cutoff=cutoff, seconds=seconds, number=number,
+                keep=keep, gain=gain,
+            )  # fmt: skip
+            self._of.give_back(beams)
+            maker, bias = Maker.BEAMS if follows else Maker.NOTHING, figures.rmse if follows else 0.0
+        else:
+            if self._photons is None:
+                self._photons = self._of.photons.maps(self.stage, self.bound.frame)
+            photons = PHOTONS / cutoff
+            if effort is Effort.MOVING:
+                photons = min(photons, MOVING_PHOTON_SECONDS / self._photons.photon_seconds)
+                follows = follows and photons >= LEAST_PHOTONS
+            maker, bias, weight = Maker.PHOTONS if follows else Maker.NOTHING, 0.0, photons
+            made = self._of.scratch(self.bound.frame.nbytes)
+            for _ in self._photons.pieces(
+                made, rays, number=number, photons=round(max(photons, LEAST_PHOTONS)), seconds=seconds, follow=follows
+            ):
+                yield
+            before, keep, gain = self._weigh(weight, anew=maker is not self.maker)
+            self._photons.join(self.bound.buffer, made, keep, gain)
+            assert self._photons.figures is not None  # noqa: S101 - of the pass that is done
+            figures = self._photons.figures
+        self._count(weight, bias, gain, before, anew=keep == 0)
+        self.maker, self.passes = maker, self.passes + 1
+        self.seconds += time.perf_counter() - started
+        self.cutoff = min(self.cutoff, cutoff)
+        self.figures = replace(figures, rmse=self.rmse, seconds=self.seconds)
+
+    def _weigh(self, weight: float, *, anew: bool) -> tuple[NDArray[np.float32] | None, float, float]:
+        """The map before a pass of that weight, and what of the map is kept, and of the pass added."""
+        if anew or self._weight == 0:
+            return None, 0.0, 1.0
+        gain = weight / (self._weight + weight)
+        return self._fine(), 1 - gain, gain
+
+    def _count(
+        self, weight: float, bias: float, gain: float, before: NDArray[np.float32] | None, *, anew: bool
+    ) -> None:
+        """A pass was added."""
+        if anew:
+            self._weight = self._squared = self._bias = 0.0
+            self._spread.clear()
+        if before is not None:  # the variance of a pass, less that of the mean so far
+            apart = float(np.mean(np.square(self._fine() - before, dtype=np.float64))) / gain**2
+            self._spread.append(apart / (1 + self._squared / self._weight**2))
+        self._weight += weight
+        self._squared += weight**2
+        self._bias += weight * bias
+
+    def _fine(self) -> NDArray[np.float32]:
+        """The finer level of the surfaces that have a map."""
+        frame = self.bound.frame
+        found = np.empty((len(frame.matte), SIZE, SIZE, CHANNELS), np.float32)
+        for place, surface in enumerate(frame.matte):
+            cl.enqueue_copy(
+                self._of.device.queue, found[place], self.bound.buffer, src_offset=surface * LEVELS * found[0].nbytes
+            )
+        return found
+
+
+def _whole(rays: Sequence[Ray]) -> Iterator[float]:
+    """Brightness of each emitter."""
+    sums: dict[int, float] = {}
+    for ray in rays:
+        sums[ray.emitter] = sums.get(ray.emitter, 0.0) + ray.brightness
+    yield from sums.values()
