@@ -86,8 +86,8 @@ static inline void axes_of(const real *normal, int *k, int *u, int *v) {
 // Light that leaves the stone.
 static inline void leave(const job_t *job, tally_t *tally, const corner_t *corners, int count, const real *d, real flux,
                          int doubtful) {
-  land(job->room, job->light_map, job->shade_map, tally, job->light, corners, count, d, flux, job->colour, job->weight,
-       job->power, doubtful, LIGHT_ITSELF);
+  land(job->room, job->canvas, tally, job->light, corners, count, d, flux, job->colour, job->weight, job->power,
+       doubtful, LIGHT_ITSELF);
 }
 
 // One beam inside the stone: parts of it meet facets, where they leave, and are reflected as beams of their own.
@@ -309,18 +309,61 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
   tally->unresolved += job->weight * (beam.flux - given);
 }
 
-// Light that comes to a convex part of a facet from outside.
-static inline void enter(const job_t *job, tally_t *tally, int facet, const corner_t *part, int count) {
-  beam_t stack[BEAMS];
-  int top = 0;
-  const real normal[3] = {plane_of(job, 0, facet), plane_of(job, 1, facet), plane_of(job, 2, facet)}, eta = job->eta;
-  beam_t *beam = stack;
-  corner_t mirrored[CORNERS];
-  real d[3] = {0, 0, 0};
+// Light of a point comes to a facet in parts, in which directions differ little.
+#define PARTS 24        // that wait, at most: each is half as wide as the one before the last
+#define WORTH ((real)4) // cut-offs of flux below which a part is not cut further
+
+#if DIVERGING
+// Halves a polygon across its longest diagonal, if that is longer than so many distances from the light. Returns whether.
+static inline int halve(const job_t *job, corner_t *part, int *count, corner_t *other, int *other_count) {
+  int from = 0, to = 0;
+  real longest = 0, nearest = 1e30f, middle[3] = {0, 0, 0};
+  for (int i = 0; i < *count; i++) {
+    real squared = 0;
+    for (int k = 0; k < 3; k++) {
+      const real way = part[i].p[k] - job->light->place[k];
+      squared += way * way;
+      middle[k] += way / *count;
+    }
+    nearest = fmin(nearest, squared);
+    for (int j = 0; j < i; j++) {
+      real apart = 0;
+      for (int k = 0; k < 3; k++) apart += (part[i].p[k] - part[j].p[k]) * (part[i].p[k] - part[j].p[k]);
+      if (apart > longest) {
+        longest = apart;
+        from = j;
+        to = i;
+      }
+    }
+  }
+  nearest = fmin(nearest, dot_3(middle, middle));
+  if (longest <= job->room->piece * job->room->piece * nearest) return 0;
+  real inside[CORNERS], outside[CORNERS];
+  for (int i = 0; i < *count; i++) {
+    inside[i] = 0;
+    for (int k = 0; k < 3; k++)
+      inside[i] += (part[to].p[k] - part[from].p[k]) * ((real)0.5 * (part[from].p[k] + part[to].p[k]) - part[i].p[k]);
+    outside[i] = -inside[i];
+  }
+  corner_t kept[CORNERS];
+  const int left = clip_corners(part, *count, inside, kept, CORNERS);
+  *other_count = clip_corners(part, *count, outside, other, CORNERS);
+  for (int i = 0; i < left; i++) part[i] = kept[i];
+  *count = left;
+  return 1;
+}
+#endif
+
+// Of a part of a facet: its rays inside, and mirrored outside, and the directions in the middle. Returns its flux.
+static inline real begin_beam(const job_t *job, const real *normal, const corner_t *part, int count, beam_t *beam,
+                              corner_t *mirrored, real *d) {
+  const real eta = job->eta;
+  beam->count = count;
 #if DIVERGING
   int k, u, v;
   axes_of(normal, &k, &u, &v);
   real per_area = 0;
+  for (int j = 0; j < 3; j++) d[j] = 0;
   for (int i = 0; i < count; i++) {
     corner_t *corner = beam->corner + i;
     real way[3];
@@ -329,10 +372,9 @@ static inline void enter(const job_t *job, tally_t *tally, int facet, const corn
     normalise_3(way);
     const real cos_a = fmax(-dot_3(way, normal), GRAZING), cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta));
     per_area += job->light->squared / squared * cos_a / count;
-    mirrored[i] = part[i];
     for (int j = 0; j < 3; j++) {
       d[j] += way[j];
-      corner->p[j] = part[i].p[j];
+      mirrored[i].p[j] = corner->p[j] = part[i].p[j];
       corner->d[j] = way[j] / eta + (cos_a / eta - cos_s) * normal[j];
       mirrored[i].d[j] = way[j] + 2 * cos_a * normal[j];
     }
@@ -340,36 +382,71 @@ static inline void enter(const job_t *job, tally_t *tally, int facet, const corn
     mirrored[i].b = corner->b = part[i].p[v];
   }
   normalise_3(d);
-  const real cos_a = fmax(-dot_3(d, normal), GRAZING), area = (real)0.5 * measure(beam->corner, count);
-  const real flux = per_area / fabs(normal[k]) * area;
+  return per_area / fabs(normal[k]) * (real)0.5 * measure(beam->corner, count);
 #else
   for (int i = 0; i < count; i++) beam->corner[i] = mirrored[i] = part[i];
   for (int j = 0; j < 3; j++) d[j] = -job->light->place[j];
-  const real cos_a = -dot_3(d, normal), area = (real)0.5 * measure(part, count), flux = cos_a * area;
+  return -dot_3(d, normal) * (real)0.5 * measure(part, count);
 #endif
-  if (!(flux > 0)) return;
-  const real cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta)), reflected = reflected_part(cos_a, cos_s, eta);
-  real out[3];
-  for (int j = 0; j < 3; j++) out[j] = d[j] + 2 * cos_a * normal[j];
-  tally->incident += job->weight * flux;
-  leave(job, tally, mirrored, count, out, reflected * flux, 0);
-  for (int j = 0; j < 3; j++) beam->d[j] = d[j] / eta + (cos_a / eta - cos_s) * normal[j];
-  beam->flux = (1 - reflected) * flux;
-  beam->facet = facet;
-  beam->count = count;
-  if (beam->flux < job->cutoff) {
-    tally->cut += job->weight * beam->flux;
-    return;
+}
+
+// Light that comes to a convex part of a facet from outside.
+static inline void enter(const job_t *job, tally_t *tally, int facet, const corner_t *part, int count) {
+  beam_t stack[BEAMS];
+  const real normal[3] = {plane_of(job, 0, facet), plane_of(job, 1, facet), plane_of(job, 2, facet)}, eta = job->eta;
+  corner_t mirrored[CORNERS];
+#if DIVERGING
+  corner_t parts[PARTS][CORNERS];
+  int counts[PARTS], waiting = 1;
+  for (int i = 0; i < count; i++) parts[0][i] = part[i];
+  counts[0] = count;
+  while (waiting > 0) {
+    const corner_t *now = parts[waiting - 1];
+    count = counts[waiting - 1];
+    if (count < 3) {
+      waiting--;
+      continue;
+    }
+#else
+  {
+    const corner_t *now = part;
+#endif
+    real d[3];
+    const real flux = begin_beam(job, normal, now, count, stack, mirrored, d);
+#if DIVERGING
+    if (waiting < PARTS && flux > WORTH * job->cutoff &&
+        halve(job, parts[waiting - 1], counts + waiting - 1, parts[waiting], counts + waiting)) {
+      waiting++;
+      continue;
+    }
+    waiting--;
+    if (!(flux > 0)) continue;
+#else
+    if (!(flux > 0)) return;
+#endif
+    const real cos_a = fmax(-dot_3(d, normal), DIVERGING ? GRAZING : (real)0);
+    const real cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta)), reflected = reflected_part(cos_a, cos_s, eta);
+    real out[3];
+    for (int j = 0; j < 3; j++) out[j] = d[j] + 2 * cos_a * normal[j];
+    tally->incident += job->weight * flux;
+    leave(job, tally, mirrored, count, out, reflected * flux, 0);
+    beam_t *beam = stack;
+    for (int j = 0; j < 3; j++) beam->d[j] = d[j] / eta + (cos_a / eta - cos_s) * normal[j];
+    beam->flux = (1 - reflected) * flux;
+    beam->facet = facet;
+    if (beam->flux < job->cutoff)
+      tally->cut += job->weight * beam->flux;
+    else
+      for (int top = 1; top > 0;) split_beam(job, tally, stack, &top);
   }
-  for (top = 1; top > 0;) split_beam(job, tally, stack, &top);
 }
 
 #define GEOMETRY_BUFFERS                                                                                               \
   __constant const throwing_t *room, __constant const light_t *lights, __constant const solid_t *solids,               \
       __global const real *planes, __global const real *vertices, __global const int *start,                           \
       __global const int *corners, __global const int *across, __global const int4 *entries,                           \
-      __global const chain_t *chains, __global float4 *light_maps, __global float *shade_maps, __global int *next,     \
-      __global tally_t *tallies
+      __global const chain_t *chains, __global float4 *light_maps, __global float *shade_maps,                         \
+      __global uint *lit_rows, __global uint *shaded_rows, __global int *next, __global tally_t *tallies
 #define GEOMETRY_OF {planes, vertices, start, corners, across}
 
 // Jobs are numbered: of each entry the lights, of each light the bands. `next` counts those that are dealt out; a launch
@@ -377,9 +454,7 @@ static inline void enter(const job_t *job, tally_t *tally, int facet, const corn
 __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
   tally_t tally = tallies[get_global_id(0)];
   const facets_t facets = GEOMETRY_OF;
-  const size_t plane = (size_t)MAP_SIZE * MAP_STRIDE * MAP_LEVELS * room->maps;
-  __global float4 *light_map = light_maps + get_global_id(0) * plane;
-  __global float *shade_map = shade_maps + get_global_id(0) * plane * room->points;
+  const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
   for (;;) {
     const int number = atomic_inc(next);
     if (number >= end) break;
@@ -387,8 +462,7 @@ __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
     __constant const light_t *light = lights + rest / room->bands;
     __constant const solid_t *solid = solids + entries[entry].x;
     if (!light->follows) continue;
-    const job_t job =
-        job_of(room, light, solid, facets, chains + solid->first_chain + rest % room->bands, light_map, shade_map);
+    const job_t job = job_of(room, light, solid, facets, chains + solid->first_chain + rest % room->bands, canvas);
     const int facet = entries[entry].y;
     if (!is_lit(&job, facet)) continue;
     corner_t part[CORNERS];
@@ -402,14 +476,12 @@ __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
 // Shadows are numbered: of each stone the lights.
 __kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
   const facets_t facets = GEOMETRY_OF;
-  const size_t plane = (size_t)MAP_SIZE * MAP_STRIDE * MAP_LEVELS * room->maps;
-  __global float4 *light_map = light_maps + get_global_id(0) * plane;
-  __global float *shade_map = shade_maps + get_global_id(0) * plane * room->points;
+  const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
   for (;;) {
     const int number = atomic_inc(next);
     if (number >= end) break;
     const int stone = number / room->lights;
-    const job_t job = job_of(room, lights + number % room->lights, solids + stone, facets, 0, light_map, shade_map);
+    const job_t job = job_of(room, lights + number % room->lights, solids + stone, facets, 0, canvas);
     if (!job.solid->pierces && shade_outline(&job)) continue;
     for (int entry = job.solid->first_entry; entry < job.solid->last_entry; entry++) {
       const int facet = entries[entry].y;

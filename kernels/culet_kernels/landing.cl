@@ -110,10 +110,9 @@ static inline int first_met(__constant const throwing_t *room, int s, const corn
 }
 
 // A beam that meets no stone any more, on the maps of floor and walls. `height` is, of a shadow, what it takes.
-static inline void land(__constant const throwing_t *room, __global float4 *light_map, __global float *shade_map,
-                        tally_t *tally, __constant const light_t *light, const corner_t *corners, int count,
-                        const real *common, real flux, float4 colour, real weight, real power, int doubtful,
-                        int shadow) {
+static inline void land(__constant const throwing_t *room, canvas_t canvas, tally_t *tally,
+                        __constant const light_t *light, const corner_t *corners, int count, const real *common,
+                        real flux, float4 colour, real weight, real power, int doubtful, int shadow) {
   real left = flux, behind = 0;
   const size_t plane = (size_t)MAP_SIZE * MAP_STRIDE;
   for (int s = 0; s < MAP_SURFACES; s++) {
@@ -165,9 +164,10 @@ static inline void land(__constant const throwing_t *room, __global float4 *ligh
       const int apart = high_x <= 0 || high_y <= 0 || low_x >= MAP_SIZE || low_y >= MAP_SIZE;
       if (level == MAP_LEVELS - 1 && !within && !shadow) on_map = apart ? 0 : part_on_map(x, y, met);
       if (apart) continue;
-      const size_t place = (s * MAP_LEVELS + level) * plane;
+      const int number = s * MAP_LEVELS + level, row = number * MAP_SIZE;
       if (!shadow) {
-        raster_polygon(light_map + place, x, y, met, colour * (float)(scale_flux * scale * scale));
+        raster_polygon(canvas.light + number * plane, canvas.lit + row, x, y, met,
+                       colour * (float)(scale_flux * scale * scale));
         if (doubtful && level == 0 && within) {
           const real area = fabs(polygon_area(x, y, met)) / (scale * scale);
           tally->doubt += power * scale_flux * scale_flux / fmax(area, 1 / (scale * scale));
@@ -178,10 +178,11 @@ static inline void land(__constant const throwing_t *room, __global float4 *ligh
       for (int i = 0; i < met; i++) {
         const int next = i + 1 == met ? 0 : i + 1;
 #if DIVERGING
-        raster_shade(shade_map + (light->shade * room->maps * MAP_LEVELS) * plane + place, x[i], y[i], x[next], y[next],
-                     (float)turn);
+        const int of_point = light->shade * room->maps * MAP_LEVELS;
+        raster_shade(canvas.shade + (of_point + number) * plane, canvas.shaded + of_point * MAP_SIZE + row, x[i], y[i],
+                     x[next], y[next], (float)turn);
 #else
-        raster_side(light_map + place, x[i], y[i], x[next], y[next],
+        raster_side(canvas.light + number * plane, canvas.lit + row, x[i], y[i], x[next], y[next],
                     colour * (float)(-turn * fmax(speed_to(room, s, common), (real)0)));
 #endif
       }

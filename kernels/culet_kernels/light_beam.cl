@@ -82,6 +82,14 @@ typedef struct {
   double beams;
 } tally_t;
 
+// Where a work-item accumulates what it throws: light, and for each point how far a texel is in its shadow; with the marks
+// of both.
+typedef struct {
+  __global float4 *light;
+  __global float *shade;
+  __global uint *lit, *shaded;
+} canvas_t;
+
 static inline real dot_3(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static inline void cross_3(const real *a, const real *b, real *c) {
   c[0] = a[1] * b[2] - a[2] * b[1];

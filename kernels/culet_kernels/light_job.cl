@@ -9,8 +9,7 @@ typedef struct {
   __constant const light_t *light;
   __constant const solid_t *solid;
   facets_t facets;
-  __global float4 *light_map;
-  __global float *shade_map;
+  canvas_t canvas;
   float4 colour;
   real weight;     // mean of the channels of its colour,
   real power;      // and of their squares
@@ -60,16 +59,24 @@ static inline int is_lit(const job_t *job, int facet) {
   return DIVERGING ? towards > plane_of(job, 3, facet) : towards > 0;
 }
 
+// That of this work-item.
+static inline canvas_t canvas_of(__constant const throwing_t *room, __global float4 *light_maps,
+                                 __global float *shade_maps, __global uint *lit_rows, __global uint *shaded_rows) {
+  const size_t rows = (size_t)get_global_id(0) * room->maps * MAP_LEVELS * MAP_SIZE, of_points = rows * room->points;
+  const canvas_t canvas = {light_maps + rows * MAP_STRIDE, shade_maps + of_points * MAP_STRIDE, lit_rows + rows,
+                           shaded_rows + of_points};
+  return canvas;
+}
+
 static inline job_t job_of(__constant const throwing_t *room, __constant const light_t *light,
                            __constant const solid_t *solid, facets_t facets, __global const chain_t *chain,
-                           __global float4 *light_map, __global float *shade_map) {
+                           canvas_t canvas) {
   job_t job;
   job.room = room;
   job.light = light;
   job.solid = solid;
   job.facets = facets;
-  job.light_map = light_map;
-  job.shade_map = shade_map;
+  job.canvas = canvas;
   job.colour = (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
   job.weight = job.power = 1;
   if (chain) {

@@ -14,8 +14,7 @@ static inline void shade(const job_t *job, corner_t *corners, int count) {
   for (int i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) corners[i].d[k] = corners[i].p[k] - job->light->place[k];
 #endif
-  land(job->room, job->light_map, job->shade_map, &none, job->light, corners, count, common, 0, job->colour, 1, 1, 0,
-       SHADOW_OF_LIGHT);
+  land(job->room, job->canvas, &none, job->light, corners, count, common, 0, job->colour, 1, 1, 0, SHADOW_OF_LIGHT);
 }
 
 // The outline of a stone, from its lit facets' sides to unlit ones. Returns whether that is one closed line, which it is but

@@ -14,9 +14,18 @@
 #define THIN ((real)1e-5)      // texels^2 of area, and
 #define THIN_SIDE ((real)1e-4) // texels, below which a polygon of so much length is a line: its area is rounding
 
+#define MAP_BLOCK 16           // texels of a row that are marked together: a row's marks are the bits of a uint
+
+// Marks the blocks of texels from one to another as touched. What is right of the map is not summed.
+static inline void touch(__global uint *row, int first, int last) {
+  const int a = min(first / MAP_BLOCK, 31), b = min(last / MAP_BLOCK, 31);
+  *row |= (~0u << a) & (~0u >> (31 - b));
+}
+
 // A line from (x0, y0) to (x1, y1), in texels, of `height` per texel.
 #define RASTER_SIDE(name, type)                                                                                        \
-  static inline void name(__global type *buffer, real x0, real y0, real x1, real y1, type height) {                    \
+  static inline void name(__global type *buffer, __global uint *touched, real x0, real y0, real x1, real y1,           \
+                          type height) {                                                                               \
     if (y0 == y1) return;                                                                                              \
     if (y0 > y1) {                                                                                                     \
       const real x = x0, y = y0;                                                                                       \
@@ -42,6 +51,7 @@
       const real from = clamp(fmin(x, next), (real)0, (real)MAP_SIZE),                                                 \
                  to = clamp(fmax(x, next), (real)0, (real)MAP_SIZE);                                                   \
       const int first = (int)from, end = (int)ceil(to);                                                                \
+      touch(touched + row, first, max(end, first + 1));                                                                \
       __global type *texel = buffer + row * MAP_STRIDE + first;                                                        \
       if (end <= first + 1) {                                                                                          \
         const float middle = (float)((real)0.5 * (from + to) - first);                                                 \
@@ -70,9 +80,10 @@ RASTER_SIDE(raster_side, float4)
 RASTER_SIDE(raster_shade, float)
 
 // Light of a texel at (x, y), in units of a texel's.
-static inline void strew(__global float4 *buffer, real x, real y, float4 light) {
+static inline void strew(__global float4 *buffer, __global uint *touched, real x, real y, float4 light) {
   if (!(x >= 0 && y >= 0 && x < MAP_SIZE && y < MAP_SIZE)) return;
   __global float4 *texel = buffer + (int)y * MAP_STRIDE + (int)x;
+  touch(touched + (int)y, (int)x, (int)x + 1);
   texel[0] += light;
   texel[1] -= light;
 }
@@ -85,7 +96,8 @@ static inline real polygon_area(const real *x, const real *y, int count) {
 }
 
 // A polygon of so much light in all, in texels' light. One too thin to have an area of its own is strewn along its length.
-static inline void raster_polygon(__global float4 *buffer, const real *x, const real *y, int count, float4 light) {
+static inline void raster_polygon(__global float4 *buffer, __global uint *touched, const real *x, const real *y,
+                                  int count, float4 light) {
   const real area = polygon_area(x, y, count);
   int left = 0, right = 0, top = 0, bottom = 0;
   for (int i = 1; i < count; i++) {
@@ -100,7 +112,7 @@ static inline void raster_polygon(__global float4 *buffer, const real *x, const 
     const float4 height = light * (float)(-1 / area);
     for (int i = 0; i < count; i++) {
       const int next = i + 1 == count ? 0 : i + 1;
-      raster_side(buffer, x[i], y[i], x[next], y[next], height);
+      raster_side(buffer, touched, x[i], y[i], x[next], y[next], height);
     }
     return;
   }
@@ -108,7 +120,7 @@ static inline void raster_polygon(__global float4 *buffer, const real *x, const 
   const int steps = (int)fmin(extent, (real)MAP_SIZE) + 1;
   for (int i = 0; i < steps; i++) {
     const real part = (i + (real)0.5) / steps;
-    strew(buffer, x[a] + part * (x[b] - x[a]), y[a] + part * (y[b] - y[a]), light / steps);
+    strew(buffer, touched, x[a] + part * (x[b] - x[a]), y[a] + part * (y[b] - y[a]), light / steps);
   }
 }
 

@@ -63,7 +63,7 @@ class Beams:
         self.tally: Tally | None = None
         """Of the last pass."""
         self._programs: dict[tuple[int, int], Any] = {}
-        self._scratch: dict[tuple[int, int], tuple[Any, Any]] = {}
+        self._scratch: dict[tuple[int, int], tuple[Any, ...]] = {}
         self._clean = True
 
     def make(
@@ -116,7 +116,7 @@ class Beams:
         stones = [stone for stone in placed_stones(stage) if takes_beams(stone.shape)]
         points = [ray for ray in rays if ray.position is not None]
         parallel = [ray for ray in rays if ray.position is None]
-        light_maps, shade_maps = self._buffers(frame.held, len(points))
+        scratch = self._buffers(frame.held, len(points))
         chains, bands, first_chains = _chains(stage.scene, stones, number, self.real)
         origin = np.array(frame.middle)
         room = _room(stage.scene, frame, origin, self.real)
@@ -141,8 +141,7 @@ class Beams:
             light_buffer = point_lights if diverging else self._upload(_lights(group, brightest, origin, self.real))
             program = self._program(diverging, solids.most_facets)
             buffers = (
-                self._upload(room), light_buffer, solid_buffer, *arrays, light_maps, shade_maps, next_buffer,
-                tally_buffer,
+                self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, next_buffer, tally_buffer,
             )  # fmt: skip
             self._launch(program.cast_shadows, buffers, 0, len(group) * len(stones))
             followed = any(ray.follows for ray in group)
@@ -157,7 +156,7 @@ class Beams:
                     chunk = max(1, min(2 * chunk, int(seconds / pace)))
                     yield ALMOST * end / jobs
                 done = end
-        self._sum(self._upload(room), point_lights, (light_maps, shade_maps), target, keep, gain)
+        self._sum(self._upload(room), point_lights, scratch, target, keep, gain)
         cl.enqueue_copy(queue, tallies, tally_buffer)
         self._clean = True
         self.tally = Tally(**{name: float(tallies[name].sum()) for name in tally_type.names or ()})
@@ -190,24 +189,23 @@ class Beams:
         cl.enqueue_fill_buffer(self.device.queue, buffers[-2], np.array(begin, np.int32), 0, 4)
         kernel(self.device.queue, (self.items,), (1,), *buffers, np.int32(end))
 
-    def _sum(self, room: Any, points: Any, maps: tuple[Any, Any], target: Any, keep: float, gain: float) -> None:  # noqa: ANN401
+    def _sum(self, room: Any, points: Any, scratch: tuple[Any, ...], target: Any, keep: float, gain: float) -> None:  # noqa: ANN401
         if (-1, 0) not in self._programs:
             self._programs[-1, 0] = cl.Kernel(build(self.device, "light_sum.cl", self._options), "sum_map")
         self._programs[-1, 0](
-            self.device.queue, (self.items,), (1,), room, points, *maps, np.int32(self.items), target,
+            self.device.queue, (self.items,), (1,), room, points, *scratch, np.int32(self.items), target,
             np.float32(keep), np.float32(gain),
         )  # fmt: skip
 
-    def _buffers(self, held: int, points: int) -> tuple[Any, Any]:
-        """Where light and the shadows of points accumulate, of all work-items; empty."""
+    def _buffers(self, held: int, points: int) -> tuple[Any, ...]:
+        """Where light and the shadows of points accumulate, of all work-items, and which texels do; empty."""
         key = held, points
         if key not in self._scratch:
             self._scratch.clear()
-            texels = self.items * held * LEVELS * SIZE * STRIDE
-            flags = cl.mem_flags.READ_WRITE
-            self._scratch[key] = (
-                cl.Buffer(self.device.context, flags, 16 * texels),
-                cl.Buffer(self.device.context, flags, max(4, 4 * texels * points)),
+            rows = self.items * held * LEVELS * SIZE
+            sizes = 16 * rows * STRIDE, 4 * rows * STRIDE * points, 4 * rows, 4 * rows * points
+            self._scratch[key] = tuple(
+                cl.Buffer(self.device.context, cl.mem_flags.READ_WRITE, max(size, 16)) for size in sizes
             )
             self._clean = False
         if not self._clean:
