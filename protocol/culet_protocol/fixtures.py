@@ -49,13 +49,14 @@ MOVING = Frame(
     height=8,
     samples=1, bands=3, max_bounces=256, cutoff=0.015625, step=42, simulation_time=1.4375, timestamp=1_760_000_000.5,
     simulate_ms=0.125, render_ms=31.5, encode_ms=1.75, cut=0.03125, error=0.0625, payload=JPEG,
+    light_cut=0.125, light_error=0.0078125,
 )  # fmt: skip
 STILL = Frame(
     watch=bytes(range(240, 256)), codec=Codec.PNG,
     flags=Flags.KEY | Flags.FINAL | Flags.POLARISED | Flags.BELOW | Flags.RIGHT, sequence=0xFFFFFFFF, width=4, height=2,
     samples=1024, bands=64, max_bounces=65536, cutoff=2**-20, step=2**53 + 1, simulation_time=0,
     timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5, encode_ms=18.25, cut=0, error=0.015625,
-    payload=_png(4, 2, b"\x10\x80\xf0"),
+    payload=_png(4, 2, b"\x10\x80\xf0"), light_cut=0, light_error=0.001953125,
 )  # fmt: skip
 """Its sequence is the last before it wraps; its step is the first integer that a double cannot hold."""
 
@@ -63,7 +64,7 @@ STILL = Frame(
 def _with(frame: Frame, field: str, value: bytes | int) -> bytes:
     """The frame's bytes with one field of the header overwritten."""
     packed = frame.pack()
-    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (93, "I")}[field]
+    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (101, "I")}[field]
     return packed[:offset] + struct.pack("<" + form, value) + packed[offset + struct.calcsize(form) :]
 
 
@@ -81,7 +82,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
         "truncated_payload": (marked[:-1], f"{len(JPEG)} bytes", f"{len(JPEG) - 1}"),
         "trailing_byte": (marked + b"\0", f"{len(JPEG)} bytes", f"{len(JPEG) + 1}"),
         "wrong_magic": (_with(MOVING, "magic", b"NOPE"), "CULT", "NOPE"),
-        "wrong_version": (_with(MOVING, "version", 3), "version 4", "3"),
+        "wrong_version": (_with(MOVING, "version", 3), "version 5", "3"),
         "wrong_codec": (_with(MOVING, "codec", 9), "1 (JPEG)", "9"),
         "wrong_length": (_with(MOVING, "length", 5), "5 bytes", f"{len(JPEG)}"),
     }

@@ -7,13 +7,14 @@ Watch id, mark and version stay where they are in every version, so that a reade
 
 from __future__ import annotations
 
+import math
 import struct
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
 MAGIC = b"CULT"
-HEADER_VERSION = 4
+HEADER_VERSION = 5
 
 REFUSED = 0
 """In place of a codec: the payload is a sentence in UTF-8 about why there are no frames by this topic."""
@@ -50,6 +51,9 @@ class Flags(IntFlag):
     """Stones move slower than in real time: their steps, and those of others, take longer than there is time for."""
     KEY = 1024
     """The picture can be shown without any before it. A frame without this flag needs the one that it depends on."""
+    SHADOWS_ONLY = 2048
+    """Floor and walls show what stones take of the light, and not what goes through them: that would take too long
+    while things move, or the scene asks for it."""
 
 
 class FrameError(ValueError):
@@ -72,7 +76,7 @@ FIELDS = (
     HeaderField(
         "flags",
         "H",
-        "bits: 0 moving, 1 final, 2 polarised, 3 the frontier's error, 4 to 8 no stone seen, 9 slow, 10 key",
+        "bits: 0 moving, 1 final, 2 polarised, 3 frontier's error, 4 to 8 no stone seen, 9 slow, 10 key, 11 shadows only",
     ),
     HeaderField("sequence", "I", "number of the frame in its session, from 1"),
     HeaderField("depends_on", "I", "number of the frame that this one can be decoded after; 0 of a key frame"),
@@ -90,6 +94,8 @@ FIELDS = (
     HeaderField("encode_ms", "f", "milliseconds spent on tone mapping and encoding"),
     HeaderField("cut", "f", "mean weight of what the cut-off dropped, 0 to 1"),
     HeaderField("error", "f", "root mean square error of radiance: estimated, or the frontier's (bit 3), or NaN"),
+    HeaderField("light_cut", "f", "part of the stones' light that floor and walls miss, at most; NaN without a map"),
+    HeaderField("light_error", "f", "root mean square error of the light map, estimated; NaN without a map"),
     HeaderField("length", "I", "bytes of payload that follow"),
 )
 
@@ -121,6 +127,8 @@ class Frame:
     error: float
     payload: bytes
     depends_on: int = 0
+    light_cut: float = math.nan
+    light_error: float = math.nan
 
     def pack(self) -> bytes:
         """The message: header, then payload."""
@@ -130,7 +138,8 @@ class Frame:
             self.watch, MAGIC, HEADER_VERSION, self.codec, self.flags, self.sequence & 0xFFFFFFFF,
             self.depends_on & 0xFFFFFFFF, self.width, self.height, self.samples,
             self.bands, self.max_bounces, self.cutoff, self.step, self.simulation_time,
-            self.timestamp, self.simulate_ms, self.render_ms, self.encode_ms, self.cut, self.error, len(self.payload),
+            self.timestamp, self.simulate_ms, self.render_ms, self.encode_ms, self.cut, self.error,
+            self.light_cut, self.light_error, len(self.payload),
         )  # fmt: skip
         return header + self.payload
 
@@ -142,7 +151,7 @@ class Frame:
         (
             watch, magic, version, codec, flags, sequence, depends_on, width, height, samples,
             bands, max_bounces, cutoff, step,
-            simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, length,
+            simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, light_cut, light_error, length,
         ) = LAYOUT.unpack_from(message)  # fmt: skip
         if magic != MAGIC:
             raise FrameError(f"a frame is marked {MAGIC!r}, got {magic!r}")
@@ -160,7 +169,7 @@ class Frame:
         return cls(
             watch, codec, Flags(flags), sequence, width, height, samples, bands, max_bounces, cutoff, step,
             simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, payload,
-            depends_on,
+            depends_on, light_cut, light_error,
         )  # fmt: skip
 
 

@@ -14,13 +14,14 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.rendering.chains import is_spectral
+from culet.rendering.compiling import compiling
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import Effort
 from culet.rendering.light.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
 from culet.rendering.light.photons import PhotonMaps, Photons
 from culet.rendering.light.ray import Ray
-from culet.rendering.light.solids import takes_beams
+from culet.rendering.light.solids import FEW, takes_beams
 from culet.rendering.light.sources import mapped_surfaces, rays_of
 from culet.stage import Stage
 
@@ -38,6 +39,8 @@ RANDOM_CUTOFF = 3e-5
 """The same, of lamps that are as many directions as there are passes: one is not worth more."""
 FIRST_SECONDS = 0.05
 """s of passes before a resting picture's first sample: nobody sees a picture meanwhile."""
+COARSEST = 1.0
+"""A cut-off at which hardly anything is followed."""
 PHOTONS = 30.0
 """Of each channel, over the cut-off: at 1e-3 then 30,000 photons, whose error is like that of beams."""
 LEAST_PHOTONS = 3000
@@ -64,6 +67,8 @@ class Lighting:
         self._pool = pool
         self._kept: dict[_Key, Illumination] = {}
         self._beams: list[Beams] = []
+        self._warm: set[tuple[bool, bool, bool]] = set()
+        """Kinds of stages for whose beams there is machine code."""
         self.photons = Photons(device)
 
     def of(self, stage: Stage) -> Illumination | None:
@@ -82,12 +87,28 @@ class Lighting:
 
     def is_ready(self, stage: Stage) -> bool:
         """Whether a map can be begun without waiting for a compiler."""
-        return not mapped_surfaces(stage) or takes_only_beams(stage) or self.photons.is_ready(stage)
+        if not mapped_surfaces(stage):
+            return True
+        return beams_of(stage) in self._warm if takes_only_beams(stage) else self.photons.is_ready(stage)
 
     def make_ready(self, stage: Stage) -> None:
-        """Have programs compiled that are needed, in any thread."""
-        if not self.is_ready(stage):
-            self.photons.prepare(stage)
+        """Have the programs that are needed compiled, in any thread: by a pass of next to no light in a queue of its
+        own, since machine code is made at the first launch."""
+        if self.is_ready(stage):
+            return
+        device = replace(self.device, queue=cl.CommandQueue(self.device.context))
+        frame = frame_of(stage)
+        target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
+        rays = rays_of(stage, 0)
+        with compiling():
+            if takes_only_beams(stage):
+                Beams(device).make(stage, rays, frame, target, cutoff=COARSEST)
+                self._warm.add(beams_of(stage))
+            else:
+                photons = Photons(device)
+                for _ in photons.maps(stage, frame).pieces(target, rays[:1], number=0, photons=1):
+                    pass
+                self.photons.prepare(stage)
 
     def take_beams(self) -> Beams:
         """For one pass; passes of several pictures may be under way by turns."""
@@ -105,6 +126,12 @@ class Lighting:
 def takes_only_beams(stage: Stage) -> bool:
     """Whether all stones are such that beams are followed, or else photons."""
     return all(map(takes_beams, stage.shapes))
+
+
+def beams_of(stage: Stage) -> tuple[bool, bool, bool]:
+    """Which programs the beams of a stage need: for stones of many facets, for points, for lamps."""
+    points = [ray.position is not None for ray in rays_of(stage, 0)]
+    return any(len(shape.planes) > FEW for shape in stage.shapes), any(points), not all(points)
 
 
 class _Key(NamedTuple):
