@@ -61,6 +61,9 @@
 #ifndef LIGHTS // 0: none
 #define LIGHTS RUNTIME
 #endif
+#ifndef LIGHT_MAP // 0: no surface has a map of what shadows and caustics add to its light
+#define LIGHT_MAP RUNTIME
+#endif
 #ifndef SKY
 #define SKY RUNTIME
 #endif

@@ -9,6 +9,8 @@
 #define MAX_LAMPS 24
 #define MAX_SURFACES 4 // the floor and three walls
 #define MAX_STONES 64
+#define MAP_LEVELS 2   // of a light map
+#define MAP_SIZE 512   // rows and columns of each level
 
 typedef struct {
   double foot[3];        // the point of pixel (0, 0)'s ray that is abreast of the origin
@@ -36,22 +38,30 @@ typedef struct {
   real backdrop_scale[2];                              // from columns and rows to parts of the way to its edge
   real floor_colour[3];                                // STUDIO_FLOOR: radiance, by channel
   real floor_reflectance, floor_fade, floor_roughness; // of stones, per R of height, and the tilt at most
-  real surface[MAX_SURFACES][4];    // inward normal and offset: the room is n.x >= offset; the floor comes first
+  real surface[MAX_SURFACES][4];   // inward normal and offset: the room is n.x >= offset; the floor comes first
+  real sky_light[MAX_SURFACES][3]; // what the sky sends to a surface past no stone: the radiance of a white matte one
+  real albedo[2][2][3]; // of the floor's odd and even cells, then of the walls': of the light that each shows
+  real cells[2];        // per R, of the floor's checker and the walls'
+  real map_centre[MAX_SURFACES][2]; // along and across a surface, in the frame
+  real map_scale[MAP_LEVELS];       // 1 / half size of a level
+  real even_light[3];               // STUDIO_FLOOR: part of its light that comes from all around,
+  real map_gain[3];                 // and 1 / all its light
   real light[MAX_LIGHTS][3];        // position
   real light_colour[MAX_LIGHTS][3]; // by channel
   real least_shade;                 // part of the floor's light below which a stone's contact shadow is none
   int stones, groups;
   int lights, lamps, boxes;
-  int max_bounces;   // interior segments of a chain, at most
+  int max_bounces;           // interior segments of a chain, at most
   int width, height;
-  int chains;        // one for each index of refraction
+  int chains;                // one for each index of refraction
   int panorama_width, panorama_height;
-  int sample;        // its number, from which chance and the pixels' wavelengths are drawn
+  int sample;                // its number, from which chance and the pixels' wavelengths are drawn
   int floor_kind, walls_kind, sky_kind, fresnel_kind, end_kind;
-  int camera_inside; // a stone,
-  int camera_stone;  // this one
+  int camera_inside;         // a stone,
+  int camera_stone;          // this one
   int has_head, has_backdrop, glare;
-  int pierces;       // a stone reaches through a surface of the room, which may hide a part of it
+  int has_map, floor_mapped; // light_map is there, of the floor too
+  int pierces;               // a stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 
 // A stone. Its facets, triangles and shadows are in its own measure: relative to its centre, in the world's axes (triangles:

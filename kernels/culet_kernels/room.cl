@@ -1,15 +1,15 @@
-// The room around the stone: floor, walls, lights and sky. Its look is the report's: a checker of cells of 1 R, a matte
-// surface of radiance albedo (0.2 + sum of colour max(n.l, 0) shadow), and a mirror that returns four fifths.
+// The room around the stone: floor, walls, lights and sky. A matte surface shows its albedo times the light that falls on
+// it; a mirror returns four fifths, and shows a little light of its own.
 #ifndef CULET_ROOM
 #define CULET_ROOM
+#include "light_map.cl"
 #include "polarisation.cl"
-#include "sky.cl"
 #include "stones.cl"
 
-#define AMBIENT ((real)0.2)      // of a matte surface, in lights of colour 1
-#define SHADOW ((real)0.2)       // what reaches a shaded point of a light
 #define MIRROR_REFLECTANCE ((real)0.8)
-#define MIRROR_SHARE ((real)0.2) // of a mirror's own light in what it shows
+// The report's light: so much from all around, and so much of each light in its shadow.
+#define CLASSIC_AMBIENT ((real)0.2)
+#define CLASSIC_SHADOW ((real)0.2)
 // Cosine to a surface below which a ray passes it by: the horizon, 1e6 R away for an eye 1 R above the floor. A ray that
 // is closer to parallel would meet it where the checker is finer than a float.
 #define HORIZON ((real)1e-6)
@@ -33,21 +33,37 @@ static inline realL checker(realL u, realL v) { // 0 or 0.5
   return half_sum - floor_lanes(half_sum);
 }
 
-// The light that falls on a surface, ambient included.
-static inline radianceL lighting(world_t world, vec3L point, vec3L normal, maskL mask, channels_t channels) {
+// Where a ray meets the room.
+typedef struct {
+  vec3L point, normal;
+  intL surface;
+  realL along, across; // the surface's own coordinates, about the middle of its map
+  maskL mask, matte;
+} placeL;
+
+// The light that falls on a surface, as the radiance of a white matte one: the sky's as if there were no stones, points'
+// with their hard shadows, and what a light map adds. A map holds the points' shadows too: where there is one, none is
+// looked for.
+static inline radianceL lighting(world_t world, placeL place, radianceL from_sky, channels_t channels) {
   __constant const parameters_t *scene = world.scene;
-  radianceL sum = {{splat(AMBIENT), splat(AMBIENT), splat(AMBIENT)}};
-  if (LIGHTS == 0) return sum;
-  for (int i = 0; i < scene->lights; i++) {
-    const vec3L to_light =
-        vec3(scene->light[i][0] - point.x, scene->light[i][1] - point.y, scene->light[i][2] - point.z);
-    const realL cosine = dot3(normal, to_light) * rsqrt(fmax(dot3(to_light, to_light), splat((real)1e-30)));
-    const maskL lit = mask & (cosine > 0);
-    const maskL shaded = stone_shadow(world, i, point, to_light, lit);
-    const realL arriving = blend(lit, cosine * blend(shaded, splat(SHADOW), splat(1)), splat(0));
-    EACH_CHANNEL (k, channels)
-      sum.channel[k] = fma(arriving, splat(scene->light_colour[i][channels.first + k]), sum.channel[k]);
-  }
+  radianceL sum = from_sky;
+  realL mapped = splat(0);
+  if (DECIDED(LIGHT_MAP, scene->has_map))
+    mapped = add_light_map(world, place.surface, place.along, place.across, place.matte, channels, &sum);
+  if (LIGHTS != 0)
+    for (int i = 0; i < scene->lights; i++) {
+      const vec3L to_light = vec3(scene->light[i][0] - place.point.x, scene->light[i][1] - place.point.y,
+                                  scene->light[i][2] - place.point.z);
+      const realL cosine = dot3(place.normal, to_light) * rsqrt(fmax(dot3(to_light, to_light), splat((real)1e-30)));
+      const maskL lit = place.mask & (cosine > 0);
+      const maskL shaded = stone_shadow(world, i, place.point, to_light, lit & (mapped < 1));
+      const realL passed = ESTIMATOR == CLASSIC ? splat(CLASSIC_SHADOW) : mapped;
+      const realL arriving = blend(lit, cosine * blend(shaded, passed, splat(1)), splat(0));
+      EACH_CHANNEL (k, channels)
+        sum.channel[k] = fma(arriving, splat(scene->light_colour[i][channels.first + k]), sum.channel[k]);
+    }
+  if (LIGHT_MAP != 0)
+    EACH_CHANNEL (k, channels) sum.channel[k] = fmax(sum.channel[k], splat(0)); // a map is rounded
   return sum;
 }
 
@@ -136,8 +152,10 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   view.radiance = backdrop ? *backdrop : sky(world, ray.direction, channels);
   if (viewer == BY_STONE && DECIDED(HEAD, scene->has_head))
     hide_by_head(world, ray.direction, !none, channels, &view.radiance);
+  const int has_map = DECIDED(LIGHT_MAP, scene->has_map);
   const int endless = walls_kind == NONE ? floor_kind == STUDIO_FLOOR : 0;
-  if (viewer == BY_STONE ? endless : 0) { // the same wherever it is met
+  const int same = has_map ? 0 : endless;
+  if (viewer == BY_STONE ? same : 0) { // the same wherever it is met
     view.meets = ray.direction.y < -HORIZON;
     EACH_CHANNEL (k, channels)
       view.radiance.channel[k] =
@@ -147,8 +165,11 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   const int first = floor_kind == NONE ? 1 : 0, last = walls_kind == NONE ? 1 : MAX_SURFACES;
   if (first == last) return view;
 
-  realL nearest = splat(1e30f);
+  realL nearest = splat(1e30f), centre_along = splat(0), centre_across = splat(0);
   maskL met = none, mirror = none, studio = none;
+  radianceL from_sky = black();
+  placeL place;
+  place.surface = (intL)(first);
   for (int i = first; i < last; i++) {
     const real nx = scene->surface[i][0], ny = scene->surface[i][1], nz = scene->surface[i][2];
     const realL speed = ray.direction.x * nx + ray.direction.y * ny + ray.direction.z * nz;
@@ -157,6 +178,13 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
     const maskL nearer = (speed < -HORIZON) & (gap + ray.start * speed > -SLOP) & (t < nearest);
     nearest = blend(nearer, t, nearest);
     view.normal = blend3(nearer, vec3(splat(nx), splat(ny), splat(nz)), view.normal);
+    EACH_CHANNEL (k, channels)
+      from_sky.channel[k] = blend(nearer, splat(scene->sky_light[i][channels.first + k]), from_sky.channel[k]);
+    if (has_map) {
+      place.surface = blend_ints_by(nearer, (intL)(i), place.surface);
+      centre_along = blend(nearer, splat(scene->map_centre[i][0]), centre_along);
+      centre_across = blend(nearer, splat(scene->map_centre[i][1]), centre_across);
+    }
     met |= nearer;
     const int kind = i == 0 ? floor_kind : walls_kind;
     mirror = kind == MIRROR ? mirror | nearer : mirror & !nearer;
@@ -166,10 +194,24 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   nearest = blend(met, nearest, splat(0));
   view.point = along(ray.origin, nearest, ray.direction);
   view.meets = met;
+  const maskL is_floor = view.normal.y > (real)0.5;
+  if (has_map) {
+    place.along =
+        blend(is_floor, view.point.x, view.normal.z * view.point.x - view.normal.x * view.point.z) - centre_along;
+    place.across = blend(is_floor, view.point.z, view.point.y) - centre_across;
+  }
   if (floor_kind == STUDIO_FLOOR) {
-    const realL lit = viewer == BY_CAMERA ? past_stones(world, view.point) : splat(1);
+    const realL open = viewer == BY_CAMERA ? past_stones(world, view.point) : splat(1);
+    radianceL thrown = black();
+    if (has_map ? scene->floor_mapped : 0)
+      add_light_map(world, place.surface, place.along, place.across, studio, channels, &thrown);
     EACH_CHANNEL (k, channels) {
       const realL colour = backdrop ? backdrop->channel[k] : splat(scene->floor_colour[channels.first + k]);
+      realL lit = open;
+      if (has_map) {
+        const real even = scene->even_light[channels.first + k];
+        lit = fmax(fma(even, open, (1 - even) + scene->map_gain[channels.first + k] * thrown.channel[k]), splat(0));
+      }
       view.radiance.channel[k] = blend(studio, lit * colour, view.radiance.channel[k]);
     }
     view.glossy = studio;
@@ -180,14 +222,23 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   // Checkers are counted in the world: over x and z on the floor, along the wall and over y on a wall.
   const realL x = view.point.x + scene->origin[0], y = view.point.y + scene->origin[1],
               z = view.point.z + scene->origin[2];
-  const maskL is_floor = view.normal.y > (real)0.5;
+  const realL cells = blend(is_floor, splat(scene->cells[0]), splat(scene->cells[1]));
   const realL u = blend(is_floor, x, view.normal.z * x - view.normal.x * z), v = blend(is_floor, z, y);
-  const maskL odd = checker(u, v) > (real)0.25;
-  const realL matte = blend(odd, splat((real)0.9), splat((real)0.6));
-  const realL mirrored = MIRROR_SHARE * blend(odd, splat((real)0.05), splat((real)0.1));
-  const realL albedo = blend(mirror, mirrored, matte);
-  const radianceL light = lighting(world, view.point, view.normal, met, channels);
-  EACH_CHANNEL (k, channels) view.radiance.channel[k] = blend(met, albedo * light.channel[k], view.radiance.channel[k]);
+  const maskL odd = checker(cells * u, cells * v) > (real)0.25;
+  place.point = view.point;
+  place.normal = view.normal;
+  place.mask = met;
+  place.matte = met & !mirror;
+  if (ESTIMATOR == CLASSIC)
+    EACH_CHANNEL (k, channels) from_sky.channel[k] = splat(CLASSIC_AMBIENT);
+  const radianceL light = lighting(world, place, from_sky, channels);
+  EACH_CHANNEL (k, channels) {
+    const int channel = channels.first + k;
+    const realL floor_albedo = blend(odd, splat(scene->albedo[0][0][channel]), splat(scene->albedo[0][1][channel]));
+    const realL wall_albedo = blend(odd, splat(scene->albedo[1][0][channel]), splat(scene->albedo[1][1][channel]));
+    const realL albedo = walls_kind == NONE ? floor_albedo : blend(is_floor, floor_albedo, wall_albedo);
+    view.radiance.channel[k] = blend(met, albedo * light.channel[k], view.radiance.channel[k]);
+  }
   view.reflects = met & mirror;
   return view;
 }

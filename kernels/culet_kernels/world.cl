@@ -17,7 +17,8 @@
   BUFFER(__global const int, links)                                                                                    \
   BUFFER(__global const real, corners)                                                                                 \
   BUFFER(__global const chain_t, chains)                                                                               \
-  BUFFER(__global const float, panorama) /* IMAGE: radiance by row from the zenith down, column and channel */
+  BUFFER(__global const float, panorama)  /* IMAGE: radiance by row from the zenith down, column and channel */        \
+  BUFFER(__global const float, light_map) /* LIGHT_MAP: by surface, level, row, column and channel, see light_map.cl */
 
 #define AS_MEMBER(type, name) type *name;
 #define AS_ARGUMENT(type, name) type *name,

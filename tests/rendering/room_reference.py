@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
+from culet.rendering.light.unshaded import sky_light
 from culet.scene import Scene
 from culet.scene.emitters import BoxLamp, PointLight, RoundLamp, Sun
+from culet.scene.room import Floor, Plane
 from culet.scene.sky import (
     ConstantEnvironment,
     Environment,
@@ -23,13 +25,13 @@ from culet.scene.sky import (
     LightEnvironment,
     StudioEnvironment,
 )
+from culet.stage import Stage
 from rendering.views import Array, pixel_directions
 
 SURFACES = np.array([[0, 1, 0, -1], [0, 0, 1, -8], [math.sqrt(3) / 2, 0, 0.5, -8], [-math.sqrt(3) / 2, 0, 0.5, -8]])
 """The room is n.x >= d; the floor comes first."""
-MATTE = 0.6, 0.9
 MIRROR = 0.1, 0.05
-"""Albedo of the checker's even and odd cells, of 1 R."""
+"""Albedo of a mirror's even and odd cells, of 1 R."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,15 +138,30 @@ def passes_through(
     return hits
 
 
-def lighting(scene: Scene, planes: Array, point: Array, normal: Array) -> Array:
-    """(N, 3) light on surfaces: 0.2 of ambient, and each light's colour by its cosine, a fifth of it in the shadow."""
-    total = np.full(point.shape, 0.2)
+def lighting(scene: Scene, planes: Array, point: Array, normal: Array, which: NDArray[np.integer]) -> Array:
+    """(N, 3) light on surfaces, as the radiance of white ones: the sky's, which `test_unshaded_light.py` judges, and
+    each point's colour by its cosine, none of it in the shadow."""
+    total = sky_light(Stage(scene, (), None))[which]
     for light in scene.points:
         way = np.array(light.position) - point
         cosine = (way * normal).sum(axis=1) / np.linalg.norm(way, axis=1)
-        shadow = np.where(passes_through(planes, point, way, 1.0), 0.2, 1.0)
+        shadow = np.where(passes_through(planes, point, way, 1.0), 0.0, 1.0)
         total += (np.maximum(cosine, 0) * shadow)[:, None] * np.array(light.colour)
     return total
+
+
+def cell_of(surface: Floor) -> float:
+    """R."""
+    checkered = isinstance(surface, Plane) and surface.kind == "matte" and surface.checker != "off"
+    return surface.checker.cell if checkered else 1.0
+
+
+def albedos_of(surface: Floor) -> tuple[Array, Array]:
+    """(3,) of the even cells, and of the odd ones."""
+    if not isinstance(surface, Plane) or surface.kind == "mirror":
+        return np.full(3, 0.2 * MIRROR[0]), np.full(3, 0.2 * MIRROR[1])
+    odd = np.array(surface.albedo)
+    return (odd if surface.checker == "off" else np.array(surface.checker.albedo)), odd
 
 
 def look_around(scene: Scene, stone: Shape | None, width: int, height: int) -> Seen:
@@ -172,9 +189,11 @@ def look_around(scene: Scene, stone: Shape | None, width: int, height: int) -> S
         point = origin + np.where(met, nearest, 0)[:, None] * direction
         along = np.where(which == 0, point[:, 0], normal[:, 2] * point[:, 0] - normal[:, 0] * point[:, 2])
         across = np.where(which == 0, point[:, 2], point[:, 1])
-        odd = ((np.floor(along) + np.floor(across)) % 2).astype(int)
-        albedo = np.where(mirror, 0.2 * np.array(MIRROR)[odd], np.array(MATTE)[odd])
-        seen = np.where(met[:, None], albedo[:, None] * lighting(scene, planes, point, normal), seen)
+        cell = np.array([cell_of(scene.floor), *[cell_of(scene.walls)] * 3])[which]
+        odd = ((np.floor(along / cell) + np.floor(across / cell)) % 2).astype(int)
+        albedos = np.array([albedos_of(scene.floor), *[albedos_of(scene.walls)] * 3])
+        light = lighting(scene, planes, point, normal, which)
+        seen = np.where(met[:, None], albedos[which, odd] * light, seen)
         radiance += np.where(stopped, 0, weight)[:, None] * seen
         stopped |= ~mirror
         weight = weight * 0.8

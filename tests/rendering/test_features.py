@@ -151,8 +151,8 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
     assert left["mirror"] == {"lights", "lamps"}
     assert left["tinted-blue"] == {"lights", "absorption"}
     assert features_of(staged(legacy(OWN["bare"]))) == Features(
-        Geometry.HULL, floor=0, walls=0, lights=0, sky=SKY["constant"], lamps=0, boxes=0, head=0, backdrop=0, glare=1,
-        dispersion=0, absorption=0, fresnel=0, end=0, camera_inside=0,
+        Geometry.HULL, floor=0, walls=0, lights=0, light_map=0, sky=SKY["constant"], lamps=0, boxes=0, head=0,
+        backdrop=0, glare=1, dispersion=0, absorption=0, fresnel=0, end=0, camera_inside=0,
     )  # fmt: skip
 
 

@@ -35,6 +35,18 @@ SKIES: dict[str, dict[str, Any]] = {
 ROOMS = [(floor, walls) for floor in ("none", "matte", "mirror") for walls in ("none", "matte", "mirror")]
 
 
+PAINTED: dict[str, dict[str, Any]] = {
+    "coloured": {
+        "floor": {"kind": "matte", "albedo": [0.1, 0.5, 0.9], "checker": {"albedo": [0.9, 0.2, 0], "cell": 2.7}},
+    },
+    "plain": {"floor": {"kind": "matte", "albedo": [0.4, 0.4, 0.3], "checker": "off"}},
+    "walls of their own": {
+        "floor": {"kind": "matte"}, "walls": {"kind": "matte", "albedo": [0.3, 0.2, 0.1], "checker": {"cell": 0.4}},
+    },
+    "for matte surfaces alone": {"floor": {"kind": "mirror", "albedo": [0, 1, 0], "checker": "off"}},
+}  # fmt: skip
+
+
 def compare(renderer: Renderer, scene: Scene, stone: Shape | None, tolerance: float, doubtful: int) -> None:
     """Pixels that see the room alone agree, but for those whose ray meets a checker's or a shadow's edge."""
     expected = look_around(scene, stone, *SIZE)
@@ -80,12 +92,17 @@ def test_every_room_is_as_described(renderer: Renderer, exact: Renderer, floor: 
     compare(renderer, scene, None, 1e-3, 40)  # of 5184: lamps' edges, up to 7e-4; the far checker's edges
 
 
+@pytest.mark.parametrize("painted", PAINTED.values(), ids=PAINTED.keys())
+def test_surfaces_have_the_albedo_and_the_checker_that_the_scene_says(exact: Renderer, painted: dict[str, Any]) -> None:
+    compare(exact, legacy({**WIDE, "stones": [], **painted}), None, 5e-12, 0)
+
+
 def test_a_mirror_floor_returns_four_fifths_of_the_sky_and_a_fifth_of_its_own_light(exact: Renderer) -> None:
-    """The closed form for no lights: 0.8 sky + 0.2 x 0.2 x albedo, albedo 0.1 and 0.05."""
+    """The closed form under an even sky: (0.8 + 0.2 x albedo) sky, albedo 0.1 and 0.05."""
     data = {"stones": [], "emitters": [], "environment": {"kind": "constant", "radiance": [1, 2, 4]}}
     camera = {"position": [0, 3, 0], "target": [0.5, -1, 0.5], "fov_degrees": 50}
     pixels = radiance(take(exact, legacy({**data, "camera": camera}))).reshape(-1, 3)
-    expected = np.array([[0.8 * c + 0.04 * albedo for c in (1, 2, 4)] for albedo in (0.1, 0.05)])
+    expected = np.array([[(0.8 + 0.2 * albedo) * c for c in (1, 2, 4)] for albedo in (0.1, 0.05)])
     distance = abs(pixels[:, None, :] - expected).max(axis=-1)
     assert distance.min(axis=1).max() < 1e-14
     assert (distance < 1e-14).mean(axis=0).min() > 0.3  # both kinds of cell are seen

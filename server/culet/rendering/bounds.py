@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from culet.rendering.parameters import sky_colours
+from culet.rendering.light.unshaded import sky_light
+from culet.rendering.sky_colours import sky_colours
 from culet.scene.emitters import boxes, discs
-from culet.scene.room import StudioFloor
+from culet.scene.room import Plane, StudioFloor
 from culet.scene.sky import ImageEnvironment
 from culet.stage import Stage
 
-MATTE_ALBEDO = 0.9
-"""Of the checker's brighter cells, as in room.cl."""
-AMBIENT = 0.2
+CLASSIC_AMBIENT = 0.2
 """Of the light that falls on a surface, as in room.cl."""
 
 
-def largest_radiance(stage: Stage) -> float:
+def largest_radiance(stage: Stage, thrown: float = 0) -> float:
     """Of any channel, in any direction, from any place. A mirror shows a fifth of a surface's light and four fifths of
-    something else, so it is no brighter than the brightest of both."""
+    something else, so it is no brighter than the brightest of both. `thrown` is the most that a light map holds."""
     scene, environment = stage.scene, stage.scene.environment
     if isinstance(environment, ImageEnvironment) and stage.panorama is not None:
         brightest = float(stage.panorama.max()) * environment.scale
@@ -33,7 +32,16 @@ def largest_radiance(stage: Stage) -> float:
         brightest = max(brightest, *scene.head.radiance)
     if isinstance(scene.floor, StudioFloor):
         brightest = max(brightest, *scene.floor.colour)
-    if scene.floor.kind in ("matte", "mirror") or scene.walls.kind != "none":
-        light = AMBIENT + np.sum([light.colour for light in scene.points], axis=0).max(initial=0)
-        brightest = max(brightest, MATTE_ALBEDO * float(light))
+    points = np.sum([light.colour for light in scene.points], axis=0).max(initial=0) + thrown
+    classic = scene.optics.estimator == "classic"
+    for surface, light in zip((scene.floor, scene.walls), _sky_light(stage), strict=True):
+        if isinstance(surface, Plane) and surface.kind != "none":
+            albedo = 1.0 if surface.kind == "mirror" else float(np.max(surface.albedos))
+            brightest = max(brightest, albedo * float((CLASSIC_AMBIENT if classic else light) + points))
     return brightest
+
+
+def _sky_light(stage: Stage) -> tuple[float, float]:
+    """The most of any channel on the floor, and on a wall."""
+    light = sky_light(stage)
+    return float(light[0].max()), float(light[1:].max())

@@ -10,6 +10,7 @@ from culet.errors import SceneError
 from culet.geometry.shape import Shape
 from culet.optics.dispersion import channel_indices
 from culet.rendering.chains import is_coloured, is_spectral
+from culet.rendering.light.sources import mapped_surfaces
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.placed_stone import camera_stone, placed_stones
 from culet.scene.emitters import boxes, discs
@@ -55,6 +56,7 @@ class Features:
     floor: int = RUNTIME
     walls: int = RUNTIME
     lights: int = RUNTIME
+    light_map: int = RUNTIME
     sky: int = RUNTIME
     lamps: int = RUNTIME
     boxes: int = RUNTIME
@@ -135,6 +137,7 @@ def features_of(stage: Stage) -> Features:
         floor=SURFACE[floor.kind],
         walls=SURFACE[walls.kind],
         lights=RUNTIME if scene.points and lit else 0,
+        light_map=RUNTIME if mapped_surfaces(stage) else 0,
         sky=SKY[environment.kind],
         lamps=RUNTIME if discs(scene.shown_lamps) else 0,
         boxes=RUNTIME if boxes(scene.shown_lamps) else 0,

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_spectral
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
+from culet.rendering.light.light_map import BoundMap
+from culet.rendering.lit_room import set_light_map
 from culet.rendering.parameters import parameters
-from culet.rendering.placed_stone import placed_stones
+from culet.rendering.placed_stone import origin_of, placed_stones
 from culet.rendering.stone_table import StoneTable, grouped
 from culet.scene.model import Scene
 from culet.scene.sky import ImageEnvironment
@@ -30,13 +32,17 @@ class Inputs:
         height: int,
         features: Features,
         real: Real,
+        light_map: BoundMap | None = None,
     ) -> None:
         scene, stones = stage.scene, grouped(placed_stones(stage))
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
         self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
         self._sample = -1
-        self._struct = parameters(scene, stones, width, height, real)
+        self._struct = parameters(stage, stones, width, height, real)
+        self._light_map = light_map
+        if light_map is not None:
+            set_light_map(self._struct, light_map.frame, stage, origin_of(scene, stones))
         self._table = StoneTable.of(scene, stones, width, height, features, real)
         self._struct["stones"], self._struct["groups"] = len(stones), len(self._table.groups)
         tree = self._table.tree
@@ -71,7 +77,10 @@ class Inputs:
             self._uploaded = self._upload(self._struct), self._upload(stones), self._upload(chains)
             self._sample = sample
         struct, table, chains = self._uploaded
-        return {"scene": struct, "stones": table, **self._fixed, "chains": chains, "panorama": self._panorama}
+        return {
+            "scene": struct, "stones": table, **self._fixed, "chains": chains, "panorama": self._panorama,
+            "light_map": self._light_map.buffer if self._light_map else None,
+        }  # fmt: skip
 
     @property
     def chain_steps(self) -> int:

@@ -10,56 +10,21 @@ from numpy.typing import NDArray
 from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.layout import struct
+from culet.rendering.lit_room import set_room_light
 from culet.rendering.placed_stone import PlacedStone, camera_stone, origin_of
 from culet.rendering.projection import project
+from culet.rendering.sky_colours import sky_colours
 from culet.rendering.studio import least_shade, set_studio
-from culet.scene.model import Scene
-from culet.scene.room import FLOOR_Y, WALL_DISTANCE, WALL_NORMALS
-from culet.scene.sky import (
-    ConstantEnvironment,
-    Environment,
-    GradientEnvironment,
-    HalfEnvironment,
-    LightEnvironment,
-    StudioEnvironment,
-)
+from culet.rendering.surfaces import room_surfaces, shown_surfaces
+from culet.stage import Stage
 
 
-def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Radiance at the bottom and at the top; equal where it is the same everywhere. Dark and light are the report's."""
-    match environment:
-        case ConstantEnvironment(radiance=radiance):
-            return radiance, radiance
-        case HalfEnvironment(radiance=radiance):
-            return (0, 0, 0), radiance
-        case GradientEnvironment(bottom=bottom, top=top):
-            return bottom, top
-        case StudioEnvironment(ambient=ambient):
-            return ambient, ambient
-        case LightEnvironment():
-            return (0.7, 0.85, 1), (0.7, 0.85, 1)
-        case _:
-            return (0.05, 0.05, 0.1), (0.2, 0.2, 0.3)
-
-
-def room_surfaces(centre: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(4, 4) floor and walls as inward normal and offset, relative to a place."""
-    normals = np.array([(0, 1, 0), *WALL_NORMALS], dtype=float)
-    offsets = np.array([FLOOR_Y, *[-WALL_DISTANCE] * 3]) - normals @ centre
-    return np.column_stack([normals, offsets])
-
-
-def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(S, 4) those of the room's surfaces that the scene has."""
-    return room_surfaces(centre)[[scene.floor.kind != "none", *[scene.walls.kind != "none"] * 3]]
-
-
-def parameters(scene: Scene, stones: Sequence[PlacedStone], width: int, height: int, real: Real) -> NDArray[np.void]:
+def parameters(stage: Stage, stones: Sequence[PlacedStone], width: int, height: int, real: Real) -> NDArray[np.void]:
     """One struct; every position is relative to the stones' middle, subtracted in double precision.
 
     What depends on other buffers (the table of stones, chains, panorama) is left zero.
     """
-    p = np.zeros((), struct("parameters_t", real))
+    p, scene = np.zeros((), struct("parameters_t", real)), stage.scene
     origin = origin_of(scene, stones)
     projection = project(scene, stones, width, height)
     p["foot"], p["foot_column"], p["foot_row"] = projection.foot
@@ -70,6 +35,7 @@ def parameters(scene: Scene, stones: Sequence[PlacedStone], width: int, height: 
     p["sky_bottom"], p["sky_top"] = sky_colours(scene.environment)
     set_studio(p, scene, origin, width, height)
     p["surface"] = room_surfaces(origin)
+    set_room_light(p, stage)
     for number, light in enumerate(scene.points):
         p["light"][number] = np.array(light.position) - origin
         p["light_colour"][number] = light.colour

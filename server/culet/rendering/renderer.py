@@ -19,6 +19,7 @@ from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, by_half_spaces, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
+from culet.rendering.light.light_map import BoundMap
 from culet.rendering.pace import Pace
 from culet.rendering.program import Programs
 from culet.rendering.sums import Fold, Sums
@@ -73,9 +74,11 @@ class Renderer:
         height: int,
         *,
         features: Features | None = None,
+        light_map: BoundMap | None = None,
     ) -> Picture:
-        """An empty picture of the stage, to be refined. `features` asks for another program than the stage needs."""
-        return Picture(self, stage, width, height, features)
+        """An empty picture of the stage, to be refined. `features` asks for another program than the stage needs.
+        Without a light map only points throw shadows, and nothing throws caustics."""
+        return Picture(self, stage, width, height, features, light_map)
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more."""
@@ -155,6 +158,7 @@ class Picture:
         width: int,
         height: int,
         features: Features | None,
+        light_map: BoundMap | None = None,
     ) -> None:
         self.stage, self.width, self.height = stage, width, height
         self.seconds = 0.0
@@ -169,7 +173,7 @@ class Picture:
             raise ValueError(f"features: expected stones {needed.stones}, the scene's, got {features.stones}")
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._kernel = get(features, renderer.variant)
-        self._inputs = Inputs(renderer.device, stage, width, height, features, real)
+        self._inputs = Inputs(renderer.device, stage, width, height, features, real, light_map)
         tile = tile_of(features)
         self._tiles = math.ceil(width / tile), math.ceil(height / tile)
         size = width * height * 4 * np.dtype(real).itemsize

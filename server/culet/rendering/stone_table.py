@@ -14,11 +14,11 @@ from culet.rendering.device import Real
 from culet.rendering.features import Features, Geometry, Stones, by_half_spaces
 from culet.rendering.layout import struct
 from culet.rendering.mirrors import makes_finite_group
-from culet.rendering.parameters import shown_surfaces
 from culet.rendering.placed_stone import PlacedStone, origin_of
 from culet.rendering.projection import Projection, project
 from culet.rendering.shadows import shadow_planes
 from culet.rendering.studio import contact_form, shade_reach
+from culet.rendering.surfaces import shown_surfaces
 from culet.rendering.tree import WIDTH, Tree, tree_of
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y, StudioFloor

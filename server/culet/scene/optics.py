@@ -34,4 +34,14 @@ class Optics(Model):
         description="Whether the stone's surface shows what it reflects outside. Without it the picture is not "
         "physical: it shows what comes out of the stone, as a polarising filter does in part.",
     )
+    caustics: Literal["on", "off"] = Field(
+        "on",
+        description="Whether matte surfaces show the light that stones throw; a studio floor shows that of points and "
+        "of lamps of at most 1 degree. Without it stones throw their shadows alone.",
+    )
+    caustics_cutoff: Annotated[float, Field(ge=1e-9, le=1)] = Field(
+        1e-3,
+        description="Flux at which a beam of that light ends, R^2 times the light's irradiance; what it carried is "
+        "counted as cut.",
+    )
     estimator: Literal["chain", "classic"] = "chain"

@@ -16,11 +16,51 @@ WALL_DISTANCE = 8.0
 WALL_NORMALS = ((0.0, 0.0, 1.0), (math.sqrt(0.75), 0.0, 0.5), (-math.sqrt(0.75), 0.0, 0.5))
 """Inward: a hexagon's three far sides."""
 
+MIRROR_REFLECTANCE = 0.8
+MIRROR_SHARE = 0.2
+"""Of a mirror's own light in what it shows."""
+MIRROR_ALBEDOS = 0.05, 0.1
+"""Of the odd and even cells of a mirror's checker, of which each is 1 R wide."""
+
+Albedo = tuple[Part, Part, Part]
+"""By channel: the part of the light that a matte surface returns."""
+
+
+class Checker(Model):
+    """Square cells that differ from their neighbours, counted from the world's origin."""
+
+    albedo: Albedo = Field((0.6, 0.6, 0.6), description="Of every other cell.")
+    cell: Annotated[float, Field(ge=1e-3, le=1e6)] = Field(1, description="Side of a cell, R.")
+
+
+def _form_of_checker(value: object) -> str | None:
+    if value == "off":
+        return "<off>"
+    return "<checker>" if isinstance(value, dict | Checker) else None
+
 
 class Plane(Model):
-    """The floor, or the three walls at distance 8: absent, matte (checkered, lit, shadowed) or a mirror."""
+    """The floor, or the three walls at distance 8: absent, matte or a mirror.
+
+    A matte surface is lit by all emitters, and stones throw shadows and caustics onto it. A mirror has a checker of its
+    own, and no use for albedo and checker.
+    """
 
     kind: Literal["none", "matte", "mirror"] = "none"
+    albedo: Albedo = Field((0.9, 0.9, 0.9), description="Of a matte surface.")
+    checker: Annotated[
+        Annotated[Literal["off"], Tag("<off>")] | Annotated[Checker, Tag("<checker>")],
+        Discriminator(
+            _form_of_checker,
+            custom_error_type="checker",
+            custom_error_message="Input should be 'off' or a checker's `albedo` and `cell`",
+        ),
+    ] = Field(Checker(), description="Of a matte surface; `off` makes it plain.")
+
+    @property
+    def albedos(self) -> tuple[Albedo, Albedo]:
+        """Of a matte surface's odd and even cells."""
+        return self.albedo, self.albedo if self.checker == "off" else self.checker.albedo
 
 
 class StudioFloor(Model):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.rendering.parameters import room_surfaces
+from culet.rendering.light.sources import mapped_surfaces
 from culet.rendering.placed_stone import extent_of, placed_stones
+from culet.rendering.surfaces import room_surfaces
 from culet.stage import Stage
 
 Array = NDArray[np.float64]
@@ -94,9 +96,7 @@ class MapFrame:
 
 def frame_of(stage: Stage) -> MapFrame:
     """The frame for where the stones are."""
-    scene, stones = stage.scene, placed_stones(stage)
-    floor, walls = scene.floor.kind == "matte", scene.walls.kind == "matte"
-    matte = (*((0,) if floor else ()), *((1, 2, 3) if walls else ()))
+    stones = placed_stones(stage)
     weights = np.array([stone.scale**2 for stone in stones])
     middle = np.zeros(3)
     if stones:
@@ -104,7 +104,16 @@ def frame_of(stage: Stage) -> MapFrame:
     half = ABOUT + (extent_of(stones, middle) if stones else 1.0)
     centres = tuple((float(u), float(v)) for u, v in (surface.coordinates(middle) for surface in surfaces()))
     x, y, z = (float(component) for component in middle)
-    return MapFrame(matte, (x, y, z), centres, (half, COARSER * half))
+    return MapFrame(mapped_surfaces(stage), (x, y, z), centres, (half, COARSER * half))
+
+
+@dataclass(frozen=True, eq=False)
+class BoundMap:
+    """A map on the device, and where it lies."""
+
+    buffer: Any
+    """pyopencl's: float32 of `frame.shape`."""
+    frame: MapFrame
 
 
 @dataclass(frozen=True)
