@@ -243,9 +243,6 @@ __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *fra
 
 // The fineness of the grid in which landings are counted: cells on each side of a level.
 #define CELLS 64
-#define LEVELS 2
-// Texels on each side of a level.
-#define MAP_SIZE 512
 
 // The cell, or texel, of a level in which a landing is; not a place of that level if it is beyond its edge.
 static inline int cell_at(__constant const map_frame_t *frame, int level, real place, int size) {
@@ -256,18 +253,18 @@ static inline int cell_at(__constant const map_frame_t *frame, int level, real p
 __kernel void count(__constant const map_frame_t *frame, __global const float *landings, int capacity,
                     __global const double *counts, int parts, __global int *cells) {
   const int kind = get_global_id(0);
-  __global int *own = cells + kind * frame->held * LEVELS * CELLS * CELLS;
+  __global int *own = cells + kind * frame->held * MAP_LEVELS * CELLS * CELLS;
   for (int part = 0; part < parts; part++) {
     __global const float *landing = landings + (size_t)part * capacity * LANDING_NUMBERS;
     const int last = (int)counts[part * COUNTS + LANDINGS];
     for (int i = 0; i < last; i++, landing += LANDING_NUMBERS) {
       const float sum = landing[WEIGHT_OF] + landing[WEIGHT_OF + 1] + landing[WEIGHT_OF + 2];
       if ((sum < 0) != (kind == 0)) continue;
-      for (int level = 0; level < LEVELS; level++) {
+      for (int level = 0; level < MAP_LEVELS; level++) {
         const int column = cell_at(frame, level, landing[U_OF], CELLS),
                   row = cell_at(frame, level, landing[V_OF], CELLS);
         if (min(column, row) >= 0 && max(column, row) < CELLS)
-          own[(((int)landing[SURFACE_OF] * LEVELS + level) * CELLS + row) * CELLS + column]++;
+          own[(((int)landing[SURFACE_OF] * MAP_LEVELS + level) * CELLS + row) * CELLS + column]++;
       }
     }
   }
@@ -294,11 +291,11 @@ __kernel void spread(__constant const map_frame_t *frame, __global const float *
     for (int i = 0; i < last; i++, landing += LANDING_NUMBERS) {
       const float light[3] = {landing[WEIGHT_OF], landing[WEIGHT_OF + 1], landing[WEIGHT_OF + 2]};
       const int kind = light[0] + light[1] + light[2] < 0 ? 0 : 1, surface = (int)landing[SURFACE_OF];
-      for (int level = 0; level < LEVELS; level++) {
+      for (int level = 0; level < MAP_LEVELS; level++) {
         const float scale = MAP_SIZE / (2 * frame->half_size[level]);
         const float u = landing[U_OF] * scale + (MAP_SIZE / 2 - 0.5f),
                     v = landing[V_OF] * scale + (MAP_SIZE / 2 - 0.5f);
-        const float radius = between(radii + ((kind * frame->held + surface) * LEVELS + level) * CELLS * CELLS,
+        const float radius = between(radii + ((kind * frame->held + surface) * MAP_LEVELS + level) * CELLS * CELLS,
                                      (u + 0.5f) * CELLS / MAP_SIZE - 0.5f, (v + 0.5f) * CELLS / MAP_SIZE - 0.5f);
         const int left = (int)ceil(u - radius), right = (int)floor(u + radius), top = (int)ceil(v - radius),
                   bottom = (int)floor(v + radius);
@@ -312,7 +309,7 @@ __kernel void spread(__constant const map_frame_t *frame, __global const float *
         const float share = scale * scale / fmax(sum, 1e-20f);
         for (int y = max(top, first_row); y <= min(bottom, end_row - 1); y++) {
           const float rest = 1 - (y - v) * (y - v) * inverse;
-          __global float *texels = map + ((size_t)(surface * LEVELS + level) * MAP_SIZE + y) * MAP_SIZE * 3;
+          __global float *texels = map + ((size_t)(surface * MAP_LEVELS + level) * MAP_SIZE + y) * MAP_SIZE * 3;
           for (int x = max(left, 0); x <= min(right, MAP_SIZE - 1); x++) {
             const float weight = share * fmax(rest - (x - u) * (x - u) * inverse, 0.0f);
             EACH (k, 3) texels[3 * x + k] = fma(weight, light[k], texels[3 * x + k]);

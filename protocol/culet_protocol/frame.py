@@ -76,7 +76,7 @@ FIELDS = (
     HeaderField(
         "flags",
         "H",
-        "bits: 0 moving, 1 final, 2 polarised, 3 frontier's error, 4 to 8 no stone seen, 9 slow, 10 key, 11 shadows only",
+        "bits: 0 moving, 1 final, 2 polarised, 3 frontier's error, 4-8 no stone seen, 9 slow, 10 key, 11 shadows only",
     ),
     HeaderField("sequence", "I", "number of the frame in its session, from 1"),
     HeaderField("depends_on", "I", "number of the frame that this one can be decoded after; 0 of a key frame"),

@@ -31,7 +31,7 @@ export interface Frame {
   watch: string;
   /** 1 JPEG, 2 PNG */
   codec: Codec;
-  /** bits: 0 moving, 1 final, 2 polarised, 3 frontier's error, 4 to 8 no stone seen, 9 slow, 10 key, 11 shadows only */
+  /** bits: 0 moving, 1 final, 2 polarised, 3 frontier's error, 4-8 no stone seen, 9 slow, 10 key, 11 shadows only */
   flags: number;
   /** number of the frame in its session, from 1 */
   sequence: number;

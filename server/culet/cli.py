@@ -112,7 +112,18 @@ def _quality(picture: Picture) -> str:
     error = picture.error_estimate()
     estimated = "" if math.isnan(error) else f", estimated error {error:.2g}"
     missing = f"mean radiance too low by at most {picture.truncation_bound():.2g} (light cut off)"
-    return f"{samples} per pixel, {missing}{estimated}"
+    return f"{samples} per pixel, {missing}{estimated}{_light_quality(picture)}"
+
+
+def _light_quality(picture: Picture) -> str:
+    """How right shadows and caustics are, where there are any."""
+    if math.isnan(picture.light_bound()):
+        return ""
+    what = "shadows" if picture.shows_shadows_only() else "shadows and caustics"
+    return (
+        f"; {what} miss at most {picture.light_bound():.2g} of the light that meets stones, "
+        f"estimated error {picture.light_error():.2g}"
+    )
 
 
 @app.command()

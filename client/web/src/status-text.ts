@@ -33,6 +33,12 @@ function errorName({ flags }: Pick<Frame, "flags">): string {
   return flags & Flag.FRONTIER ? "frontier's error" : "error";
 }
 
+/** Of the light that stones throw on floor and walls at most this part is missing. */
+function lightText({ flags, lightCut }: Pick<Frame, "flags" | "lightCut">): string {
+  if (flags & Flag.SHADOWS_ONLY) return "shadows without caustics";
+  return `caustics lack at most ${significant(100 * lightCut)} %`;
+}
+
 export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
   const parts: string[] = [];
   if (frame) {
@@ -51,6 +57,7 @@ export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Sta
   if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
   if (frame) {
     if (!Number.isNaN(frame.error)) parts.push(`${errorName(frame)} ${significant(frame.error)}`);
+    if (!Number.isNaN(frame.lightCut)) parts.push(lightText(frame));
     parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
   }
   parts.push(viewersText(viewers));

@@ -19,7 +19,9 @@ from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, by_half_spaces, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
+from culet.rendering.light.effort import Effort
 from culet.rendering.light.light_map import BoundMap
+from culet.rendering.light.lighting import Lighting, Maker
 from culet.rendering.pace import Pace
 from culet.rendering.program import Programs
 from culet.rendering.sums import Fold, Sums
@@ -59,6 +61,7 @@ class Renderer:
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
         self.fold = Fold(self.device, self.variant)
+        self.lighting = Lighting(self.device, self.pool)
         self._paces: dict[tuple[Any, int], Pace] = {}
         self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
         self._warm_up()
@@ -74,11 +77,15 @@ class Renderer:
         height: int,
         *,
         features: Features | None = None,
+        effort: Effort | None = Effort.PATIENT,
         light_map: BoundMap | None = None,
     ) -> Picture:
         """An empty picture of the stage, to be refined. `features` asks for another program than the stage needs.
-        Without a light map only points throw shadows, and nothing throws caustics."""
-        return Picture(self, stage, width, height, features, light_map)
+
+        `effort` on its light map; or a map that was made elsewhere. With neither only points throw shadows, and nothing
+        throws caustics.
+        """
+        return Picture(self, stage, width, height, features, light_map, effort)
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more."""
@@ -113,7 +120,8 @@ class Renderer:
         tree_is_there = features.geometry != Geometry.MESH or all(
             has_tree(shape) or by_half_spaces(shape) for shape in stage.shapes
         )
-        return tree_is_there and self.programs.is_ready(features.general, self.variant)
+        programs_are = self.programs.is_ready(features.general, self.variant) and self.lighting.is_ready(stage)
+        return tree_is_there and programs_are
 
     def make_ready(self, stage: Stage) -> None:
         """Have what `is_ready` asks for made, while pictures are refined in another thread."""
@@ -123,6 +131,7 @@ class Renderer:
                 if not by_half_spaces(shape):
                     tree_of(shape)
         self.programs.prepare(features.general, self.variant)
+        self.lighting.make_ready(stage)
 
     def describe(self) -> dict[str, str | int]:
         """Device, driver and lanes, for reports."""
@@ -158,11 +167,14 @@ class Picture:
         width: int,
         height: int,
         features: Features | None,
-        light_map: BoundMap | None = None,
+        light_map: BoundMap | None,
+        effort: Effort | None,
     ) -> None:
         self.stage, self.width, self.height = stage, width, height
         self.seconds = 0.0
         """Spent by the last refinement."""
+        self.light_seconds = 0.0
+        """Spent by the last refinement on the light map."""
         self._renderer = renderer
         real = renderer.variant.real
         needed = features_of(stage)
@@ -173,7 +185,15 @@ class Picture:
             raise ValueError(f"features: expected stones {needed.stones}, the scene's, got {features.stones}")
         get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
         self._kernel = get(features, renderer.variant)
-        self._inputs = Inputs(renderer.device, stage, width, height, features, real, light_map)
+        self._effort, self._light = effort or Effort.PATIENT, None
+        if effort is not None and light_map is None and features.light_map != 0:
+            self._light = renderer.lighting.of(stage)
+        bound = self._light.bound if self._light else light_map
+        self._inputs = Inputs(renderer.device, stage, width, height, features, real, bound)
+        self._spent = 0.0
+        self._light_errors: list[float] = []
+        self._light_bounds: list[float] = []
+        """Of the map, as each sample saw it."""
         tile = tile_of(features)
         self._tiles = math.ceil(width / tile), math.ceil(height / tile)
         size = width * height * 4 * np.dtype(real).itemsize
@@ -204,10 +224,26 @@ class Picture:
         However long a pixel takes: a launch ends after a number of steps, and the next one goes on where it ended. The
         picture is the same to the last bit as one that is made at once.
         """
-        self.seconds = 0.0
+        self.seconds = self.light_seconds = 0.0
         for sample in range(samples):
+            for _ in self._lit(seconds):
+                yield sample / samples
             for part in self._one_sample(seconds):
                 yield (sample + part) / samples
+
+    def _lit(self, seconds: float) -> Iterator[None]:
+        """See to the light map before the next sample; yields between launches."""
+        if self._light is None:
+            return
+        started = time.perf_counter()
+        for _ in self._light.pieces(self.scene.optics.caustics_cutoff, self._effort, seconds, self._spent):
+            self.light_seconds += time.perf_counter() - started
+            yield
+            started = time.perf_counter()
+        self.light_seconds += time.perf_counter() - started
+        figures = self._light.figures
+        self._light_errors.append(self._light.rmse)
+        self._light_bounds.append(math.nan if figures is None else figures.bound)
 
     def _one_sample(self, seconds: float) -> Iterator[float]:
         """Yields the part of the tiles that were begun, between launches, and at last 1."""
@@ -240,6 +276,7 @@ class Picture:
             cl.enqueue_copy(device.queue, progress, buffer)
             taken = time.perf_counter() - start
             self.seconds += taken
+            self._spent += taken
             under_way, steps = of_items.T
             self._pace.made(int(steps.max()), taken)
             part = min(int(progress[TILES_DEALT]) / count, ALMOST)
@@ -312,8 +349,23 @@ class Picture:
         return tallies
 
     def error_estimate(self) -> float:
-        """Root mean square error of `linear()` that its samples let expect, in radiance; NaN below two samples."""
-        return self._sums.error()
+        """Root mean square error of `linear()` that its samples and its light map let expect, in radiance; NaN below
+        two samples."""
+        light = self.light_error()
+        return self._sums.error() if math.isnan(light) else math.hypot(self._sums.error(), light)
+
+    def light_error(self) -> float:
+        """The light map's part of that, as on a white surface; NaN without a map."""
+        return float(np.mean(self._light_errors)) if self._light_errors else math.nan
+
+    def light_bound(self) -> float:
+        """Of the light that meets stones the part that floor and walls may miss at most, since it was cut, not
+        followed, or lands beyond the map; NaN without a map."""
+        return float(np.mean(self._light_bounds)) if self._light_bounds else math.nan
+
+    def shows_shadows_only(self) -> bool:
+        """Whether its map shows what stones take of the light, and not what goes through them."""
+        return self._light is not None and self._light.maker is Maker.NOTHING
 
     def _allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
         return self._renderer.pool.allocate(size)

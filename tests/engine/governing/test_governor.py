@@ -234,6 +234,16 @@ def test_moving_frames_have_three_indices_and_no_polarisation() -> None:
     assert math.isnan(plan.error), "fewer bounces than any that was measured"
 
 
+def test_the_light_map_of_a_moving_frame_gets_coarser_with_the_rungs_and_never_finer_than_the_scene_has_it() -> None:
+    cutoffs = [rung.caustics_cutoff for rung in read_ladder()]
+    assert cutoffs == sorted(cutoffs)
+    assert cutoffs[0] == Scene().optics.caustics_cutoff < cutoffs[-1]
+    for asked, used in ((1e-6, cutoffs[-1]), (0.5, 0.5)):
+        scene = Scene.read({"optics": {"caustics_cutoff": asked}})
+        plan = Governor(read_ladder()[-1:]).plan(scene, WANTED, BALANCE)
+        assert plan.scene.optics.caustics_cutoff == used
+
+
 @pytest.mark.parametrize(
     ("wanted", "rung", "error"),
     [

@@ -24,6 +24,7 @@ from culet.engine.session.session import Session
 from culet.engine.session.stepper import Stepper, Steps
 from culet.engine.session.viewpoint import orbit
 from culet.optics.panoramas import Panorama
+from culet.rendering.light.effort import Effort
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.messages import Balance
@@ -78,7 +79,9 @@ class World:
                 self.session.stage.showing(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
             )
 
-    def picture(self, stage: Stage, width: int, height: int) -> TimedPicture:
+    def picture(
+        self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT
+    ) -> TimedPicture:
         return TimedPicture(self, stage.scene, (width, height))
 
     def is_ready(self, stage: Stage) -> bool:
@@ -108,7 +111,7 @@ class TimedPicture:
     """Nothing to see."""
 
     def __init__(self, world: World, scene: Scene, size: tuple[int, int]) -> None:
-        self.scene, self.samples, self.seconds = scene, 0, 0.0
+        self.scene, self.samples, self.seconds, self.light_seconds = scene, 0, 0.0, 0.0
         self._world, self._size = world, size
         self.clock = world
 
@@ -143,6 +146,15 @@ class TimedPicture:
 
     def error_estimate(self) -> float:
         return math.nan
+
+    def light_error(self) -> float:
+        return math.nan
+
+    def light_bound(self) -> float:
+        return math.nan
+
+    def shows_shadows_only(self) -> bool:
+        return False
 
     def _rung_cost(self) -> float:
         optics = self.scene.optics
@@ -408,7 +420,9 @@ class Crowd(World):
         super().__init__(full_seconds, with_stone=True)
         self.other = World(other_seconds, with_stone=True)
 
-    def picture(self, stage: Stage, width: int, height: int) -> TimedPicture:
+    def picture(
+        self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT
+    ) -> TimedPicture:
         world = self.other if stage.scene.floor.kind == "none" else self
         picture = TimedPicture(world, stage.scene, (width, height))
         picture.clock = self

@@ -21,6 +21,7 @@ from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.errors import DeviceError
 from culet.optics.panoramas import Panorama
+from culet.rendering.light.effort import Effort
 from culet.rendering.renderer import Renderer
 from culet.simulation.models import MODELS
 from culet.simulation.state import RigidState
@@ -40,10 +41,10 @@ class FailingRenderer:
     def __init__(self) -> None:
         self.renderer = Renderer()
 
-    def picture(self, stage: Stage, width: int, height: int) -> Picture:
+    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> Picture:
         if stage.scene.environment.kind == "half":
             raise DeviceError("the kernel does not build")
-        return self.renderer.picture(stage, width, height)
+        return self.renderer.picture(stage, width, height, effort=effort)
 
     def is_ready(self, stage: Stage) -> bool:
         return self.renderer.is_ready(stage)

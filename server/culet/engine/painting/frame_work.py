@@ -12,6 +12,7 @@ from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Shown
+from culet.rendering.light.effort import Effort
 from culet.stage import Stage
 
 
@@ -83,12 +84,13 @@ class FrameWork:
         if self.picture is None:
             if not renderer.is_ready(self.stage):
                 raise Unprepared
-            self.picture = renderer.picture(self.stage, width, height)
+            effort = Effort.RESTING if self.plan is None else Effort.MOVING
+            self.picture = renderer.picture(self.stage, width, height, effort=effort)
         picture = self.picture
         for part in picture.refine_in_pieces(self.samples, self.piece_seconds):
             self.part = part
             yield part
-        self.render_seconds += picture.seconds
+        self.render_seconds += picture.seconds + picture.light_seconds
         started = perf_counter()
         yield from picture.develop_in_pieces()
         develop_seconds = perf_counter() - started

@@ -40,6 +40,12 @@ class LiveFrame:
     final: bool
     slow: bool
     """The stone moves slower than in real time."""
+    light_cut: float
+    """Part of the stones' light that floor and walls may miss, or NaN."""
+    light_error: float
+    """Of the light map: estimated, or NaN."""
+    shadows_only: bool
+    """Floor and walls show nothing of what goes through stones."""
 
     @classmethod
     def developed(
@@ -72,6 +78,9 @@ class LiveFrame:
             expected_error=math.nan if plan is None else plan.error,
             final=final,
             slow=slow,
+            light_cut=picture.light_bound(),
+            light_error=picture.light_error(),
+            shadows_only=picture.shows_shadows_only(),
         )
 
     def pack(self, session: Session, payload: bytes, encode_seconds: float) -> bytes:
@@ -96,9 +105,15 @@ class LiveFrame:
             render_ms=self.render_seconds * 1e3,
             encode_ms=(self.develop_seconds + encode_seconds) * 1e3,
             cut=self.cut,
-            error=self.expected_error if frontier else self.error,
+            error=self._with_light(self.expected_error) if frontier else self.error,
+            light_cut=self.light_cut,
+            light_error=self.light_error,
             payload=payload,
         ).pack()
+
+    def _with_light(self, error: float) -> float:
+        """An expected error that knows nothing of the light map, and the map's."""
+        return error if math.isnan(self.light_error) else math.hypot(error, self.light_error)
 
     def _unseen(self) -> Flags:
         """Where the nearest stone is, if no stone is in the picture."""
@@ -114,5 +129,6 @@ class LiveFrame:
             Flags.FRONTIER: frontier,
             Flags.SLOW: self.slow,
             Flags.KEY: True,  # as every JPEG
+            Flags.SHADOWS_ONLY: self.shadows_only,
         }
         return Flags(sum(flag for flag, is_set in flags.items() if is_set))

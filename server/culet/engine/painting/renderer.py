@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
+from culet.rendering.light.effort import Effort
 from culet.scene import Scene
 from culet.stage import Stage
 
@@ -38,6 +39,10 @@ class Picture(Protocol):
     def seconds(self) -> float:
         """Render seconds of the last refinement."""
 
+    @property
+    def light_seconds(self) -> float:
+        """s of the last refinement that went into the light map, besides."""
+
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel."""
 
@@ -56,12 +61,21 @@ class Picture(Protocol):
     def error_estimate(self) -> float:
         """Root mean square error of the radiance; NaN below two samples."""
 
+    def light_error(self) -> float:
+        """Root mean square error of its light map, estimated; NaN without a map."""
+
+    def light_bound(self) -> float:
+        """Part of the stones' light that its map may miss, at most; NaN without a map."""
+
+    def shows_shadows_only(self) -> bool:
+        """Whether its map shows nothing of what goes through the stones."""
+
 
 class Renderer(Protocol):
     """A device that draws scenes."""
 
-    def picture(self, stage: Stage, width: int, height: int) -> Picture:
-        """An empty picture of the stage."""
+    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> Picture:
+        """An empty picture of the stage, with that effort on its light map."""
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more. From any thread."""

@@ -218,9 +218,7 @@ class Illumination:
             yield from self._pass(cutoff, effort, seconds)
         if effort is Effort.MOVING:
             return
-        while not self.good_enough and (
-            effort is Effort.PATIENT or self.seconds < max(FIRST_SECONDS, picture_seconds)
-        ):
+        while not self.good_enough and (effort is Effort.PATIENT or self.seconds < max(FIRST_SECONDS, picture_seconds)):
             least = RANDOM_CUTOFF if self._random else LEAST_CUTOFF
             if not self._random and self.cutoff <= least:
                 return

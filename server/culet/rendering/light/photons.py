@@ -215,11 +215,22 @@ class PhotonMaps:
         )
         yield 1.0
 
-    def _launch(self, given: dict[str, Any], to: _Buffers, bundles: int, first: int, last: int, counts: Array) -> None:
+    def _launch(
+        self,
+        given: dict[str, Any],
+        to: _Buffers,
+        bundles: int,
+        first: int,
+        last: int,
+        counts: Array,
+        *,
+        follow: bool,
+    ) -> None:
         device = self._device
         self._shoot(
             device.queue, (device.units,), (1,), *(given[name] for name in buffers()), to.frame, to.bundles,
-            np.int32(bundles), np.int32(first), np.int32(last), np.int32(follow), to.landings, np.int32(to.capacity), to.counts,
+            np.int32(bundles), np.int32(first), np.int32(last), np.int32(follow), to.landings, np.int32(to.capacity),
+            to.counts,
         )  # fmt: skip
         cl.enqueue_copy(device.queue, counts, to.counts)
 
