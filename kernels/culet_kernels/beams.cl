@@ -647,19 +647,18 @@ __kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
     const int number = atomic_inc(next);
     if (number >= end) break;
     job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
+    int alone = 1; // no other stone is in the way of its light
 #if SEVERAL
-    const int screened = is_screened(&job);
-#else
-    const int screened = 0;
+    alone = !is_screened(&job);
 #endif
-    if (!job.solid->pierces && !screened && shade_outline(&job)) continue;
+    if (!job.solid->pierces && alone && shade_outline(&job)) continue;
     for (int entry = job.solid->first_entry; entry < job.solid->last_entry; entry++) {
       const int facet = entries[entry].y;
       if (!is_lit(&job, facet)) continue;
       corner_t part[CORNERS];
       const int count = facet_in_room(&job, facet, entries[entry].z, entries[entry].w, part);
       if (count < 3) continue;
-      if (!screened) {
+      if (alone) {
         shade(&job, part, count);
         continue;
       }

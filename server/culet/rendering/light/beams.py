@@ -176,7 +176,8 @@ class Beams:
     def _program(self, diverging: int, most_facets: int, several: bool) -> Any:  # noqa: ANN401
         key = diverging, most_facets, int(several)
         if key not in self._programs:
-            options = [*self._options, f"-DDIVERGING={diverging}", f"-DMOST_FACETS={most_facets}", f"-DSEVERAL={int(several)}"]
+            choices = {"DIVERGING": diverging, "MOST_FACETS": most_facets, "SEVERAL": int(several)}
+            options = [*self._options, *(f"-D{name}={value}" for name, value in choices.items())]
             program = build(self.device, "beams.cl", options)
             self._programs[key] = _Kernels(cl.Kernel(program, "cast_shadows"), cl.Kernel(program, "throw_light"))
         return self._programs[key]
