@@ -5,10 +5,20 @@
 // A work-item takes one (facet, light, index of refraction) after another.
 #include "light_shadow.cl"
 
+#ifndef SEVERAL // 1: there are several stones
+#define SEVERAL 0
+#endif
+#define FAINT ((real)0.1) // cut-offs below which a beam that may meet another stone ends
+
 typedef struct {
   real d[3];
   real flux;
   int count, facet;
+#if SEVERAL
+  int solid;   // that it is in, or has left
+  int outside; // it has left the stone
+  int doubtful;
+#endif
   corner_t corner[CORNERS];
 } beam_t;
 
@@ -83,11 +93,39 @@ static inline void axes_of(const real *normal, int *k, int *u, int *v) {
   *v = *k == 0 ? 2 : *k == 1 ? 0 : 1;
 }
 
-// Light that leaves the stone.
-static inline void leave(const job_t *job, tally_t *tally, const corner_t *corners, int count, const real *d, real flux,
-                         int doubtful) {
+// Light that has left the last stone.
+static inline void land_beam(const job_t *job, tally_t *tally, const corner_t *corners, int count, const real *d,
+                             real flux, int doubtful) {
   land(job->room, job->canvas, tally, job->light, corners, count, d, flux, job->colour, job->weight, job->power,
        doubtful, LIGHT_ITSELF);
+}
+
+// Light that leaves the stone. If another may be in its way, it waits until that is looked into.
+static inline void leave(const job_t *job, tally_t *tally, beam_t *stack, int *top, const corner_t *corners, int count,
+                         const real *d, real flux, int doubtful) {
+#if SEVERAL
+  real middle[3], along[3], reach, spread;
+  middle_of(corners, count, d, middle, along, &reach, &spread);
+  ulong passed = 1ul << (job->solid - job->solids);
+  if (nearest_sphere(job, middle, along, reach, spread, (real)1e30, &passed) != NOBODY) {
+    if (flux < FAINT * job->cutoff)
+      tally->cut += job->weight * flux;
+    else if (*top >= BEAMS)
+      tally->unresolved += job->weight * flux;
+    else {
+      beam_t *beam = stack + (*top)++;
+      beam->flux = flux;
+      beam->count = count;
+      beam->solid = job->solid - job->solids;
+      beam->outside = 1;
+      beam->doubtful = doubtful;
+      for (int k = 0; k < 3; k++) beam->d[k] = d[k];
+      for (int i = 0; i < count; i++) beam->corner[i] = corners[i];
+    }
+    return;
+  }
+#endif
+  land_beam(job, tally, corners, count, d, flux, doubtful);
 }
 
 // One beam inside the stone: parts of it meet facets, where they leave, and are reflected as beams of their own.
@@ -261,7 +299,7 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
       reflected = reflected_part(cos_a, cos_s, eta);
     }
     const real rest = reflected * flux;
-    const int goes = rest >= job->cutoff && *top < BEAMS;
+    const int goes = rest >= job->cutoff && *top < BEAMS - SEVERAL; // what leaves may wait, too
     if (!goes) tally->cut += job->weight * rest;
     if (!exits && !goes) continue;
     corner_t corner[CORNERS];
@@ -288,10 +326,14 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
         refract_out(own, normal, eta, corner[i].d);
       }
 #endif
-      leave(job, tally, corner, left, out, (1 - reflected) * flux, beam.flux < 3 * job->cutoff);
+      leave(job, tally, stack, top, corner, left, out, (1 - reflected) * flux, beam.flux < 3 * job->cutoff);
     }
     if (goes) {
       beam_t *next = stack + (*top)++;
+#if SEVERAL
+      next->solid = beam.solid;
+      next->outside = 0;
+#endif
       next->count = left;
       next->facet = f;
       next->flux = rest;
@@ -307,6 +349,116 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
     }
   }
   tally->unresolved += job->weight * (beam.flux - given);
+}
+
+#if SEVERAL
+// A beam outside that meets another stone: a part on each of its facets.
+static inline void meet(const job_t *job, tally_t *tally, beam_t *stack, int *top, const piece_t *piece,
+                        const real *common, real flux, int doubtful) {
+  const real whole = fmax(measure(piece->corner, piece->count), (real)1e-30), eta = job->eta;
+  real middle[3], along[3], reach, spread, given = 0;
+  middle_of(piece->corner, piece->count, common, middle, along, &reach, &spread);
+  for (int f = 0; f < job->solid->facets; f++) {
+    const real normal[3] = {plane_of(job, 0, f), plane_of(job, 1, f), plane_of(job, 2, f)},
+               offset = plane_of(job, 3, f);
+    if (dot_3(normal, along) >= -GRAZING) continue;
+    const int begin = job->facets.start[job->solid->first_facet + f],
+              end = job->facets.start[job->solid->first_facet + f + 1];
+    corner_t cut[2][CORNERS];
+    int side = 0, count = piece->count;
+    for (int i = 0; i < count; i++) cut[0][i] = piece->corner[i];
+    for (int e = begin; e < end && count > 2; e++) {
+      real inside[CORNERS];
+      const int out = beside(job, job->facets.corners[e], job->facets.corners[e + 1 == end ? begin : e + 1], cut[side],
+                             count, common, inside);
+      if (!out) continue;
+      count = out < count ? clip_corners(cut[side], count, inside, cut[1 - side], CORNERS) : 0;
+      side = 1 - side;
+    }
+    if (count < 3) continue;
+    corner_t *corner = cut[side];
+    const real arriving = flux * fmin(measure(corner, count) / whole, (real)1);
+    given += arriving;
+    corner_t mirrored[CORNERS];
+    real unused[3], d[3];
+    middle_of(corner, count, common, unused, d, &reach, &spread);
+    const real cos_a = fmax(-dot_3(d, normal), GRAZING), cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta)),
+               reflected = reflected_part(cos_a, cos_s, eta);
+    real out[3], inward[3];
+    for (int k = 0; k < 3; k++) {
+      out[k] = d[k] + 2 * cos_a * normal[k];
+      inward[k] = d[k] / eta + (cos_a / eta - cos_s) * normal[k];
+    }
+    for (int i = 0; i < count; i++) {
+      const real *own = way_of(corner + i, common);
+      const real t = (offset - dot_3(normal, corner[i].p)) / fmin(dot_3(normal, own), -GRAZING);
+      for (int k = 0; k < 3; k++) corner[i].p[k] += t * own[k];
+      mirrored[i] = corner[i];
+#if DIVERGING
+      real way[3] = {own[0], own[1], own[2]};
+      normalise_3(way);
+      const real cosine = fmax(-dot_3(way, normal), GRAZING), inner = sqrt(1 - (1 - cosine * cosine) / (eta * eta));
+      for (int k = 0; k < 3; k++) {
+        mirrored[i].d[k] = way[k] + 2 * cosine * normal[k];
+        corner[i].d[k] = way[k] / eta + (cosine / eta - inner) * normal[k];
+      }
+#endif
+    }
+    leave(job, tally, stack, top, mirrored, count, out, reflected * arriving, doubtful);
+    const real rest = (1 - reflected) * arriving;
+    if (rest < job->cutoff || *top >= BEAMS) {
+      tally->cut += job->weight * rest;
+      continue;
+    }
+    beam_t *beam = stack + (*top)++;
+    beam->flux = rest;
+    beam->count = count;
+    beam->facet = f;
+    beam->solid = job->solid - job->solids;
+    beam->outside = 0;
+    for (int k = 0; k < 3; k++) beam->d[k] = inward[k];
+    for (int i = 0; i < count; i++) beam->corner[i] = corner[i];
+  }
+  tally->unresolved += job->weight * (flux - given);
+}
+
+// A beam outside: parts of it meet other stones, parts pass them all.
+static inline void fly(job_t *job, tally_t *tally, beam_t *stack, int *top) {
+  const beam_t beam = stack[--*top];
+  flight_t flight;
+  begin_flight(&flight, beam.corner, beam.count, beam.solid);
+  const real whole = fmax(measure(beam.corner, beam.count), (real)1e-30);
+  real left = beam.flux;
+  while (flight.waiting > 0) {
+    piece_t part;
+    const int met = next_part(job, &flight, beam.d, (real)1e30, &part);
+    const real flux = fmin(beam.flux * (measure(part.corner, part.count) / whole), left);
+    left -= flux;
+    if (met == NOBODY)
+      land_beam(job, tally, part.corner, part.count, beam.d, flux, beam.doubtful);
+    else if (met == LOST)
+      tally->unresolved += job->weight * flux;
+    else {
+      go_to(job, met);
+      meet(job, tally, stack, top, &part, beam.d, flux, beam.doubtful);
+    }
+  }
+  tally->unresolved += job->weight * left;
+}
+#endif
+
+// Follows all beams of the stack.
+static inline void follow(job_t *job, tally_t *tally, beam_t *stack, int top) {
+  while (top > 0) {
+#if SEVERAL
+    go_to(job, stack[top - 1].solid);
+    if (stack[top - 1].outside) {
+      fly(job, tally, stack, &top);
+      continue;
+    }
+#endif
+    split_beam(job, tally, stack, &top);
+  }
 }
 
 // Light of a point comes to a facet in parts, in which directions differ little.
@@ -391,8 +543,9 @@ static inline real begin_beam(const job_t *job, const real *normal, const corner
 }
 
 // Light that comes to a convex part of a facet from outside.
-static inline void enter(const job_t *job, tally_t *tally, int facet, const corner_t *part, int count) {
+static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *part, int count) {
   beam_t stack[BEAMS];
+  const int solid = job->solid - job->solids;
   const real normal[3] = {plane_of(job, 0, facet), plane_of(job, 1, facet), plane_of(job, 2, facet)}, eta = job->eta;
   corner_t mirrored[CORNERS];
 #if DIVERGING
@@ -429,15 +582,20 @@ static inline void enter(const job_t *job, tally_t *tally, int facet, const corn
     real out[3];
     for (int j = 0; j < 3; j++) out[j] = d[j] + 2 * cos_a * normal[j];
     tally->incident += job->weight * flux;
-    leave(job, tally, mirrored, count, out, reflected * flux, 0);
+    const real through = (1 - reflected) * flux;
+    int top = through >= job->cutoff;
+    if (!top) tally->cut += job->weight * through;
     beam_t *beam = stack;
     for (int j = 0; j < 3; j++) beam->d[j] = d[j] / eta + (cos_a / eta - cos_s) * normal[j];
-    beam->flux = (1 - reflected) * flux;
+    beam->flux = through;
     beam->facet = facet;
-    if (beam->flux < job->cutoff)
-      tally->cut += job->weight * beam->flux;
-    else
-      for (int top = 1; top > 0;) split_beam(job, tally, stack, &top);
+#if SEVERAL
+    beam->solid = solid;
+    beam->outside = 0;
+#endif
+    leave(job, tally, stack, &top, mirrored, count, out, reflected * flux, 0);
+    follow(job, tally, stack, top);
+    go_to(job, solid);
   }
 }
 
@@ -460,14 +618,22 @@ __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
     if (number >= end) break;
     const int per_entry = room->lights * room->bands, entry = number / per_entry, rest = number - entry * per_entry;
     __constant const light_t *light = lights + rest / room->bands;
-    __constant const solid_t *solid = solids + entries[entry].x;
     if (!light->follows) continue;
-    const job_t job = job_of(room, light, solid, facets, chains + solid->first_chain + rest % room->bands, canvas);
+    job_t job = job_of(room, light, solids, entries[entry].x, facets, chains + rest % room->bands, canvas);
     const int facet = entries[entry].y;
     if (!is_lit(&job, facet)) continue;
     corner_t part[CORNERS];
     const int count = facet_in_room(&job, facet, entries[entry].z, entries[entry].w, part);
     if (count < 3) continue;
+#if SEVERAL
+    if (is_screened(&job)) {
+      flight_t flight;
+      piece_t lit;
+      begin_lighting(&job, part, count, &flight);
+      while (next_lit(&job, &flight, &lit)) enter(&job, &tally, facet, lit.corner, lit.count);
+      continue;
+    }
+#endif
     enter(&job, &tally, facet, part, count);
   }
   tallies[get_global_id(0)] = tally;
@@ -480,15 +646,26 @@ __kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
   for (;;) {
     const int number = atomic_inc(next);
     if (number >= end) break;
-    const int stone = number / room->lights;
-    const job_t job = job_of(room, lights + number % room->lights, solids + stone, facets, 0, canvas);
-    if (!job.solid->pierces && shade_outline(&job)) continue;
+    job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
+    int alone = 1; // no other stone is in the way of its light
+#if SEVERAL
+    alone = !is_screened(&job);
+#endif
+    if (!job.solid->pierces && alone && shade_outline(&job)) continue;
     for (int entry = job.solid->first_entry; entry < job.solid->last_entry; entry++) {
       const int facet = entries[entry].y;
       if (!is_lit(&job, facet)) continue;
       corner_t part[CORNERS];
       const int count = facet_in_room(&job, facet, entries[entry].z, entries[entry].w, part);
-      if (count > 2) shade(&job, part, count);
+      if (count < 3) continue;
+      if (alone) {
+        shade(&job, part, count);
+        continue;
+      }
+      flight_t flight;
+      piece_t lit;
+      begin_lighting(&job, part, count, &flight);
+      while (next_lit(&job, &flight, &lit)) shade(&job, lit.corner, lit.count);
     }
   }
 }

@@ -7,7 +7,8 @@
 typedef struct {
   __constant const throwing_t *room;
   __constant const light_t *light;
-  __constant const solid_t *solid;
+  __constant const solid_t *solids, *solid; // all of them, and this one
+  __global const chain_t *chains;           // of this light's band, by solid's first_chain
   facets_t facets;
   canvas_t canvas;
   float4 colour;
@@ -68,24 +69,37 @@ static inline canvas_t canvas_of(__constant const throwing_t *room, __global flo
   return canvas;
 }
 
+// The stone that light goes on in.
+static inline void go_to(job_t *job, int solid) {
+  job->solid = job->solids + solid;
+  if (!job->chains) return;
+  __global const chain_t *chain = job->chains + job->solid->first_chain;
+  job->eta = chain->eta;
+  job->absorption = chain->absorption;
+}
+
+// `chains` of the light's band, or null of its shadow.
 static inline job_t job_of(__constant const throwing_t *room, __constant const light_t *light,
-                           __constant const solid_t *solid, facets_t facets, __global const chain_t *chain,
+                           __constant const solid_t *solids, int solid, facets_t facets, __global const chain_t *chains,
                            canvas_t canvas) {
   job_t job;
   job.room = room;
   job.light = light;
-  job.solid = solid;
+  job.solids = solids;
+  job.chains = chains;
   job.facets = facets;
   job.canvas = canvas;
   job.colour = (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
   job.weight = job.power = 1;
-  if (chain) {
-    job.colour *= (float4)((float)chain->share[0], (float)chain->share[1], (float)chain->share[2], 0);
-    job.eta = chain->eta;
-    job.absorption = chain->absorption;
+  job.eta = 1;
+  job.absorption = 0;
+  job.cutoff = room->cutoff * light->dimness;
+  go_to(&job, solid);
+  if (chains) {
+    __global const real *share = chains[job.solid->first_chain].share;
+    job.colour *= (float4)((float)share[0], (float)share[1], (float)share[2], 0);
     job.weight = (fabs(job.colour.x) + fabs(job.colour.y) + fabs(job.colour.z)) / 3;
     job.power = dot(job.colour, job.colour) / 3;
-    job.cutoff = room->cutoff * light->dimness;
   }
   return job;
 }

@@ -1,7 +1,7 @@
 // The shadows of convex stones: what stands between a light and the room is taken from the light of floor and walls.
 #ifndef CULET_LIGHT_SHADOW
 #define CULET_LIGHT_SHADOW
-#include "light_job.cl"
+#include "exchange.cl"
 
 #define NO_CORNER 0xffff
 
@@ -58,6 +58,30 @@ static inline int shade_outline(const job_t *job) {
     shade(job, corner, count);
   }
   return 1;
+}
+
+// The parts of a facet that the light reaches past the other stones.
+static inline void begin_lighting(const job_t *job, const corner_t *corners, int count, flight_t *flight) {
+  begin_flight(flight, corners, count, job->solid - job->solids);
+#if DIVERGING
+  for (int i = 0; i < count; i++)
+    for (int k = 0; k < 3; k++) flight->piece[0].corner[i].d[k] = job->light->place[k] - corners[i].p[k];
+#endif
+}
+
+// The next of them. Returns whether there is one.
+static inline int next_lit(const job_t *job, flight_t *flight, piece_t *part) {
+  const real towards[3] = {job->light->place[0], job->light->place[1], job->light->place[2]};
+  while (flight->waiting > 0) {
+    real limit = 1e30f;
+#if DIVERGING
+    real way[3];
+    for (int k = 0; k < 3; k++) way[k] = towards[k] - flight->piece[flight->waiting - 1].corner[0].p[k];
+    limit = sqrt(dot_3(way, way));
+#endif
+    if (next_part(job, flight, towards, limit, part) == NOBODY) return 1;
+  }
+  return 0;
 }
 
 #endif

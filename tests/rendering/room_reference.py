@@ -141,7 +141,7 @@ def passes_through(
 def lighting(scene: Scene, planes: Array, point: Array, normal: Array, which: NDArray[np.integer]) -> Array:
     """(N, 3) light on surfaces, as the radiance of white ones: the sky's, which `test_unshaded_light.py` judges, and
     each point's colour by its cosine, none of it in the shadow."""
-    total = sky_light(Stage(scene, (), None))[which]
+    total = np.array(sky_light(Stage(scene, (), None))[which])
     for light in scene.points:
         way = np.array(light.position) - point
         cosine = (way * normal).sum(axis=1) / np.linalg.norm(way, axis=1)
@@ -152,8 +152,9 @@ def lighting(scene: Scene, planes: Array, point: Array, normal: Array, which: ND
 
 def cell_of(surface: Floor) -> float:
     """R."""
-    checkered = isinstance(surface, Plane) and surface.kind == "matte" and surface.checker != "off"
-    return surface.checker.cell if checkered else 1.0
+    if not isinstance(surface, Plane) or surface.kind != "matte" or surface.checker == "off":
+        return 1.0
+    return surface.checker.cell
 
 
 def albedos_of(surface: Floor) -> tuple[Array, Array]:

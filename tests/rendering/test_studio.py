@@ -17,6 +17,7 @@ from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.optics.panoramas import directions
 from culet.rendering.features import ESTIMATOR, Features, features_of, geometry_of
+from culet.rendering.light.unshaded import sky_light
 from culet.rendering.placed_stone import placed_stones, rotation_matrix
 from culet.rendering.renderer import Renderer
 from culet.rendering.studio import contact_form
@@ -135,13 +136,14 @@ def test_the_camera_sees_the_backdrop_and_no_lamp(
 
 
 def test_a_mirror_floor_shows_the_backdrop_too(exact: Renderer) -> None:
-    """Four fifths of it, and 0.04 x 0.1 or 0.05 of the mirror's own light."""
+    """Four fifths of it, and of the mirror's own light, which is the sky's, a fifth times 0.1 or 0.05."""
     scene = scene_of(backdrop=BACKDROPS["plain"], floor={"kind": "mirror"})
     seen = shown(exact, scene)
     points, _ = floor_points(scene)
     below = np.isfinite(points[:, 0]).reshape(SIZE[1], SIZE[0])
     assert 0.2 < below.mean() < 0.9
-    expected = np.array([[0.8 * c + 0.04 * albedo for c in (0.1, 0.2, 0.3)] for albedo in (0.05, 0.1)])
+    light = sky_light(staged(scene))[0]
+    expected = np.array([0.8 * np.array((0.1, 0.2, 0.3)) + 0.2 * albedo * light for albedo in (0.05, 0.1)])
     assert abs(seen[below][:, None] - expected).max(axis=-1).min(axis=1).max() < 1e-12
     assert seen[~below] == pytest.approx(np.tile((0.1, 0.2, 0.3), ((~below).sum(), 1)), abs=1e-12)
 

@@ -148,7 +148,7 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     ),
     "gradient's colour": ({"backdrop": {"kind": "gradient", "colour": [1, 1, 1]}}, "backdrop.colour", "unknown field"),
     "unknown backdrop": ({"backdrop": {"kind": "curtain"}}, "backdrop.kind", "'gradient'; got 'curtain'"),
-    "mirror's colour": ({"floor": {"kind": "mirror", "colour": [1, 1, 1]}}, "floor.colour", "there are: kind"),
+    "mirror's colour": ({"floor": {"kind": "mirror", "colour": [1] * 3}}, "floor.colour", "there are: albedo, checker"),
     "head of no size": ({"head": {"half_angle_degrees": 0}}, "head.half_angle_degrees", "at least 0.1"),
     "picture of no height": ({"camera": {"kind": "orthographic", "height": 0}}, "camera.height", "at least"),
     "unknown floor": ({"floor": {"kind": "glossy"}}, "floor.kind", "'mirror' or 'studio'; got 'glossy'"),

@@ -62,7 +62,7 @@ class Beams:
         self.items = items or device.units
         self.tally: Tally | None = None
         """Of the last pass."""
-        self._programs: dict[tuple[int, int], Any] = {}
+        self._programs: dict[tuple[int, ...], Any] = {}
         self._scratch: dict[tuple[int, int], tuple[Any, ...]] = {}
         self._clean = True
 
@@ -139,7 +139,7 @@ class Beams:
                 continue
             room["lights"] = len(group)
             light_buffer = point_lights if diverging else self._upload(_lights(group, brightest, origin, self.real))
-            program = self._program(diverging, solids.most_facets)
+            program = self._program(diverging, solids.most_facets, len(stones) > 1)
             buffers = (
                 self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, next_buffer, tally_buffer,
             )  # fmt: skip
@@ -173,10 +173,11 @@ class Beams:
             seconds=seconds,
         )
 
-    def _program(self, diverging: int, most_facets: int) -> Any:  # noqa: ANN401
-        key = diverging, most_facets
+    def _program(self, diverging: int, most_facets: int, several: bool) -> Any:  # noqa: ANN401
+        key = diverging, most_facets, int(several)
         if key not in self._programs:
-            options = [*self._options, f"-DDIVERGING={diverging}", f"-DMOST_FACETS={most_facets}"]
+            choices = {"DIVERGING": diverging, "MOST_FACETS": most_facets, "SEVERAL": int(several)}
+            options = [*self._options, *(f"-D{name}={value}" for name, value in choices.items())]
             program = build(self.device, "beams.cl", options)
             self._programs[key] = _Kernels(cl.Kernel(program, "cast_shadows"), cl.Kernel(program, "throw_light"))
         return self._programs[key]
@@ -190,9 +191,9 @@ class Beams:
         kernel(self.device.queue, (self.items,), (1,), *buffers, np.int32(end))
 
     def _sum(self, room: Any, points: Any, scratch: tuple[Any, ...], target: Any, keep: float, gain: float) -> None:  # noqa: ANN401
-        if (-1, 0) not in self._programs:
-            self._programs[-1, 0] = cl.Kernel(build(self.device, "light_sum.cl", self._options), "sum_map")
-        self._programs[-1, 0](
+        if (-1,) not in self._programs:
+            self._programs[-1,] = cl.Kernel(build(self.device, "light_sum.cl", self._options), "sum_map")
+        self._programs[-1,](
             self.device.queue, (self.items,), (1,), room, points, *scratch, np.int32(self.items), target,
             np.float32(keep), np.float32(gain),
         )  # fmt: skip

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from culet.rendering.light.lamp_field import Lamp, lamp_field, normals
 from culet.rendering.light.panorama_light import panorama_light, turned
+from culet.rendering.light.ray import Ray
 from culet.rendering.light.unshaded import lamp_light, lamps_of, sky_light
 from culet.rendering.surfaces import shown
 from culet.scene.emitters import BoxLamp, PointLight, RoundLamp
@@ -26,24 +27,6 @@ Triple = tuple[float, float, float]
 COMPACT_DEGREES = 1.0
 """Half angle of a lamp up to which the light that goes through a stone makes flecks: at 4 degrees they are blurred to
 a third, at 24 to nothing."""
-SPOT = -1
-"""In place of an emitter's number: a panorama's spot."""
-
-
-@dataclass(frozen=True)
-class Ray:
-    """Light of one direction, or from one point."""
-
-    colour: Triple
-    """Irradiance over pi, by channel, of something that faces it; of a point, at the stones."""
-    emitter: int
-    """Of the scene, or SPOT."""
-    follows: bool
-    """Whether its way through the stones is followed, or only its shadow is wanted."""
-    towards: Triple | None = None
-    """Unit vector to the lamp."""
-    position: Triple | None = None
-    """Of a point, R."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +34,7 @@ class Source:
     """One emitter, as it throws shadows and caustics."""
 
     emitter: int
-    """Of the scene, or SPOT."""
+    """Its number in the scene; spots are counted after the last emitter."""
     light: PointLight | Lamp
     shown: tuple[int, ...]
     """Surfaces of the room, which may hide parts of a lamp."""
@@ -87,14 +70,14 @@ class Source:
         """Those of a pass of that number. The mean over passes is the source's light. A lamp that makes no flecks is
         taken apart into `shadows` rays of equal light."""
         if isinstance(self.light, PointLight):
-            return [Ray(self.colour, self.emitter, caustics, position=self.light.position)]
+            return [Ray(self.colour, position=self.light.position, follows=caustics, emitter=self.emitter)]
         if self.compact:
-            return [Ray(self.colour, self.emitter, caustics, towards=_towards(self.light, self.shown, number))]
+            return [Ray(self.colour, _towards(self.light, self.shown, number), follows=caustics, emitter=self.emitter)]
         red, green, blue = self.colour
         share = red / shadows, green / shadows, blue / shadows
         first = number * shadows + 1
         return [
-            Ray(share, self.emitter, follows=False, towards=_towards(self.light, self.shown, each))
+            Ray(share, _towards(self.light, self.shown, each), follows=False, emitter=self.emitter)
             for each in range(first, first + shadows)
         ]
 
@@ -112,19 +95,15 @@ def sources_of(stage: Stage) -> tuple[Source, ...]:
     scene, surfaces = stage.scene, shown(stage.scene)
     if not surfaces or not stage.shapes or scene.optics.estimator == "classic":
         return ()
+    matte = scene.floor.kind == "matte" or scene.walls.kind == "matte"
     found = [
         Source(number, emitter, surfaces)
         for number, emitter in enumerate(scene.emitters)
         if isinstance(emitter, PointLight) and any(emitter.colour)
     ]
-    lamps = [*lamps_of(scene), *((SPOT, spot) for spot in spots_of(stage))]
-    found += [
-        Source(number, lamp, surfaces)
-        for number, lamp in lamps
-        if any(lamp.radiance) and lamp_field(lamp, surfaces).projected[list(surfaces)].any()
-    ]
-    matte = scene.floor.kind == "matte" or scene.walls.kind == "matte"
-    return tuple(source for source in found if source.compact or matte)
+    lamps = [*lamps_of(scene), *enumerate(spots_of(stage), len(scene.emitters))]
+    lit = [Source(number, lamp, surfaces) for number, lamp in lamps if any(lamp.radiance)]
+    return (*found, *(source for source in lit if (matte or source.compact) and source.white.any()))
 
 
 def spots_of(stage: Stage) -> tuple[Lamp, ...]:
