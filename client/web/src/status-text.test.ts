@@ -9,7 +9,7 @@ const frame = parseFrame(bytes("jpeg.bin")); // 0.125 + 31.5 + 1.75 ms
 test("the status line says rate, times, size, samples and viewers", () => {
   expect(statusText({ framesPerSecond: 24, frame, roundTripMs: 3.25, viewers: 2 })).toBe(
     "24.0 frames/s \u00b7 server 33.4 ms (simulate 0.13, render 31.5, encode 1.75) \u00b7 round trip 3.25 ms" +
-      " \u00b7 frontier's error 0.063 \u00b7 16\u00d78 \u00b7 1 sample \u00b7 2 viewers",
+      " \u00b7 frontier's error 0.063 \u00b7 caustics lack at most 13 % \u00b7 16\u00d78 \u00b7 1 sample \u00b7 2 viewers",
   );
 });
 
@@ -31,7 +31,7 @@ test("a picture at rest tells what a sample takes, not the sum over all of them"
   const refining = { ...frame, flags: 0, samples: 4, renderMs: 100, error: 0.063 };
   const status = { framesPerSecond: 1.5, roundTripMs: null, viewers: 1 };
   expect(statusText({ ...status, frame: refining })).toBe(
-    "refining \u00b7 render 25.0 ms a sample \u00b7 error 0.063 \u00b7 16\u00d78 \u00b7 4 samples \u00b7 1 viewer",
+    "refining \u00b7 render 25.0 ms a sample \u00b7 error 0.063 \u00b7 caustics lack at most 13 % \u00b7 16\u00d78 \u00b7 4 samples \u00b7 1 viewer",
   );
   const finished = { ...refining, flags: Flag.FINAL };
   expect(statusText({ ...status, frame: finished })).toMatch(/^still picture \u00b7 render 25\.0 ms/);
@@ -40,8 +40,16 @@ test("a picture at rest tells what a sample takes, not the sum over all of them"
 test("what is known of the error is said", () => {
   const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
   const still = { ...frame, flags: 0, error: 0.01234 };
-  expect(statusText({ ...status, frame: still })).toContain(" \u00b7 error 0.012 \u00b7 16");
+  expect(statusText({ ...status, frame: still })).toContain(" \u00b7 error 0.012 \u00b7 ");
   expect(statusText({ ...status, frame: { ...still, error: Number.NaN } })).not.toContain("error");
+});
+
+test("what floor and walls lack of the stones' light is said where they show any", () => {
+  const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
+  const dark = { ...frame, flags: Flag.SHADOWS_ONLY, lightCut: 1 };
+  expect(statusText({ ...status, frame: dark })).toContain(" \u00b7 shadows without caustics \u00b7 ");
+  const none = statusText({ ...status, frame: { ...frame, lightCut: Number.NaN } });
+  expect(none).not.toContain("caustics");
 });
 
 test.each([

@@ -79,9 +79,7 @@ class World:
                 self.session.stage.showing(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
             )
 
-    def picture(
-        self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT
-    ) -> TimedPicture:
+    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
         return TimedPicture(self, stage.scene, (width, height))
 
     def is_ready(self, stage: Stage) -> bool:
@@ -420,9 +418,7 @@ class Crowd(World):
         super().__init__(full_seconds, with_stone=True)
         self.other = World(other_seconds, with_stone=True)
 
-    def picture(
-        self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT
-    ) -> TimedPicture:
+    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
         world = self.other if stage.scene.floor.kind == "none" else self
         picture = TimedPicture(world, stage.scene, (width, height))
         picture.clock = self

@@ -208,7 +208,7 @@ class Illumination:
             or any(ray.position is None for ray in rays_of(self.stage, 0))
         )
 
-    def pieces(self, cutoff: float, effort: Effort, seconds: float, picture_seconds: float) -> Iterator[None]:
+    def pieces(self, cutoff: float, effort: Effort, seconds: float, picture_seconds: float) -> Iterator[object]:
         """Make the map as good as is fitting, in launches of about so many seconds; yields between them.
 
         A map that is as fine as the cut-off asks serves a moving picture as it is. A resting one has put
@@ -224,7 +224,7 @@ class Illumination:
                 return
             yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
 
-    def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[None]:
+    def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
         """One pass more."""
         number, self._begun = self._begun, self._begun + 1
         started, scene = time.perf_counter(), self.stage.scene
@@ -249,10 +249,9 @@ class Illumination:
                 follows = follows and photons >= LEAST_PHOTONS
             maker, bias, weight = Maker.PHOTONS if follows else Maker.NOTHING, 0.0, photons
             made = self._of.scratch(self.bound.frame.nbytes)
-            for _ in self._photons.pieces(
+            yield from self._photons.pieces(
                 made, rays, number=number, photons=round(max(photons, LEAST_PHOTONS)), seconds=seconds, follow=follows
-            ):
-                yield
+            )
             before, keep, gain = self._weigh(weight, anew=maker is not self.maker)
             self._photons.join(self.bound.buffer, made, keep, gain)
             assert self._photons.figures is not None  # noqa: S101 - of the pass that is done

@@ -215,6 +215,20 @@ class PhotonMaps:
         )
         yield 1.0
 
+    @property
+    def photon_seconds(self) -> float:
+        """s that a photon of each channel takes, as far as that is known."""
+        return self._job_seconds * self._steps / (self._batch * self._device.units)
+
+    def join(self, target: Any, made: Any, keep: float, gain: float) -> None:  # noqa: ANN401
+        """Make the target `keep` times what it was, plus `gain` times a pass."""
+        device = self._device
+        self._join(
+            device.queue, (device.units,), (1,), target, made, np.int32(self.frame.nbytes // 4), np.float32(keep),
+            np.float32(gain),
+        )  # fmt: skip
+        device.queue.finish()
+
     def _launch(
         self,
         given: dict[str, Any],
