@@ -17,8 +17,8 @@ static inline polarity_t unpolarised_light(const real *d) { return unpolarised(v
 typedef int polarity_t; // nothing
 static inline polarity_t unpolarised_light(const real *d) { return 0; }
 #endif
-#define GAUGE_CUTOFF ((real)3e-3) // R^2; a shadow's light is known to a tenth of itself then
-#define FAINT ((real)0.1)         // cut-offs below which a beam that may meet another stone ends
+#define COARSER ((real)3) // times the cut-off: of lamps that are followed only to gauge their shadows
+#define FAINT ((real)0.1) // cut-offs below which a beam that may meet another stone ends
 
 typedef struct {
   real d[3];
@@ -693,33 +693,51 @@ static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
   enter(job, tally, facet, part, count);
 }
 
-// Jobs are numbered: of each entry the lights, of each light the bands. `next` counts those that are dealt out; a launch
-// deals out those before `end`. It follows the lights that make flecks; or, coarsely, those of which is asked what part of
-// them goes through the stones into their shadows.
-__kernel void throw_light(GEOMETRY_BUFFERS, int end, int gauging) {
+// Jobs are numbered: of each entry the lights, of each light the bands.
+static inline job_t job_number(__constant const throwing_t *room, int number, __constant const light_t *lights,
+                               __constant const solid_t *solids, facets_t facets, __global const int4 *entries,
+                               __global const chain_t *chains, canvas_t canvas, int4 *entry) {
+  const int rest = number % (room->lights * room->bands);
+  *entry = entries[number / (room->lights * room->bands)];
+  return job_of(room, lights + rest / room->bands, solids, entry->x, facets, chains + rest % room->bands, canvas);
+}
+
+// `next` counts the jobs that are dealt out; a launch deals out those before `end`.
+__kernel void throw_light(GEOMETRY_BUFFERS, int end) {
   tally_t tally = tallies[get_global_id(0)];
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
   for (;;) {
     const int number = atomic_inc(next);
     if (number >= end) break;
-    const int per_entry = room->lights * room->bands, entry = number / per_entry, rest = number - entry * per_entry;
-    __constant const light_t *light = lights + rest / room->bands;
-    if (gauging ? !light->gauges : !light->follows) continue;
-    job_t job = job_of(room, light, solids, entries[entry].x, facets, chains + rest % room->bands, canvas);
-    if (!gauging) {
-      throw_at(&job, &tally, entries[entry]);
-      continue;
-    }
-    tally_t of_gauge = {0};
-    job.cutoff = fmax(job.cutoff, GAUGE_CUTOFF);
-    job.weight = 1;
-    __global float4 *found = seeping + 2 * (get_global_id(0) * room->gauges + light->gauge);
-    job.seeping = found;
-    throw_at(&job, &of_gauge, entries[entry]);
-    found[1] += job.share * (float)(of_gauge.incident - of_gauge.cut);
+    if (!lights[number % (room->lights * room->bands) / room->bands].follows) continue;
+    int4 entry;
+    job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
+    throw_at(&job, &tally, entry);
   }
   tallies[get_global_id(0)] = tally;
+}
+
+// Follows lamps that make no flecks, coarsely, to find what part of their light goes through the stones into their shadows.
+// `band`: 1 more than the number of the band that stands for all channels; 0: each stands for its own.
+__kernel void gauge_light(GEOMETRY_BUFFERS, int end, int band) {
+  const facets_t facets = GEOMETRY_OF;
+  const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
+  for (;;) {
+    const int number = atomic_inc(next);
+    if (number >= end) break;
+    if (!lights[number % (room->lights * room->bands) / room->bands].gauges) continue;
+    if (band > 0 && number % room->bands != band - 1) continue;
+    int4 entry;
+    job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
+    tally_t tally = {0};
+    job.cutoff *= COARSER;
+    job.weight = 1;
+    if (band > 0) job.share = 1;
+    job.seeping = seeping + 2 * (get_global_id(0) * room->gauges + job.light->gauge);
+    throw_at(&job, &tally, entry);
+    job.seeping[1] += job.share * (float)(tally.incident - tally.cut);
+  }
 }
 
 // The part of a lamp's light that goes through the stones into its shadows, by channel: what beams above the cut-off say.
