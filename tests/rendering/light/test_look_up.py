@@ -39,7 +39,7 @@ def scene_of(**fields: object) -> Scene:
 def slopes(surface: int, u: Array, v: Array) -> Array:
     """(..., 3) light that differs on each surface and rises evenly over it: what is between texels is known exactly."""
     parts = np.array([0.3 + 0.02 * surface, 0.25, 0.4 - 0.03 * surface])
-    return parts + np.stack([0.01 * u, 0.02 * v, 0.01 * u - 0.015 * v], axis=-1)
+    return np.asarray(parts + np.stack([0.01 * u, 0.02 * v, 0.01 * u - 0.015 * v], axis=-1))
 
 
 def bound(renderer: Renderer, scene: Scene, light: Any = slopes) -> BoundMap:  # noqa: ANN401 - a function or a number
