@@ -42,7 +42,7 @@ class Thrown(NamedTuple):
         """(3,) of the finer level's texel at a place of a surface."""
         columns, rows = self.frame.texels(surface, 0)
         row, column = int(abs(rows - v).argmin()), int(abs(columns - u).argmin())
-        return self.map[surface, 0, row, column]
+        return np.asarray(self.map[surface, 0, row, column])
 
     def lost(self) -> float:
         """What of the incident light is not accounted for, as part of it."""
