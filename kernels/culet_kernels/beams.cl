@@ -5,18 +5,29 @@
 // A work-item takes one (facet, light, index of refraction) after another.
 #include "light_shadow.cl"
 
+#include "polarisation.cl"
+
 #ifndef SEVERAL // 1: there are several stones
 #define SEVERAL 0
 #endif
+#if POLARISED
+typedef polarisationL polarity_t;
+static inline polarity_t unpolarised_light(const real *d) { return unpolarised(vec3(d[0], d[1], d[2])); }
+#else
+typedef int polarity_t; // nothing
+static inline polarity_t unpolarised_light(const real *d) { return 0; }
+#endif
+#define COARSER ((real)3) // times the cut-off: of lamps that are followed only to gauge their shadows
 #define FAINT ((real)0.1) // cut-offs below which a beam that may meet another stone ends
 
 typedef struct {
   real d[3];
   real flux;
   int count, facet;
+  polarity_t polarity; // of light that goes as the beam does; its frame is about that way
 #if SEVERAL
-  int solid;   // that it is in, or has left
-  int outside; // it has left the stone
+  int solid;           // that it is in, or has left
+  int outside;         // it has left the stone
   int doubtful;
 #endif
   corner_t corner[CORNERS];
@@ -30,11 +41,27 @@ typedef struct {
 #endif
 } flat_t;
 
-// Fresnel's equations for unpolarised light, the mean of both polarisations (Born & Wolf, Principles of Optics, 1.5.2).
-static inline real reflected_part(real cos_a, real cos_s, real eta) {
-  const real r_perpendicular = (cos_a - eta * cos_s) / (cos_a + eta * cos_s);
-  const real r_parallel = (eta * cos_a - cos_s) / (eta * cos_a + cos_s);
-  return (real)0.5 * (r_perpendicular * r_perpendicular + r_parallel * r_parallel);
+// What becomes of light at a boundary: the part that is reflected, and the polarisation of both.
+typedef struct {
+  real reflected;
+  polarity_t mirrored, through;
+} boundary_t;
+
+// `squared` is the square of the cosine in air, by Snell's law; not positive where light is totally reflected.
+static inline boundary_t at_boundary(const job_t *job, polarity_t polarity, const real *d, const real *normal,
+                                     real cos_a, real cos_s, real squared) {
+  boundary_t found;
+#if POLARISED
+  const vec3L way = vec3(d[0], d[1], d[2]), across = vec3(normal[0], normal[1], normal[2]);
+  const splitL parts = split(align(polarity, way, across), cos_a, cos_s, squared, job->eta);
+  found.reflected = parts.kept;
+  found.mirrored = parts.reflected;
+  found.through = parts.transmitted;
+#else
+  found.mirrored = found.through = polarity;
+  found.reflected = squared > 0 ? reflectance(job->room->fresnel_kind, cos_a, cos_s, job->eta) : (real)1;
+#endif
+  return found;
 }
 
 #if DIVERGING
@@ -93,16 +120,46 @@ static inline void axes_of(const real *normal, int *k, int *u, int *v) {
   *v = *k == 0 ? 2 : *k == 1 ? 0 : 1;
 }
 
+// What a lamp's light that lands in its own shadow adds up to: all a lamp without flecks is followed for.
+static inline void gauge(const job_t *job, const corner_t *corners, int count, const real *d, real flux) {
+  real middle[3], way[3], reach, spread, first = 1e30f;
+  middle_of(corners, count, d, middle, way, &reach, &spread);
+  int met = NOBODY;
+  for (int s = 0; s < MAX_SURFACES; s++) {
+    if (!job->room->present[s]) continue;
+    const real speed = speed_to(job->room, s, way), gap = gap_to(job->room, s, middle);
+    if (speed < GRAZING || gap < 0 || gap >= first * speed) continue;
+    first = gap / speed;
+    met = s;
+  }
+  if (met == NOBODY || !job->room->mapped[met]) return;
+  real towards[3];
+  for (int k = 0; k < 3; k++) {
+    middle[k] += first * way[k];
+    towards[k] = job->light->place[k] - (DIVERGING ? middle[k] : 0);
+  }
+  normalise_3(towards);
+  for (int s = 0; s < job->room->stones; s++) {
+    real in, out;
+    if (!crossing_of(job, s, middle, towards, &in, &out) || out <= 0) continue;
+    *job->seeping += job->share * (float)flux;
+    return;
+  }
+}
+
 // Light that has left the last stone.
 static inline void land_beam(const job_t *job, tally_t *tally, const corner_t *corners, int count, const real *d,
                              real flux, int doubtful) {
-  land(job->room, job->canvas, tally, job->light, corners, count, d, flux, job->colour, job->weight, job->power,
-       doubtful, LIGHT_ITSELF);
+  if (job->light->gauges)
+    gauge(job, corners, count, d, flux);
+  else
+    land(job->room, job->canvas, tally, job->light, corners, count, d, flux, job->colour, job->weight, job->power,
+         doubtful, LIGHT_ITSELF);
 }
 
 // Light that leaves the stone. If another may be in its way, it waits until that is looked into.
 static inline void leave(const job_t *job, tally_t *tally, beam_t *stack, int *top, const corner_t *corners, int count,
-                         const real *d, real flux, int doubtful) {
+                         const real *d, real flux, polarity_t polarity, int doubtful) {
 #if SEVERAL
   real middle[3], along[3], reach, spread;
   middle_of(corners, count, d, middle, along, &reach, &spread);
@@ -118,6 +175,7 @@ static inline void leave(const job_t *job, tally_t *tally, beam_t *stack, int *t
       beam->count = count;
       beam->solid = job->solid - job->solids;
       beam->outside = 1;
+      beam->polarity = polarity;
       beam->doubtful = doubtful;
       for (int k = 0; k < 3; k++) beam->d[k] = d[k];
       for (int i = 0; i < count; i++) beam->corner[i] = corners[i];
@@ -293,11 +351,9 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
     }
     const real squared = 1 - eta * eta * (1 - cos_s * cos_s);
     const int exits = squared > 0;
-    real cos_a = 0, reflected = 1;
-    if (exits) {
-      cos_a = sqrt(squared);
-      reflected = reflected_part(cos_a, cos_s, eta);
-    }
+    const real cos_a = sqrt(fmax(squared, (real)0));
+    const boundary_t boundary = at_boundary(job, beam.polarity, d, normal, cos_a, cos_s, squared);
+    const real reflected = boundary.reflected;
     const real rest = reflected * flux;
     const int goes = rest >= job->cutoff && *top < BEAMS - SEVERAL; // what leaves may wait, too
     if (!goes) tally->cut += job->weight * rest;
@@ -326,10 +382,12 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
         refract_out(own, normal, eta, corner[i].d);
       }
 #endif
-      leave(job, tally, stack, top, corner, left, out, (1 - reflected) * flux, beam.flux < 3 * job->cutoff);
+      leave(job, tally, stack, top, corner, left, out, (1 - reflected) * flux, boundary.through,
+            beam.flux < 3 * job->cutoff);
     }
     if (goes) {
       beam_t *next = stack + (*top)++;
+      next->polarity = boundary.mirrored;
 #if SEVERAL
       next->solid = beam.solid;
       next->outside = 0;
@@ -354,7 +412,7 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
 #if SEVERAL
 // A beam outside that meets another stone: a part on each of its facets.
 static inline void meet(const job_t *job, tally_t *tally, beam_t *stack, int *top, const piece_t *piece,
-                        const real *common, real flux, int doubtful) {
+                        const real *common, real flux, polarity_t polarity, int doubtful) {
   const real whole = fmax(measure(piece->corner, piece->count), (real)1e-30), eta = job->eta;
   real middle[3], along[3], reach, spread, given = 0;
   middle_of(piece->corner, piece->count, common, middle, along, &reach, &spread);
@@ -382,8 +440,9 @@ static inline void meet(const job_t *job, tally_t *tally, beam_t *stack, int *to
     corner_t mirrored[CORNERS];
     real unused[3], d[3];
     middle_of(corner, count, common, unused, d, &reach, &spread);
-    const real cos_a = fmax(-dot_3(d, normal), GRAZING), cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta)),
-               reflected = reflected_part(cos_a, cos_s, eta);
+    const real cos_a = fmax(-dot_3(d, normal), GRAZING), cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta));
+    const boundary_t boundary = at_boundary(job, polarity, d, normal, cos_a, cos_s, cos_a * cos_a);
+    const real reflected = boundary.reflected;
     real out[3], inward[3];
     for (int k = 0; k < 3; k++) {
       out[k] = d[k] + 2 * cos_a * normal[k];
@@ -404,7 +463,7 @@ static inline void meet(const job_t *job, tally_t *tally, beam_t *stack, int *to
       }
 #endif
     }
-    leave(job, tally, stack, top, mirrored, count, out, reflected * arriving, doubtful);
+    leave(job, tally, stack, top, mirrored, count, out, reflected * arriving, boundary.mirrored, doubtful);
     const real rest = (1 - reflected) * arriving;
     if (rest < job->cutoff || *top >= BEAMS) {
       tally->cut += job->weight * rest;
@@ -416,6 +475,7 @@ static inline void meet(const job_t *job, tally_t *tally, beam_t *stack, int *to
     beam->facet = f;
     beam->solid = job->solid - job->solids;
     beam->outside = 0;
+    beam->polarity = boundary.through;
     for (int k = 0; k < 3; k++) beam->d[k] = inward[k];
     for (int i = 0; i < count; i++) beam->corner[i] = corner[i];
   }
@@ -440,7 +500,7 @@ static inline void fly(job_t *job, tally_t *tally, beam_t *stack, int *top) {
       tally->unresolved += job->weight * flux;
     else {
       go_to(job, met);
-      meet(job, tally, stack, top, &part, beam.d, flux, beam.doubtful);
+      meet(job, tally, stack, top, &part, beam.d, flux, beam.polarity, beam.doubtful);
     }
   }
   tally->unresolved += job->weight * left;
@@ -578,7 +638,9 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
     if (!(flux > 0)) return;
 #endif
     const real cos_a = fmax(-dot_3(d, normal), DIVERGING ? GRAZING : (real)0);
-    const real cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta)), reflected = reflected_part(cos_a, cos_s, eta);
+    const real cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta));
+    const boundary_t boundary = at_boundary(job, unpolarised_light(d), d, normal, cos_a, cos_s, cos_a * cos_a);
+    const real reflected = boundary.reflected;
     real out[3];
     for (int j = 0; j < 3; j++) out[j] = d[j] + 2 * cos_a * normal[j];
     tally->incident += job->weight * flux;
@@ -589,11 +651,12 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
     for (int j = 0; j < 3; j++) beam->d[j] = d[j] / eta + (cos_a / eta - cos_s) * normal[j];
     beam->flux = through;
     beam->facet = facet;
+    beam->polarity = boundary.through;
 #if SEVERAL
     beam->solid = solid;
     beam->outside = 0;
 #endif
-    leave(job, tally, stack, &top, mirrored, count, out, reflected * flux, 0);
+    leave(job, tally, stack, &top, mirrored, count, out, reflected * flux, boundary.mirrored, 0);
     follow(job, tally, stack, top);
     go_to(job, solid);
   }
@@ -604,11 +667,42 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
       __global const real *planes, __global const real *vertices, __global const int *start,                           \
       __global const int *corners, __global const int *across, __global const int4 *entries,                           \
       __global const chain_t *chains, __global float4 *light_maps, __global float *shade_maps,                         \
-      __global uint *lit_rows, __global uint *shaded_rows, __global int *next, __global tally_t *tallies
-#define GEOMETRY_OF {planes, vertices, start, corners, across}
+      __global uint *lit_rows, __global uint *shaded_rows, __global float4 *seeping, __global int *next,               \
+      __global tally_t *tallies
+#define GEOMETRY_OF                                                                                                    \
+  {                                                                                                                    \
+    planes, vertices, start, corners, across                                                                           \
+  }
 
-// Jobs are numbered: of each entry the lights, of each light the bands. `next` counts those that are dealt out; a launch
-// deals out those before `end`.
+// The light of a facet's part.
+static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
+  const int facet = entry.y;
+  if (!is_lit(job, facet)) return;
+  corner_t part[CORNERS];
+  const int count = facet_in_room(job, facet, entry.z, entry.w, part);
+  if (count < 3) return;
+#if SEVERAL
+  if (is_screened(job)) {
+    flight_t flight;
+    piece_t lit;
+    begin_lighting(job, part, count, &flight);
+    while (next_lit(job, &flight, &lit)) enter(job, tally, facet, lit.corner, lit.count);
+    return;
+  }
+#endif
+  enter(job, tally, facet, part, count);
+}
+
+// Jobs are numbered: of each entry the lights, of each light the bands.
+static inline job_t job_number(__constant const throwing_t *room, int number, __constant const light_t *lights,
+                               __constant const solid_t *solids, facets_t facets, __global const int4 *entries,
+                               __global const chain_t *chains, canvas_t canvas, int4 *entry) {
+  const int rest = number % (room->lights * room->bands);
+  *entry = entries[number / (room->lights * room->bands)];
+  return job_of(room, lights + rest / room->bands, solids, entry->x, facets, chains + rest % room->bands, canvas);
+}
+
+// `next` counts the jobs that are dealt out; a launch deals out those before `end`.
 __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
   tally_t tally = tallies[get_global_id(0)];
   const facets_t facets = GEOMETRY_OF;
@@ -616,27 +710,47 @@ __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
   for (;;) {
     const int number = atomic_inc(next);
     if (number >= end) break;
-    const int per_entry = room->lights * room->bands, entry = number / per_entry, rest = number - entry * per_entry;
-    __constant const light_t *light = lights + rest / room->bands;
-    if (!light->follows) continue;
-    job_t job = job_of(room, light, solids, entries[entry].x, facets, chains + rest % room->bands, canvas);
-    const int facet = entries[entry].y;
-    if (!is_lit(&job, facet)) continue;
-    corner_t part[CORNERS];
-    const int count = facet_in_room(&job, facet, entries[entry].z, entries[entry].w, part);
-    if (count < 3) continue;
-#if SEVERAL
-    if (is_screened(&job)) {
-      flight_t flight;
-      piece_t lit;
-      begin_lighting(&job, part, count, &flight);
-      while (next_lit(&job, &flight, &lit)) enter(&job, &tally, facet, lit.corner, lit.count);
-      continue;
-    }
-#endif
-    enter(&job, &tally, facet, part, count);
+    if (!lights[number % (room->lights * room->bands) / room->bands].follows) continue;
+    int4 entry;
+    job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
+    throw_at(&job, &tally, entry);
   }
   tallies[get_global_id(0)] = tally;
+}
+
+// Follows lamps that make no flecks, coarsely, to find what part of their light goes through the stones into their shadows.
+// `band`: 1 more than the number of the band that stands for all channels; 0: each stands for its own.
+__kernel void gauge_light(GEOMETRY_BUFFERS, int end, int band) {
+  const facets_t facets = GEOMETRY_OF;
+  const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
+  for (;;) {
+    const int number = atomic_inc(next);
+    if (number >= end) break;
+    if (!lights[number % (room->lights * room->bands) / room->bands].gauges) continue;
+    if (band > 0 && number % room->bands != band - 1) continue;
+    int4 entry;
+    job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
+    tally_t tally = {0};
+    job.cutoff *= COARSER;
+    job.weight = 1;
+    if (band > 0) job.share = 1;
+    job.seeping = seeping + 2 * (get_global_id(0) * room->gauges + job.light->gauge);
+    throw_at(&job, &tally, entry);
+    job.seeping[1] += job.share * (float)(tally.incident - tally.cut);
+  }
+}
+
+// The part of a lamp's light that goes through the stones into its shadows, by channel: what beams above the cut-off say.
+static inline float4 seeping_part(__constant const throwing_t *room, __constant const light_t *light,
+                                  __global const float4 *seeping) {
+  if (light->gauge < 0) return 0;
+  float4 through = 0, followed = 0;
+  for (int item = 0; item < get_global_size(0); item++) {
+    __global const float4 *found = seeping + 2 * (item * room->gauges + light->gauge);
+    through += found[0];
+    followed += found[1];
+  }
+  return clamp(through / fmax(followed, 1e-20f), 0.0f, 1.0f);
 }
 
 // Shadows are numbered: of each stone the lights.
@@ -647,6 +761,7 @@ __kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
     const int number = atomic_inc(next);
     if (number >= end) break;
     job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
+    job.colour *= 1 - seeping_part(room, job.light, seeping);
     int alone = 1; // no other stone is in the way of its light
 #if SEVERAL
     alone = !is_screened(&job);

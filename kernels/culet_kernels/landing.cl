@@ -82,7 +82,7 @@ static inline int first_met(__constant const throwing_t *room, int s, const corn
   real inside[CLIPPED];
   int side = 0;
   *of = corners;
-  for (int other = -2; other < MAP_SURFACES; other++) {
+  for (int other = -2; other < MAX_SURFACES; other++) {
     if (other >= 0 && (other == s || !room->present[other])) continue;
     int out = 0;
     for (int i = 0; i < count; i++) {
@@ -115,7 +115,7 @@ static inline void land(__constant const throwing_t *room, canvas_t canvas, tall
                         real flux, float4 colour, real weight, real power, int doubtful, int shadow) {
   real left = flux, behind = 0;
   const size_t plane = (size_t)MAP_SIZE * MAP_STRIDE;
-  for (int s = 0; s < MAP_SURFACES; s++) {
+  for (int s = 0; s < MAX_SURFACES; s++) {
     if (!room->present[s]) continue;
     corner_t cut[2][CLIPPED];
     const corner_t *part;
@@ -193,7 +193,7 @@ static inline void land(__constant const throwing_t *room, canvas_t canvas, tall
   if (shadow) return;
   // What is left lies behind a surface that it goes towards, or passes all of them by.
   for (int i = 0; i < count; i++)
-    for (int s = 0; s < MAP_SURFACES; s++)
+    for (int s = 0; s < MAX_SURFACES; s++)
       if (room->present[s] && gap_to(room, s, corners[i].p) < 0 && speed_to(room, s, common) > 0) behind = 1;
   if (behind > 0)
     tally->behind += weight * fmax(left, (real)0);

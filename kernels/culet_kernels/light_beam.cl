@@ -34,15 +34,16 @@ typedef struct {
 
 // Where the light goes, and what it may do.
 typedef struct {
-  real surface[MAP_SURFACES][4];                     // inward normal and offset: the room is n.x >= offset
-  real across[MAP_SURFACES][3], up[MAP_SURFACES][3]; // directions of a map's rows, and of its columns
-  real centre[MAP_SURFACES][2];                      // of the maps, along these
+  real surface[MAX_SURFACES][4];                     // inward normal and offset: the room is n.x >= offset
+  real across[MAX_SURFACES][3], up[MAX_SURFACES][3]; // directions of a map's rows, and of its columns
+  real centre[MAX_SURFACES][2];                      // of the maps, along these
   real half_size[MAP_LEVELS];                        // R
   real cutoff;                                       // flux of a beam that ends, R^2 of the brightest light
-  real piece;               // diameter of a beam at its beginning, in distances from a light at a point, at most
-  int present[MAP_SURFACES];
-  int mapped[MAP_SURFACES]; // whether the surface has a map
-  int maps, stones, lights, bands, entries, points;
+  real piece; // diameter of a beam at its beginning, in distances from a light at a point, at most
+  int fresnel_kind;
+  int present[MAX_SURFACES];
+  int mapped[MAX_SURFACES]; // whether the surface has a map
+  int maps, stones, lights, bands, entries, points, gauges;
 } throwing_t;
 
 // Light of one direction, or of one point.
@@ -53,6 +54,8 @@ typedef struct {
   real dimness;    // how many times fainter its emitter is than the brightest
   int follows;     // into the stones, or else it only makes shadows
   int shade;       // number of a point's shadow
+  int gauge;       // number of what it lets through into its shadows, or -1: its lamp makes no flecks
+  int gauges;      // it is followed to find that out
 } light_t;
 
 // A convex stone, R, relative to the origin of these kernels' frame.

@@ -12,11 +12,13 @@ typedef struct {
   facets_t facets;
   canvas_t canvas;
   float4 colour;
-  real weight;     // mean of the channels of its colour,
-  real power;      // and of their squares
+  float4 share;             // of each channel that is of its band
+  __global float4 *seeping; // where it is counted, if its lamp is gauged
+  real weight;              // mean of the channels of its colour,
+  real power;               // and of their squares
   real eta;
-  real absorption; // per R
-  real cutoff;     // flux, R^2
+  real absorption;          // per R
+  real cutoff;              // flux, R^2
 } job_t;
 
 static inline real plane_of(const job_t *job, int k, int facet) {
@@ -34,7 +36,7 @@ static inline int facet_in_room(const job_t *job, int facet, int first, int corn
     for (int k = 0; k < 3; k++) cut[0][i].p[k] = job->facets.vertices[3 * job->facets.corners[at] + k];
   }
   if (job->solid->pierces)
-    for (int s = 0; s < MAP_SURFACES && count > 2; s++) {
+    for (int s = 0; s < MAX_SURFACES && count > 2; s++) {
       if (!job->room->present[s]) continue;
       real inside[CLIPPED];
       int out = 0;
@@ -92,12 +94,15 @@ static inline job_t job_of(__constant const throwing_t *room, __constant const l
   job.colour = (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
   job.weight = job.power = 1;
   job.eta = 1;
+  job.share = 0;
+  job.seeping = 0;
   job.absorption = 0;
   job.cutoff = room->cutoff * light->dimness;
   go_to(&job, solid);
   if (chains) {
     __global const real *share = chains[job.solid->first_chain].share;
-    job.colour *= (float4)((float)share[0], (float)share[1], (float)share[2], 0);
+    job.share = (float4)((float)share[0], (float)share[1], (float)share[2], 0);
+    job.colour *= job.share;
     job.weight = (fabs(job.colour.x) + fabs(job.colour.y) + fabs(job.colour.z)) / 3;
     job.power = dot(job.colour, job.colour) / 3;
   }

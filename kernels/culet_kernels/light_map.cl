@@ -10,16 +10,14 @@
 // Between the four nearest texels of a level; a place is -1 to 1 over it. Adds `share` of it to `sum`.
 static inline void add_level(world_t world, intL surface, int level, realL column_place, realL row_place, realL share,
                              channels_t channels, radianceL *sum) {
-  const realL u = fmin(fmax(fma(column_place, splat(MAP_SIZE / 2), splat((real)(MAP_SIZE - 1) / 2)), splat(0)),
-                       splat(MAP_SIZE - 1)),
-              v = fmin(fmax(fma(row_place, splat(MAP_SIZE / 2), splat((real)(MAP_SIZE - 1) / 2)), splat(0)),
-                       splat(MAP_SIZE - 1));
-  const realL left = fmin(floor_lanes(u), splat(MAP_SIZE - 2)), upper = fmin(floor_lanes(v), splat(MAP_SIZE - 2));
-  const realL right_share = u - left, lower_share = v - upper;
+  const realL last = splat(MAP_SIZE - 1);
+  const realL u = clamp(fma(column_place, splat(MAP_SIZE / 2), (real)0.5 * last), splat(0), last),
+              v = clamp(fma(row_place, splat(MAP_SIZE / 2), (real)0.5 * last), splat(0), last);
+  const intL left = clamp(reals_to_int(u), (intL)(0), (intL)(MAP_SIZE - 2)),
+             upper = clamp(reals_to_int(v), (intL)(0), (intL)(MAP_SIZE - 2));
+  const realL right_share = u - ints_to_real(left), lower_share = v - ints_to_real(upper);
   int place[LANES];
-  store_ints(3 * (((surface * MAP_LEVELS + level) * MAP_SIZE + reals_to_int(upper)) * MAP_SIZE + reals_to_int(left)) +
-                 channels.first,
-             place);
+  store_ints(3 * (((surface * MAP_LEVELS + level) * MAP_SIZE + upper) * MAP_SIZE + left) + channels.first, place);
   EACH (corner, 4) {
     const int right = corner & 1, lower = corner >> 1;
     const realL weight =
@@ -39,6 +37,7 @@ static inline realL add_light_map(world_t world, intL surface, realL u, realL v,
                                   radianceL *sum) {
   __constant const parameters_t *scene = world.scene;
   realL whole = splat(0);
+  surface = blend_ints_by(mask, surface, (intL)(scene->mapped_surface)); // elsewhere there may be no map to read
   EACH (level, MAP_LEVELS) {
     const realL column_place = u * scene->map_scale[level], row_place = v * scene->map_scale[level];
     const realL from_middle = fmax(fabs(column_place), fabs(row_place));

@@ -60,7 +60,8 @@ typedef struct {
   int camera_inside;         // a stone,
   int camera_stone;          // this one
   int has_head, has_backdrop, glare;
-  int has_map, floor_mapped; // light_map is there, of the floor too
+  int has_map, floor_mapped; // light_map is there, of the floor too,
+  int mapped_surface;        // and of this surface at least
   int pierces;               // a stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 

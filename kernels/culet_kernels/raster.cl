@@ -5,12 +5,9 @@
 // are polygons of negative light. Cost goes with the length of the sides, not with the area.
 #ifndef CULET_RASTER
 #define CULET_RASTER
-#include "lanes.cl"
+#include "parameters.cl"
 
-#define MAP_SIZE 512           // texels of a map's row, and rows
 #define MAP_STRIDE 514         // of a row in the accumulation buffer: a side may end right of the last texel
-#define MAP_LEVELS 2
-#define MAP_SURFACES 4         // the floor and three walls
 #define THIN ((real)1e-5)      // texels^2 of area, and
 #define THIN_SIDE ((real)1e-4) // texels, below which a polygon of so much length is a line: its area is rounding
 

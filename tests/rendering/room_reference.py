@@ -7,6 +7,7 @@ half-spaces: nothing here is shared with the kernels but the description.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -165,7 +166,11 @@ def albedos_of(surface: Floor) -> tuple[Array, Array]:
     return (odd if surface.checker == "off" else np.array(surface.checker.albedo)), odd
 
 
-def look_around(scene: Scene, stone: Shape | None, width: int, height: int) -> Seen:
+Thrown = Callable[[NDArray[np.integer], Array], Array]
+"""(N, 3) what shadows and caustics add to the light at points (N, 3) of surfaces (N,)."""
+
+
+def look_around(scene: Scene, stone: Shape | None, width: int, height: int, thrown: Thrown | None = None) -> Seen:
     """(height, width) what the pixels' centres see of the room."""
     direction = pixel_directions(scene, width, height).reshape(-1, 3)
     origin = np.tile(np.array(scene.camera.position, float), (len(direction), 1))
@@ -194,6 +199,9 @@ def look_around(scene: Scene, stone: Shape | None, width: int, height: int) -> S
         odd = ((np.floor(along / cell) + np.floor(across / cell)) % 2).astype(int)
         albedos = np.array([albedos_of(scene.floor), *[albedos_of(scene.walls)] * 3])
         light = lighting(scene, planes, point, normal, which)
+        if thrown is not None:
+            added = np.where(mirror[:, None], 0, thrown(which, point))
+            light = np.maximum(light + added, 0)
         seen = np.where(met[:, None], albedos[which, odd] * light, seen)
         radiance += np.where(stopped, 0, weight)[:, None] * seen
         stopped |= ~mirror

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
 from culet.rendering.features import Features
+from culet.rendering.light.light_map import BoundMap
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
 from shared.stages import staged
@@ -30,9 +31,10 @@ def take(
     size: tuple[int, int] = (96, 54),
     samples: int = 1,
     features: Features | None = None,
+    light_map: BoundMap | None = None,
 ) -> Picture:
     """A finished picture; the stone is the scene's own cut unless another is given."""
-    picture = renderer.picture(staged(scene, stone), *size, features=features)
+    picture = renderer.picture(staged(scene, stone), *size, features=features, light_map=light_map)
     picture.refine(samples)
     return picture
 

@@ -35,7 +35,7 @@ def set_light_map(p: NDArray[np.void], frame: MapFrame, stage: Stage, origin: ND
     for number, surface in enumerate(surfaces()):
         p["map_centre"][number] = np.array(frame.centres[number]) - surface.coordinates(origin)
     p["map_scale"] = 1 / np.array(frame.halves)
-    p["floor_mapped"] = 0 in frame.matte
+    p["floor_mapped"], p["mapped_surface"] = 0 in frame.matte, frame.matte[0]
     p["even_light"] = 1
     if isinstance(stage.scene.floor, StudioFloor) and 0 in frame.matte:
         p["even_light"], p["map_gain"] = studio_light(stage, np.array(frame.middle))

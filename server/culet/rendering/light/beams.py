@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from culet.rendering.build import build
 from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_coloured, is_spectral
 from culet.rendering.device import Device, Real
+from culet.rendering.features import FRESNEL
 from culet.rendering.layout import constants, struct
 from culet.rendering.light.light_map import LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
 from culet.rendering.light.ray import Ray
@@ -56,13 +57,16 @@ class Tally:
 class Beams:
     """Makes light maps of convex stones on one device; one thread at a time. Its buffers are kept for the next maps."""
 
-    def __init__(self, device: Device, real: Real = np.float32, *, items: int | None = None) -> None:
-        """`items`: work-items at a time, a core each."""
+    def __init__(
+        self, device: Device, real: Real = np.float32, *, items: int | None = None, like: Beams | None = None
+    ) -> None:
+        """`items`: work-items at a time, a core each. `like`: another one of the same device and precision, whose
+        programs this one uses, too."""
         self.device, self.real = device, real
         self.items = items or device.units
         self.tally: Tally | None = None
         """Of the last pass."""
-        self._programs: dict[tuple[int, ...], Any] = {}
+        self._programs: dict[tuple[int, ...], Any] = {} if like is None else like._programs
         self._scratch: dict[tuple[int, int], tuple[Any, ...]] = {}
         self._clean = True
 
@@ -122,6 +126,9 @@ class Beams:
         room = _room(stage.scene, frame, origin, self.real)
         room["cutoff"], room["piece"] = cutoff, piece
         room["stones"], room["bands"], room["points"] = len(stones), bands, len(points)
+        gauged = sorted({ray.emitter for ray in parallel if ray.gauges})
+        room["gauges"] = len(gauged)
+        seeping = self._upload(np.zeros((self.items, max(1, len(gauged)), 2, 4), np.float32))
         solids = Solids.of(stones, first_chains, origin, room["surface"][room["present"] != 0].astype(float), self.real)
         room["entries"] = int(solids.solids["last_entry"].max(initial=0))
         arrays = [self._upload(array) for array in (
@@ -132,17 +139,22 @@ class Beams:
         tallies = np.zeros(self.items, tally_type)
         tally_buffer, next_buffer = self._upload(tallies), self._upload(np.zeros(1, np.int32))
         brightest = _brightness(rays)
-        point_lights = self._upload(_lights(points, brightest, origin, self.real))
+        point_lights = self._upload(_lights(points, brightest, gauged, origin, self.real))
         self._clean = False
         for diverging, group in enumerate((parallel, points)):
             if not group or not stones:
                 continue
             room["lights"] = len(group)
-            light_buffer = point_lights if diverging else self._upload(_lights(group, brightest, origin, self.real))
-            program = self._program(diverging, solids.most_facets, len(stones) > 1)
+            light_buffer = (
+                point_lights if diverging else self._upload(_lights(group, brightest, gauged, origin, self.real))
+            )
+            program = self._program(diverging, solids.most_facets, len(stones) > 1, stage.scene.optics.polarised)
             buffers = (
-                self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, next_buffer, tally_buffer,
+                self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, seeping, next_buffer, tally_buffer,
             )  # fmt: skip
+            if gauged and not diverging:
+                band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
+                self._launch(program.gauge_light, buffers, 0, int(room["entries"]) * len(group) * bands, band)
             self._launch(program.cast_shadows, buffers, 0, len(group) * len(stones))
             followed = any(ray.follows for ray in group)
             jobs = int(room["entries"]) * len(group) * bands if followed else 0
@@ -173,22 +185,29 @@ class Beams:
             seconds=seconds,
         )
 
-    def _program(self, diverging: int, most_facets: int, several: bool) -> Any:  # noqa: ANN401
-        key = diverging, most_facets, int(several)
+    def _program(self, diverging: int, most_facets: int, several: bool, polarised: bool) -> Any:  # noqa: ANN401
+        key = diverging, most_facets, int(several), int(polarised)
         if key not in self._programs:
-            choices = {"DIVERGING": diverging, "MOST_FACETS": most_facets, "SEVERAL": int(several)}
+            choices = {
+                "DIVERGING": diverging,
+                "MOST_FACETS": most_facets,
+                "SEVERAL": int(several),
+                "POLARISED": int(polarised),
+            }
             options = [*self._options, *(f"-D{name}={value}" for name, value in choices.items())]
             program = build(self.device, "beams.cl", options)
-            self._programs[key] = _Kernels(cl.Kernel(program, "cast_shadows"), cl.Kernel(program, "throw_light"))
+            self._programs[key] = _Kernels(
+                *(cl.Kernel(program, name) for name in ("gauge_light", "cast_shadows", "throw_light"))
+            )
         return self._programs[key]
 
     @property
     def _options(self) -> list[str]:
         return [f"-DREAL={'double' if self.real is np.float64 else 'float'}"]
 
-    def _launch(self, kernel: Any, buffers: Sequence[Any], begin: int, end: int) -> None:  # noqa: ANN401
+    def _launch(self, kernel: Any, buffers: Sequence[Any], begin: int, end: int, *more: int) -> None:  # noqa: ANN401
         cl.enqueue_fill_buffer(self.device.queue, buffers[-2], np.array(begin, np.int32), 0, 4)
-        kernel(self.device.queue, (self.items,), (1,), *buffers, np.int32(end))
+        kernel(self.device.queue, (self.items,), (1,), *buffers, np.int32(end), *map(np.int32, more))
 
     def _sum(self, room: Any, points: Any, scratch: tuple[Any, ...], target: Any, keep: float, gain: float) -> None:  # noqa: ANN401
         if (-1,) not in self._programs:
@@ -222,6 +241,7 @@ class Beams:
 
 @dataclass(frozen=True)
 class _Kernels:
+    gauge_light: Any
     cast_shadows: Any
     throw_light: Any
 
@@ -231,6 +251,7 @@ def _room(scene: Scene, frame: MapFrame, origin: NDArray[np.float64], real: Real
     room = np.zeros((), struct("throwing_t", real, "light_beam.cl"))
     room["half_size"] = frame.halves
     room["maps"] = frame.held
+    room["fresnel_kind"] = FRESNEL[scene.optics.fresnel]
     present = [scene.floor.kind != "none", *[scene.walls.kind != "none"] * (SURFACES - 1)]
     for number, surface in enumerate(surfaces()):
         normal = np.array(surface.normal)
@@ -256,7 +277,11 @@ FAINTEST = 1e-9
 
 
 def _lights(
-    rays: Sequence[Ray], brightness: dict[int, float], origin: NDArray[np.float64], real: Real
+    rays: Sequence[Ray],
+    brightness: dict[int, float],
+    gauged: Sequence[int],
+    origin: NDArray[np.float64],
+    real: Real,
 ) -> NDArray[np.void]:
     """(N,) `light_t`; one of nothing if there is none."""
     rows = np.zeros(max(1, len(rays)), struct("light_t", real, "light_beam.cl"))
@@ -268,6 +293,8 @@ def _lights(
         row["dimness"] = 1 / max(brightness.get(ray.emitter, 1.0), FAINTEST)
         row["follows"] = ray.follows and any(ray.colour)
         row["shade"] = number
+        row["gauge"] = gauged.index(ray.emitter) if ray.emitter in gauged and not ray.follows else -1
+        row["gauges"] = ray.gauges
     return rows
 
 

@@ -17,6 +17,9 @@ class Ray:
     """Of a point, in the world, R."""
     follows: bool = True
     """Into the stones and out again; else it only makes shadows."""
+    gauges: bool = False
+    """Into the stones, coarsely, to find what part of its emitter's light goes through them into its shadows: that much
+    less is taken there. For lamps that make no flecks; one ray of them is enough."""
     emitter: int = 0
     """Whose it is: rays of one emitter share its light."""
 

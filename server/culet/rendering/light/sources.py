@@ -77,9 +77,12 @@ class Source:
         share = red / shadows, green / shadows, blue / shadows
         first = number * shadows + 1
         return [
-            Ray(share, _towards(self.light, self.shown, each), follows=False, emitter=self.emitter)
+            Ray(
+                share, _towards(self.light, self.shown, each), follows=False, gauges=caustics and each == first,
+                emitter=self.emitter,
+            )
             for each in range(first, first + shadows)
-        ]
+        ]  # fmt: skip
 
 
 def _towards(lamp: Lamp, surfaces: tuple[int, ...], number: int) -> Triple:
