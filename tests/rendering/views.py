@@ -33,8 +33,8 @@ def take(
     features: Features | None = None,
     light_map: BoundMap | None = None,
 ) -> Picture:
-    """A finished picture; the stone is the scene's own cut unless another is given."""
-    picture = renderer.picture(staged(scene, stone), *size, features=features, light_map=light_map)
+    """A finished picture; the stone is the scene's own cut unless another is given. No light map is made for it."""
+    picture = renderer.picture(staged(scene, stone), *size, features=features, light_map=light_map, effort=None)
     picture.refine(samples)
     return picture
 
