@@ -17,8 +17,10 @@ static inline polarity_t unpolarised_light(const real *d) { return unpolarised(v
 typedef int polarity_t; // nothing
 static inline polarity_t unpolarised_light(const real *d) { return 0; }
 #endif
-#define COARSER ((real)3) // times the cut-off: of lamps that are followed only to gauge their shadows
-#define FAINT ((real)0.1) // cut-offs below which a beam that may meet another stone ends
+#define COARSER ((real)3)    // times the cut-off: of lamps that are followed only to gauge their shadows
+#define NO_FACET (-1)        // of a beam that begins inside the stone
+#define PINHOLE ((real)1e-3) // part of the way from a light inside a stone to its facets at which its beams begin
+#define FAINT ((real)0.1)    // cut-offs below which a beam that may meet another stone ends
 
 typedef struct {
   real d[3];
@@ -339,13 +341,18 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
         middle[u] += flat[side].x[i] / left;
         middle[v] += flat[side].y[i] / left;
       }
-      const real from[3] = {nx[beam.facet], ny[beam.facet], nz[beam.facet]};
+      const int start = max(beam.facet, 0);
+      const real from[3] = {nx[start], ny[start], nz[start]};
 #if DIVERGING
       middle[k] = (offset[f] - normal[u] * middle[u] - normal[v] * middle[v]) / normal[k];
 #endif
       // Of the line through the middle: how far it is from one facet's plane to the other's.
-      const real far = (offset[f] - dot_3(normal, middle)) / dot_3(normal, d),
-                 near = (offset[beam.facet] - dot_3(from, middle)) / fmin(dot_3(from, d), (real)-1e-7);
+      const real far = (offset[f] - dot_3(normal, middle)) / dot_3(normal, d);
+      real near = 0;
+      if (beam.facet == NO_FACET)
+        for (int i = 0; i < 3; i++) near += (job->light->place[i] - middle[i]) * d[i];
+      else
+        near = (offset[beam.facet] - dot_3(from, middle)) / fmin(dot_3(from, d), (real)-1e-7);
       flux *= exp(-job->absorption * fmax(far - near, (real)0));
       tally->absorbed += job->weight * (arriving - flux);
     }
@@ -582,7 +589,8 @@ static inline real begin_beam(const job_t *job, const real *normal, const corner
     for (int j = 0; j < 3; j++) way[j] = part[i].p[j] - job->light->place[j];
     const real squared = fmax(dot_3(way, way), (real)1e-12);
     normalise_3(way);
-    const real cos_a = fmax(-dot_3(way, normal), GRAZING), cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta));
+    const real cos_a = fmax(job->light->inside < 0 ? -dot_3(way, normal) : dot_3(way, normal), GRAZING),
+               cos_s = sqrt(1 - (1 - cos_a * cos_a) / (eta * eta));
     per_area += job->light->squared / squared * cos_a / count;
     for (int j = 0; j < 3; j++) {
       d[j] += way[j];
@@ -592,6 +600,11 @@ static inline real begin_beam(const job_t *job, const real *normal, const corner
     }
     mirrored[i].a = corner->a = part[i].p[u];
     mirrored[i].b = corner->b = part[i].p[v];
+    if (job->light->inside < 0) continue;
+    for (int j = 0; j < 3; j++) {
+      corner->p[j] = mix_of(job->light->place[j], part[i].p[j], PINHOLE);
+      corner->d[j] = way[j];
+    }
   }
   normalise_3(d);
   return per_area / fabs(normal[k]) * (real)0.5 * measure(beam->corner, count);
@@ -602,7 +615,7 @@ static inline real begin_beam(const job_t *job, const real *normal, const corner
 #endif
 }
 
-// Light that comes to a convex part of a facet from outside.
+// Light that comes to a convex part of a facet from outside, or there from a point inside.
 static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *part, int count) {
   beam_t stack[BEAMS];
   const int solid = job->solid - job->solids;
@@ -634,6 +647,23 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
     }
     waiting--;
     if (!(flux > 0)) continue;
+    if (job->light->inside >= 0) {
+      tally->incident += job->weight * flux;
+      for (int j = 0; j < 3; j++) stack->d[j] = d[j];
+      stack->flux = flux;
+      stack->facet = NO_FACET;
+      stack->polarity = unpolarised_light(d);
+#if SEVERAL
+      stack->solid = solid;
+      stack->outside = 0;
+#endif
+      if (flux < job->cutoff)
+        tally->cut += job->weight * flux;
+      else
+        follow(job, tally, stack, 1);
+      go_to(job, solid);
+      continue;
+    }
 #else
     if (!(flux > 0)) return;
 #endif
@@ -676,13 +706,13 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
 
 // The light of a facet's part.
 static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
-  const int facet = entry.y;
-  if (!is_lit(job, facet)) return;
+  const int facet = entry.y, inside = DIVERGING ? job->light->inside : -1;
+  if (inside < 0 ? !is_lit(job, facet) : inside != entry.x) return;
   corner_t part[CORNERS];
   const int count = facet_in_room(job, facet, entry.z, entry.w, part);
   if (count < 3) return;
 #if SEVERAL
-  if (is_screened(job)) {
+  if (inside < 0 && is_screened(job)) {
     flight_t flight;
     piece_t lit;
     begin_lighting(job, part, count, &flight);
@@ -761,8 +791,9 @@ __kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
     const int number = atomic_inc(next);
     if (number >= end) break;
     job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
+    if (job.light->inside >= 0) continue; // everything is in shadow
     job.colour *= 1 - seeping_part(room, job.light, seeping);
-    int alone = 1; // no other stone is in the way of its light
+    int alone = 1;                        // no other stone is in the way of its light
 #if SEVERAL
     alone = !is_screened(&job);
 #endif

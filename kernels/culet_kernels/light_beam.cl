@@ -54,6 +54,7 @@ typedef struct {
   real dimness;    // how many times fainter its emitter is than the brightest
   int follows;     // into the stones, or else it only makes shadows
   int shade;       // number of a point's shadow
+  int inside;      // number of the stone that a point is in, or -1
   int gauge;       // number of what it lets through into its shadows, or -1: its lamp makes no flecks
   int gauges;      // it is followed to find that out
 } light_t;

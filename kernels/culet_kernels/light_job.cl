@@ -35,7 +35,7 @@ static inline int facet_in_room(const job_t *job, int facet, int first, int corn
     const int at = begin + (i == 0 ? 0 : first + i - 1);
     for (int k = 0; k < 3; k++) cut[0][i].p[k] = job->facets.vertices[3 * job->facets.corners[at] + k];
   }
-  if (job->solid->pierces)
+  if (job->solid->pierces && job->light->inside < 0)
     for (int s = 0; s < MAX_SURFACES && count > 2; s++) {
       if (!job->room->present[s]) continue;
       real inside[CLIPPED];
@@ -55,11 +55,11 @@ static inline int facet_in_room(const job_t *job, int facet, int first, int corn
   return count;
 }
 
-// Whether a facet is lit, at all.
+// Whether a facet is lit, at all, from outside.
 static inline int is_lit(const job_t *job, int facet) {
   real towards = 0;
   for (int k = 0; k < 3; k++) towards += plane_of(job, k, facet) * job->light->place[k];
-  return DIVERGING ? towards > plane_of(job, 3, facet) : towards > 0;
+  return DIVERGING ? towards > plane_of(job, 3, facet) && job->light->inside < 0 : towards > 0;
 }
 
 // That of this work-item.

@@ -67,8 +67,9 @@ __kernel void sum_map(__constant const throwing_t *room, __constant const light_
       __global float *shade = shade_maps + point * whole + (size_t)row * MAP_STRIDE;
       const uint marked = gather_shade(shade, shaded_rows + point * rows + row, whole * room->points,
                                        (size_t)rows * room->points, copies);
-      if (!marked) continue;
-      float covered = 0;
+      const int all = points[point].inside >= 0; // a stone is about the point
+      if (!marked && !all) continue;
+      float covered = all;
       for (int x = 0; x < MAP_SIZE; x++) {
         if (marked >> (x / MAP_BLOCK) & 1) {
           covered += shade[x];

@@ -99,9 +99,22 @@ def test_a_stone_through_the_floor_keeps_its_light_above_it(beams: Beams, height
         assert made.tally.incident == 0
 
 
-def test_a_light_inside_a_stone_leaves_a_sound_map(beams: Beams) -> None:
-    light = lamp((0.1, 0.1, 0))
-    check(thrown(beams, [light], exact_box(), stones=[UPRIGHT]), light)
+def test_a_light_inside_a_stone_shines_out_of_it(beams: Beams) -> None:
+    """All around; of index 1 as if the stone were not there, but for what the width of the beams' parts leaves."""
+    light = lamp((0.1, 0.1, 0.2))
+    made = thrown(beams, [light], exact_box(), stones=[{**UPRIGHT, "material": {"ior": [1, 1, 1]}}], cutoff=1e-5)
+    assert made.tally.incident == pytest.approx(4 * np.pi, rel=1e-3)
+    assert np.sqrt((made.map[0, 0] ** 2).mean()) < 0.02  # measured 0.008
+    assert made.tally.unresolved < 1e-5
+    for absorption in (0, 1):
+        stone = {**UPRIGHT, "material": {"ior": [1.5] * 3}, "absorption": [absorption] * 3}
+        check(thrown(beams, [light], exact_box(), stones=[stone]), light)
+
+
+def test_a_light_inside_a_stone_that_it_may_not_leave_lights_nothing(beams: Beams) -> None:
+    light = Ray((1, 1, 1), position=(0.1, 0.1, 0.2), follows=False)
+    made = thrown(beams, [light], exact_box(), stones=[UPRIGHT])
+    assert made.map[0, 0, :, :, 0] == pytest.approx(-unshaded(made, light, 0, 0), abs=1e-6)
 
 
 def test_random_stones_in_random_places_lose_nothing(beams: Beams) -> None:

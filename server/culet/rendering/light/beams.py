@@ -17,7 +17,7 @@ from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_col
 from culet.rendering.device import Device, Real
 from culet.rendering.features import FRESNEL
 from culet.rendering.layout import constants, struct
-from culet.rendering.light.light_map import LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
+from culet.rendering.light.light_map import ABOUT, LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
 from culet.rendering.light.ray import Ray
 from culet.rendering.light.solids import Solids, takes_beams
 from culet.rendering.placed_stone import PlacedStone, placed_stones
@@ -139,14 +139,14 @@ class Beams:
         tallies = np.zeros(self.items, tally_type)
         tally_buffer, next_buffer = self._upload(tallies), self._upload(np.zeros(1, np.int32))
         brightest = _brightness(rays)
-        point_lights = self._upload(_lights(points, brightest, gauged, origin, self.real))
+        point_lights = self._upload(_lights(points, brightest, gauged, stones, frame, self.real))
         self._clean = False
         for diverging, group in enumerate((parallel, points)):
             if not group or not stones:
                 continue
             room["lights"] = len(group)
             light_buffer = (
-                point_lights if diverging else self._upload(_lights(group, brightest, gauged, origin, self.real))
+                point_lights if diverging else self._upload(_lights(group, brightest, gauged, stones, frame, self.real))
             )
             program = self._program(diverging, solids.most_facets, len(stones) > 1, stage.scene.optics.polarised)
             buffers = (
@@ -272,6 +272,8 @@ def _brightness(rays: Sequence[Ray]) -> dict[int, float]:
     return {emitter: value / brightest if brightest > 0 else 1.0 for emitter, value in sums.items()}
 
 
+LEAST_SQUARED = 1e-6
+"""R^2 from the middle of the stones to a point, at least."""
 FAINTEST = 1e-9
 """Of an emitter's light over that of the brightest: what is fainter is cut as if it were so bright."""
 
@@ -280,15 +282,23 @@ def _lights(
     rays: Sequence[Ray],
     brightness: dict[int, float],
     gauged: Sequence[int],
-    origin: NDArray[np.float64],
+    stones: Sequence[PlacedStone],
+    frame: MapFrame,
     real: Real,
 ) -> NDArray[np.void]:
     """(N,) `light_t`; one of nothing if there is none."""
     rows = np.zeros(max(1, len(rays)), struct("light_t", real, "light_beam.cl"))
+    rows["inside"] = -1
+    origin, extent = np.array(frame.middle), frame.halves[0] - ABOUT
     for number, (row, ray) in enumerate(zip(rows, rays, strict=False)):
         place = np.array(ray.towards if ray.position is None else ray.position, dtype=float)
         row["place"] = place if ray.position is None else place - origin
-        row["squared"] = 1 if ray.position is None else max(float(((place - origin) ** 2).sum()), 1e-12)
+        row["squared"] = 1
+        if ray.position is not None:
+            # A point among the stones counts, for cut-offs and figures, as if it were at their rim.
+            row["squared"] = max(float(((place - origin) ** 2).sum()), extent**2, LEAST_SQUARED)
+            depths = [stone.depth(place) for stone in stones]
+            row["inside"] = int(np.argmax(depths)) if max(depths, default=0) > 0 else -1
         row["colour"][:3] = ray.colour
         row["dimness"] = 1 / max(brightness.get(ray.emitter, 1.0), FAINTEST)
         row["follows"] = ray.follows and any(ray.colour)
