@@ -65,7 +65,7 @@ def share(scene: Scene, which: NDArray[np.integer], point: Array) -> Array:
 def thrown(scene: Scene, which: NDArray[np.integer], point: Array) -> Array:
     """(N, 3) what `slopes` adds at points of surfaces."""
     part, u, v = share(scene, which, point).T
-    return part[:, None] * np.stack([slopes(s, u, v) for s in range(4)])[which, np.arange(len(which))]
+    return np.asarray(part[:, None] * np.stack([slopes(s, u, v) for s in range(4)])[which, np.arange(len(which))])
 
 
 def compare(

@@ -52,7 +52,12 @@ def shot(
     **scene: object,
 ) -> tuple[PhotonMaps, MapFrame, NDArray[np.float32]]:
     """Maps of a pass."""
-    given = {"floor": {"kind": "matte"}, "environment": {"kind": "constant", "radiance": [0, 0, 0]}, **scene}
+    given = {
+        "floor": {"kind": "matte"},
+        "environment": {"kind": "constant", "radiance": [0, 0, 0]},
+        "emitters": [{"shape": "point", "position": [-4, 6, 4], "colour": [1, 1, 1]}],  # or nothing needs a map
+        **scene,
+    }
     stage = staged(Scene.read({**given, "stones": list(stones)}), shape)
     frame = frame_of(stage)
     maps = photons.maps(stage, frame)

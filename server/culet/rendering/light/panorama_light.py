@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from culet.optics.panoramas import Panorama
+from culet.optics.panoramas import Panorama, check_panorama
 from culet.rendering.light.lamp_field import ALL, normals
 from culet.scene.emitters import RoundLamp
 
@@ -69,10 +69,11 @@ _KNOWN: dict[int, tuple[weakref.ref[Panorama], PanoramaLight]] = {}
 
 
 def panorama_light(pixels: Panorama) -> PanoramaLight:
-    """Of a panorama; made once for one that nobody can write to."""
+    """Of a panorama; made once for one that nobody can write to. InputError if it is none."""
     key = id(pixels)
     if not pixels.flags.writeable and (known := _KNOWN.get(key)) is not None and known[0]() is pixels:
         return known[1]
+    check_panorama(pixels)
     moments = _moments(pixels)
     found = PanoramaLight(moments, len(moments) // ROWS, _spots(pixels))
     if not pixels.flags.writeable:
