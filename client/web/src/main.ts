@@ -17,6 +17,7 @@ import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
 import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
+import { Findings } from "./findings";
 import { framed, framingPatch } from "./framing";
 import { placeOf } from "./gestures";
 import { listenToKeys } from "./keys";
@@ -34,17 +35,19 @@ import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
 import { StoneCommands } from "./stone-commands";
-import { idsOf, stonePatch } from "./stones";
+import { idsOf, stonePatch, stonesOf } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
-import { Whereabouts } from "./whereabouts";
+import { LOOK, Whereabouts } from "./whereabouts";
+import { worded } from "./wording";
 
 const canvas = element("picture", HTMLCanvasElement);
 const banner = new Banner(element("banner", HTMLElement));
 const unseen = new Banner(element("unseen", HTMLElement), element("unseen-text", HTMLElement));
-element("unseen-button", HTMLButtonElement).onclick = () => viewer?.send({ type: "look_at_stone" });
+const unseenButton = element("unseen-button", HTMLButtonElement);
+unseenButton.onclick = () => viewer?.send({ type: "look_at_stone" });
 const waiting = new Banner(element("waiting", HTMLElement));
 const WAITING_LONG_MS = 1500;
 const obstacle = new Obstacle(
@@ -60,7 +63,7 @@ const problems: string[] = [];
 const files = new OpenedFiles();
 let session: string | null = null;
 let viewer: Viewer | null = null;
-/** Where the stone is, if the picture does not show it. */
+/** Where the stones are, if the picture shows none of them. */
 let elsewhere: string | null = null;
 
 const outline = new OutlineView(element("outline", SVGSVGElement), canvas);
@@ -79,6 +82,12 @@ const stones = new StoneCommands({
   choose: (id) => chosen.choose(id),
   tell: problem,
 });
+
+/** Of one stone all was told when its mesh was opened. */
+const findings = new Findings(
+  async () => (session === null ? [] : (await rest.findSession(session)).findings),
+  (text) => toasts.finding(text),
+);
 
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
@@ -244,8 +253,10 @@ async function leaveIfUnknown(id: string): Promise<void> {
 
 function stateChanged(before: ViewState, after: ViewState): void {
   chosen.there(idsOf(after.scene));
+  if (stonesOf(after.scene).length > 1 && after.scene?.stones !== before.scene?.stones) findings.changed();
   panel.update(viewer?.state ?? after);
   fallButton.update(after);
+  unseenButton.textContent = worded(LOOK, after.scene);
   meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
@@ -263,7 +274,7 @@ function watch(id: string): void {
       screen.show(picture);
       clearTimeout(timer);
       waiting.show(null);
-      elsewhere = whereabouts.after(frame, arrival.time);
+      elsewhere = whereabouts.after(frame, arrival.time, viewer?.state.scene ?? null);
       if (viewer) showBanner(viewer.stream.connection);
       meter.take(frame, arrival);
       chosen.shown(frame.step, arrival.time);

@@ -12,6 +12,7 @@ import { FallPanel } from "./fall-panel";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { withFirst } from "./stones";
 import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
+import { worded } from "./wording";
 
 export interface PanelActions {
   perform: (action: Action) => void;
@@ -30,6 +31,7 @@ export interface PanelActions {
 const MOVES = ["left", "right", "up", "down", "in", "out"];
 const SWITCHES = { falling: "fall", mirror: "mirror", light: "sky", walls: "walls" } as const;
 const SWITCH_LABELS = { falling: "Falling", mirror: "Mirror", light: "Light sky", walls: "Walls" } as const;
+const SURROUNDINGS = { one: "Stone and surroundings", several: "Stones and surroundings" };
 const NARROW = 640;
 
 export class Panel {
@@ -42,6 +44,9 @@ export class Panel {
   private readonly actions: PanelActions;
   private readonly shown = { target: "camera" as Target, falling: false, mirror: false, light: false, walls: false };
   private readonly displays: Controller[] = [];
+  /** Those whose labels tell how many stones they act on. */
+  private readonly counted: [Controller, Action][] = [];
+  private readonly surroundings: GUI;
   private state: ViewState | null = null;
 
   constructor(container: HTMLElement, actions: PanelActions) {
@@ -49,10 +54,10 @@ export class Panel {
     this.gui = new GUI({ container, title: "culet", injectStyles: false });
     this.addMoves();
     this.stones = new StonePanel(this.gui.addFolder("Stones"), actions.perform, actions.stones);
-    const surroundings = this.addSwitches();
+    this.surroundings = this.addSwitches();
     this.cut = new CutPanel(this.gui.addFolder("Cut").close(), actions.patch);
     this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);
-    this.choices = new ChoicePanel(surroundings, this.gui.addFolder("Optics").close(), actions.patch);
+    this.choices = new ChoicePanel(this.surroundings, this.gui.addFolder("Optics").close(), actions.patch);
     this.files = this.gui.addFolder("Pictures and scenes");
     this.addButton(this.files, actionNamed("download"));
     this.addCommand(this.files, "Save the picture (.tga)", () => actions.saveTarga());
@@ -70,6 +75,8 @@ export class Panel {
     const falling = state.falling && !state.asleep;
     Object.assign(this.shown, { target, falling, mirror, light, walls });
     for (const display of this.displays) display.updateDisplay();
+    for (const [button, action] of this.counted) button.name(labelWithKey(action, state.scene));
+    this.surroundings.title(worded(SURROUNDINGS, state.scene));
     this.stones.update(state, this.actions.removals());
     const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
     this.fall.update(chosen);
@@ -97,7 +104,7 @@ export class Panel {
   }
 
   private addSwitches(): GUI {
-    const folder = this.gui.addFolder("Stone and surroundings");
+    const folder = this.gui.addFolder(SURROUNDINGS.one);
     for (const name of ["falling", "mirror", "light", "walls"] as const) {
       const action = actionNamed(SWITCHES[name]);
       const label = labelWithKey({ label: SWITCH_LABELS[name], key: action.key });
@@ -113,7 +120,9 @@ export class Panel {
   }
 
   private addButton(folder: GUI, action: Action): Controller {
-    return this.addCommand(folder, labelWithKey(action), () => this.actions.perform(action));
+    const button = this.addCommand(folder, labelWithKey(action), () => this.actions.perform(action));
+    if (typeof action.label !== "string") this.counted.push([button, action]);
+    return button;
   }
 
   private addCommand(folder: GUI, label: string, act: () => void): Controller {

@@ -89,9 +89,11 @@ export async function patchSession(id: string, patch: JsonObject): Promise<void>
   await request(`/api/sessions/${encodeURIComponent(id)}`, { ...post(patch), method: "PATCH" });
 }
 
-/** Ends well if there is such a session; throws ProblemError with status 404 if not. */
-export async function findSession(id: string): Promise<void> {
-  await request(`/api/sessions/${encodeURIComponent(id)}`);
+/** What was found in the scene of a session, a sentence each; throws ProblemError with status 404 if there is none. */
+export async function findSession(id: string): Promise<{ findings: string[] }> {
+  const response = await request(`/api/sessions/${encodeURIComponent(id)}`);
+  const { findings } = object(await response.json());
+  return { findings: Array.isArray(findings) ? findings.map(String) : [] };
 }
 
 /** All that there is of something, under the name that the answer gives it too. */

@@ -22,6 +22,7 @@ export class StonePanel {
   private readonly shown = { stone: "" };
   private readonly actions: StoneActions;
   private readonly ofOne: readonly Controller[];
+  private readonly remove: Controller;
   private readonly putBack: Controller;
   private list: Controller;
   private ids: readonly string[] = [];
@@ -38,7 +39,7 @@ export class StonePanel {
       button("Hold this stone, or let go", () => actions.hold()),
     ];
     button("Add another like it", () => actions.add());
-    acting("remove_stone");
+    this.remove = acting("remove_stone");
     this.putBack = acting("put_back_stone");
     button("Scatter all", () => actions.scatter());
   }
@@ -54,6 +55,7 @@ export class StonePanel {
     this.shown.stone = stone ?? "";
     this.list.updateDisplay();
     for (const button of this.ofOne) button.show(stone !== null);
+    this.remove.name(labelWithKey(actionNamed("remove_stone"), scene));
     this.putBack.enable(removed > 0);
   }
 

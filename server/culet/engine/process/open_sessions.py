@@ -12,11 +12,11 @@ from culet.engine.painting.painter import Painter
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.engine.session import events
-from culet.engine.session.overlaps import overlaps
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import BusyError, NotFoundError
 from culet.scene import Environment, Scene
+from culet.simulation.overlaps import overlaps
 from culet.stage import Library, Sky, Stage
 from culet_protocol.engine import OpenSession
 

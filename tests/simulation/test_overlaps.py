@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from culet.engine.session.overlaps import MOST, overlaps
 from culet.scene import PRESETS, Scene
+from culet.simulation.overlaps import MOST, overlaps
 from culet.simulation.staged import world_of
 from culet.stage import Stage
 
