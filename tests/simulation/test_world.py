@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import math
+import struct
 import threading
 from dataclasses import replace
 
@@ -12,7 +14,9 @@ import pytest
 
 from culet.errors import InputError, TooLargeError
 from culet.geometry.shape import Shape
+from culet.simulation import together
 from culet.simulation.bodies import Body
+from culet.simulation.body import inertia_of
 from culet.simulation.rotation import IDENTITY
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
@@ -20,7 +24,7 @@ from culet.simulation.state import RigidState
 from culet.simulation.surfaces import FLOOR, WALLS
 from culet.simulation.world import World
 from culet.study.contacts.heaps import scattered
-from culet.study.contacts.worlds import BOWL, advance, corners, law, overlap, standing
+from culet.study.contacts.worlds import BOWL, advance, beside_another, corners, law, overlap, solid, standing
 from simulation.solids import TILTED
 from simulation.worlds import world
 
@@ -139,7 +143,21 @@ def test_a_stone_that_falls_on_a_sleeper_wakes_it_and_what_leans_on_it(box: Shap
     assert math.dist(moving.state.bodies[1].position, before) > 0.01
 
 
-@pytest.mark.parametrize("damage", ["version", "stones", "saved", "short", "nan"])
+HEADER = 24
+"""Bytes of what the solver saves before its bodies: six counts."""
+DAMAGED = {
+    "too fast": (HEADER + 7 * 8, "d", 1e31),
+    "asleep for ever": (HEADER + 13 * 8, "d", math.inf),
+    "in no bed": (HEADER + 15 * 8 + 8, "i", -1),
+    "in a bed to come": (HEADER + 15 * 8 + 8, "i", 2**30),
+    "no bed left": (12, "i", 2**31 - 1),
+    "more manifolds": (16, "i", 2**31 - 1),
+    "more contacts": (20, "i", 2**31 - 1),
+}
+"""Offset, format and value of a number."""
+
+
+@pytest.mark.parametrize("damage", ["version", "stones", "saved", "short", "nan", *DAMAGED])
 def test_a_damaged_snapshot_is_refused_and_changes_nothing(box: Shape, damage: str) -> None:
     moving = world(two(box))
     advance(moving, 0.5)
@@ -153,6 +171,11 @@ def test_a_damaged_snapshot_is_refused_and_changes_nothing(box: Shape, damage: s
             snapshot["saved"] = "not base64"
         case "short":
             snapshot["saved"] = snapshot["saved"][:-8]
+        case damage if damage in DAMAGED:
+            content = bytearray(base64.b64decode(snapshot["saved"]))
+            offset, kind, value = DAMAGED[damage]
+            struct.pack_into(kind, content, offset, value)
+            snapshot["saved"] = base64.b64encode(content).decode()
         case _:
             snapshot["saved"] = snapshot["saved"][:40] + "/" * 16 + snapshot["saved"][56:]
     with pytest.raises(InputError, match="snapshot"):
@@ -250,6 +273,40 @@ def test_a_held_stone_stops_another_and_does_not_move(box: Shape) -> None:
     low, high = moving.state.bodies
     assert low.position[1] < 0
     assert high.position[1] < 1
+
+
+def test_a_push_moves_no_stone_that_is_held_nor_what_lies_on_it(box: Shape) -> None:
+    bodies = [standing("low", box, IDENTITY), standing("high", box, IDENTITY, gap=height_of(box))]
+    moving = world(bodies, friction=0.5)
+    moving.hold("low", held=True)
+    moving.push("low", (5.0, 0.0, 0.0), moving.state.bodies[0].position)
+    advance(moving, 0.5)
+    low, high = moving.state.bodies
+    assert low.velocity == (0.0, 0.0, 0.0)
+    assert math.hypot(high.position[0], high.position[2]) < 1e-3
+
+
+def test_a_stone_sleeps_on_a_base_of_many_corners() -> None:
+    rim = [(math.cos(a), 0.0, math.sin(a)) for a in np.linspace(0, 2 * math.pi, 701)[:-1].tolist()]
+    cone = solid("cone", [(x, y - 0.3, z) for x, y, z in (*rim, (0.0, 1.2, 0.0))])
+    moving = beside_another(standing("cone", cone, IDENTITY), law())
+    advance(moving, 1)
+    assert moving.state.bodies[0].asleep
+
+
+def test_a_law_that_one_of_the_stones_cannot_have_changes_nothing(box: Shape, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refusing(kind: str, shape: Shape, factor: float) -> object:
+        if factor == 2.0 and kind == "cone":
+            raise InputError("no such inertia")
+        return inertia_of(kind, shape, factor)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(together, "inertia_of", refusing)
+    moving, other = (world([one(box), Body("two", box, (0.3, 4.2, 0.0), IDENTITY, mass=2.0)]) for _ in range(2))
+    with pytest.raises(InputError):
+        moving.adjust(law(inertia="cone", gravity=1.0))
+    advance(moving, 0.5)
+    advance(other, 0.5)
+    assert moving.state == other.state
 
 
 def test_a_moved_stone_is_there_and_jumps_in_no_picture(box: Shape) -> None:
