@@ -95,6 +95,15 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
     assert not np.array_equal(np.load(tmp_path / "cut.npy"), np.load(tmp_path / "mesh.npy"))
 
 
+def test_a_mesh_takes_the_place_of_a_stone_of_any_scale(tmp_path: Path) -> None:
+    mesh, scene, path = tmp_path / "gem.off", tmp_path / "small.json", tmp_path / "path.npz"
+    mesh.write_bytes(TETRAHEDRON)
+    scene.write_text('{"stones": [{"scale": 0.5, "position": [0, 0.5, 0]}]}')
+    run = invoke("simulate", scene, "--mesh", mesh, "--seconds", "2", "-o", path)
+    assert run.returncode == 0, run.stderr
+    assert -1 < np.load(path)["position"][-1, 0, 1] < -0.5
+
+
 @pytest.mark.parametrize(
     ("arguments", "stdin", "said"),
     [
