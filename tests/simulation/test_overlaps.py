@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from culet.scene import PRESETS, Scene
 from culet.simulation.overlaps import MOST, overlaps
+from culet.simulation.solver.polyhedron import polyhedron_of
 from culet.simulation.staged import world_of
 from culet.stage import Stage
 
@@ -34,3 +37,11 @@ def test_of_many_overlaps_some_are_named_and_the_rest_counted() -> None:
     sentences = said(*({"position": [0, number / 10, 0]} for number in range(12)))
     assert len(sentences) == MOST + 1
     assert sentences[-1] == f"{66 - MOST} more pairs of stones overlap"
+
+
+def test_stones_of_too_many_edges_to_look_at_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    edges = len(polyhedron_of(Stage.of(Scene()).shapes[0]).edges)
+    monkeypatch.setattr("culet.simulation.overlaps.EFFORT", 2 * edges**2)
+    sentences = said(*({"position": [0, number / 10, 0]} for number in range(3)))
+    assert len(sentences) == 3
+    assert sentences[-1] == "1 more pairs of stones may overlap: they have too many edges to be looked at"
