@@ -182,3 +182,28 @@ def test_a_finger_chooses_adds_removes_and_scatters_on_a_phone(view_of: ViewOf, 
     view.until("() => culet.state.falling && culet.state.scene.stones.every(({ position }) => position[1] > 0)")
     assert ids(view) == ["left", "right"]
     assert view.problems == []
+
+
+def test_shift_and_drag_throws_the_stone_that_is_under_the_pointer_alone(view_of: ViewOf, server: Server) -> None:
+    """Without gravity it flies on, as its outline shows; the other one stays as it was."""
+    stones = [{**stone, "spin": [0, 0, 0]} for stone in STONES]
+    view = opened(view_of, server, {**SCENE, "stones": stones}, viewport=WITH_PANEL)
+    click(view, LEFT_OF_THE_MIDDLE)
+    chosen(view, "left")
+    before, half, mouse = outline(view), WITH_PANEL["height"] / 2, view.page.mouse
+    x = WITH_PANEL["width"] / 2 + half * RIGHT_OF_THE_MIDDLE
+    mouse.move(x, half)
+    view.page.keyboard.down("Shift")
+    mouse.down()
+    mouse.move(x, half - 40, steps=3)
+    mouse.up()
+    view.page.keyboard.up("Shift")
+    view.until("() => culet.state.falling")
+    select = view.page.get_by_label("Chosen", exact=True)
+    select.select_option(label="right")
+    chosen(view, "right")
+    view.until("high => document.querySelector('#outline polygon').points[0]?.y < high", 0.5 * half)
+    select.select_option(label="left")
+    chosen(view, "left")
+    assert outline(view) == pytest.approx(before, abs=0.01)
+    assert view.problems == []

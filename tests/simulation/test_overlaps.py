@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from culet.scene import PRESETS, Scene
+from culet.geometry.load import shape_of
+from culet.scene import PRESETS, Scene, StoneSettings
 from culet.simulation.overlaps import MOST, overlaps
 from culet.simulation.solver.polyhedron import polyhedron_of
 from culet.simulation.staged import world_of
@@ -25,6 +26,17 @@ def test_stones_that_overlap_are_named_with_how_deep() -> None:
         {"id": "a", "orientation": FLAT}, {"id": "b", "orientation": FLAT, "position": [1.5, -0.37, 0]}, apart
     )
     assert sentence.startswith("the stones 'a' and 'b' overlap by 0.")
+
+
+@pytest.mark.parametrize(("gap", "told"), [(-0.1, True), (0.1, False)])
+def test_a_large_stone_and_a_small_one_overlap_by_their_own_sizes(gap: float, told: bool) -> None:
+    """In whatever order: the small one under the large one's table, which is beyond a ball of the small one's size."""
+    table = float(shape_of(StoneSettings(), {}).vertices[:, 1].max())
+    culet = -float(shape_of(StoneSettings(), {}).vertices[:, 1].min())
+    large = {"id": "large", "orientation": FLAT, "scale": 4, "position": [0, 0, 0]}
+    small = {"id": "small", "orientation": FLAT, "scale": 0.5, "position": [0, 4 * table + 0.5 * culet + gap, 0]}
+    for stones in ((large, small), (small, large)):
+        assert len(said(*stones)) == told
 
 
 def test_stones_that_only_touch_are_not_told_of() -> None:

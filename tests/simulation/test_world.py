@@ -381,3 +381,28 @@ def test_states_are_plain_values(box: Shape) -> None:
         numbers = (*body.position, *body.orientation, *body.velocity, *body.spin)
         assert {type(number) for number in numbers} == {float}
         assert {type(body.asleep), type(body.held)} == {bool}
+
+
+def test_of_two_stones_that_meet_restitution_is_the_mean(box: Shape) -> None:
+    """Face to face, without gravity or spin: 3 R/s of approach become 3 times the mean of separation."""
+    wide = float(np.ptp(box.vertices[:, 0]))
+    kind = {"spin": (0.0, 0.0, 0.0), "friction": 0.0}
+    bodies = [
+        Body("one", box, (-wide, 0.0, 0.0), IDENTITY, (2.0, 0.0, 0.0), restitution=0.9, **kind),  # type: ignore[arg-type]
+        Body("two", box, (wide, 0.0, 0.0), IDENTITY, (-1.0, 0.0, 0.0), restitution=0.4, **kind),  # type: ignore[arg-type]
+    ]
+    moving = world(bodies, (), gravity=0)
+    advance(moving, 1)
+    one, two = moving.state.bodies
+    assert two.velocity[0] - one.velocity[0] == pytest.approx(3 * (0.9 + 0.4) / 2, rel=1e-4)
+
+
+def test_of_two_stones_that_rub_friction_is_the_geometric_mean(box: Shape) -> None:
+    """A stone slides on a held one: it slows by mu g."""
+    ground = Body("low", box, (0.0, 3.0, 0.0), IDENTITY, spin=(0.0, 0.0, 0.0), scale=8.0, friction=0.1)
+    height = 3 + (8 + 1) * height_of(box) / 2
+    slider = Body("high", box, (0.0, height, 0.0), IDENTITY, (2.0, 0.0, 0.0), (0.0, 0.0, 0.0), friction=0.4)
+    moving = world([ground, slider], (), restitution=0)
+    moving.hold("low", held=True)
+    advance(moving, 0.25)
+    assert moving.state.bodies[1].velocity[0] == pytest.approx(2 - math.sqrt(0.1 * 0.4) * 9.81 * 0.25, rel=1e-3)
