@@ -42,11 +42,13 @@ def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[floa
             return (0.05, 0.05, 0.1), (0.2, 0.2, 0.3)
 
 
+_ROOM_NORMALS = np.array([(0, 1, 0), *WALL_NORMALS], dtype=float)
+_ROOM_OFFSETS = np.array([FLOOR_Y, *[-WALL_DISTANCE] * 3])
+
+
 def room_surfaces(centre: NDArray[np.float64]) -> NDArray[np.float64]:
     """(4, 4) floor and walls as inward normal and offset, relative to a place."""
-    normals = np.array([(0, 1, 0), *WALL_NORMALS], dtype=float)
-    offsets = np.array([FLOOR_Y, *[-WALL_DISTANCE] * 3]) - normals @ centre
-    return np.column_stack([normals, offsets])
+    return np.column_stack([_ROOM_NORMALS, _ROOM_OFFSETS - _ROOM_NORMALS @ centre])
 
 
 def shown_surfaces(scene: Scene, centre: NDArray[np.float64]) -> NDArray[np.float64]:
