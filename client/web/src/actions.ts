@@ -12,7 +12,8 @@ export type Effect =
   | { kind: "select"; target: Target }
   | { kind: "send"; event: (target: Target) => SessionEvent }
   | { kind: "download"; format: Format }
-  | { kind: "stones"; command: "remove" | "putBack" };
+  | { kind: "stones"; command: "remove" | "putBack" }
+  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
 export interface Action {
   name: string;
@@ -77,6 +78,16 @@ export const ACTIONS: readonly Action[] = [
   },
   letter("put_back_stone", "U", "Take a removal back", { kind: "stones", command: "putBack" }),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
+  {
+    name: "keys",
+    label: "All keys",
+    key: "?",
+    code: "F1",
+    repeats: false,
+    effect: { kind: "page", command: "showKeys" },
+  },
+  letter("hide", "H", "Hide all but the picture", { kind: "page", command: "hideAll" }),
+  letter("full", "E", "Fill the screen", { kind: "page", command: "fillScreen" }),
 ];
 
 const KEY_NAMES: Record<string, string> = {
@@ -87,9 +98,14 @@ const KEY_NAMES: Record<string, string> = {
   delete: "Del",
 };
 
+/** A key as it is printed. */
+export function keyName({ key }: Pick<Action, "key">): string {
+  return KEY_NAMES[key] ?? key.toUpperCase();
+}
+
 /** "Reset the camera  [F]": the label for a scene, with its key as it is printed. */
 export function labelWithKey(action: Pick<Action, "label" | "key">, scene: JsonObject | null = null): string {
-  return `${worded(action.label, scene)}  [${KEY_NAMES[action.key] ?? action.key.toUpperCase()}]`;
+  return `${worded(action.label, scene)}  [${keyName(action)}]`;
 }
 
 /** The action of that name; throws if there is none. */

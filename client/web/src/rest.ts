@@ -1,7 +1,7 @@
 /** The gateway's REST interface. Errors are problem documents (RFC 9457). */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import type { Catalogued, CutKind, Material, Preset, Upload } from "./catalogue";
+import type { CutKind, Material, Preset, Titled, Upload } from "./catalogue";
 import { object, part } from "./json";
 
 /** An answer other than 2xx; the message is fit to be shown. */
@@ -116,11 +116,11 @@ export function cuts(): Promise<CutKind[]> {
   return catalogue("cuts");
 }
 
-export function skies(): Promise<Catalogued[]> {
+export function skies(): Promise<Titled[]> {
   return catalogue("skies");
 }
 
-export function integrators(): Promise<Catalogued[]> {
+export function integrators(): Promise<Titled[]> {
   return catalogue("integrators");
 }
 
