@@ -189,8 +189,8 @@ def test_shift_and_drag_throws_the_stone_that_is_under_the_pointer_alone(view_of
     view = opened(view_of, server, {**SCENE, "stones": stones}, viewport=WITH_PANEL)
     click(view, LEFT_OF_THE_MIDDLE)
     chosen(view, "left")
-    before, half, mouse = outline(view), WITH_PANEL["height"] / 2, view.page.mouse
-    x = WITH_PANEL["width"] / 2 + half * RIGHT_OF_THE_MIDDLE
+    before, half, mouse = outline(view), BESIDE_PANEL["height"] / 2, view.page.mouse
+    x = BESIDE_PANEL["width"] / 2 + half * RIGHT_OF_THE_MIDDLE
     mouse.move(x, half)
     view.page.keyboard.down("Shift")
     mouse.down()
