@@ -19,6 +19,7 @@ from command_line import Run, culet, invoke
 from culet.rendering.features import RUNTIME, features_of
 from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES, stage_of
+from culet_protocol.watch import watch_id
 from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
 
@@ -92,6 +93,15 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
     run = invoke("render", "-o", tmp_path / "mesh.npy", "--mesh", mesh, *TINY)
     assert run.returncode == 0, run.stderr
     assert not np.array_equal(np.load(tmp_path / "cut.npy"), np.load(tmp_path / "mesh.npy"))
+
+
+def test_a_mesh_takes_the_place_of_a_stone_of_any_scale(tmp_path: Path) -> None:
+    mesh, scene, path = tmp_path / "gem.off", tmp_path / "small.json", tmp_path / "path.npz"
+    mesh.write_bytes(TETRAHEDRON)
+    scene.write_text('{"stones": [{"scale": 0.5, "position": [0, 0.5, 0]}]}')
+    run = invoke("simulate", scene, "--mesh", mesh, "--seconds", "2", "-o", path)
+    assert run.returncode == 0, run.stderr
+    assert -1 < np.load(path)["position"][-1, 0, 1] < -0.5
 
 
 @pytest.mark.parametrize(
@@ -190,6 +200,16 @@ def test_a_sky_of_odd_proportions_is_used_and_said_so(tmp_path: Path) -> None:
     assert run.stderr.startswith(f"{sky}: 16 x 9 pixels are stretched over all directions")
 
 
+def test_stones_inside_each_other_are_drawn_and_said_so(tmp_path: Path) -> None:
+    stones: list[dict[str, object]] = [{"id": "a"}, {"id": "b", "position": [1, 0, 0]}]
+    run = invoke("render", "-", "-o", tmp_path / "gems.png", *TINY, stdin=json.dumps({"stones": stones}))
+    assert run.returncode == 0, run.stderr
+    assert run.stderr.startswith("the stones 'a' and 'b' overlap by 0.")
+    apart = [stones[0], stones[1] | {"position": [3, 0, 0]}]
+    run = invoke("render", "-", "-o", tmp_path / "gems.png", *TINY, stdin=json.dumps({"stones": apart}))
+    assert (run.returncode, run.stderr) == (0, "")
+
+
 def test_what_a_skys_file_says_of_its_numbers_is_told(tmp_path: Path) -> None:
     sky = tmp_path / "sky.hdr"
     sky.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 4 +X 8\n" + bytes([200, 150, 100, 128]) * 32)
@@ -263,8 +283,12 @@ async def test_frames_of_a_session_are_taken_without_a_gateway(tmp_path: Path) -
 
 def test_a_session_that_nobody_publishes_is_given_up(tmp_path: Path) -> None:
     endpoint = f"ipc://{tmp_path}/nobody"
-    run = invoke("view", endpoint, "--session", "0" * 32, "--timeout", "0.2", "-o", tmp_path / "out")
-    assert "no frame of watch id" in refused(run)
+    session = "0" * 32
+    run = invoke("view", endpoint, "--session", session, "--timeout", "0.2", "-o", tmp_path / "out")
+    assert f"session {session}: no frame of watch id {watch_id(session)}" in refused(run)
+    run = invoke("view", endpoint, "--watch", "1" * 32, "--timeout", "0.2", "-o", tmp_path / "out")
+    assert f"no frame of watch id {'1' * 32}" in refused(run)
+    assert "session " not in refused(run), "only what was named is told of"
     assert "32 hexadecimal digits" in refused(invoke("view", endpoint, "--session", "x", "-o", tmp_path / "out"))
 
 

@@ -86,6 +86,8 @@ def test_an_endpoint_is_bound_and_again_after_a_server_that_was_killed(
 def test_what_others_can_reach_is_bound_only_on_a_trusted_network(endpoint: str) -> None:
     with pytest.raises(InputError, match=r"--frames: .*every session that is watched and its id.*--trust-network"):
         check_trusted(endpoint, "frames", trusted=False)
+    with pytest.raises(InputError, match=r"--control: .*changes and deletes every session.*--trust-network"):
+        check_trusted(endpoint, "control", trusted=False)
     check_trusted(endpoint, "frames", trusted=True)
 
 

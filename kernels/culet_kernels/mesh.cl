@@ -81,15 +81,9 @@ static inline void aim(vec3L origin, vec3L direction, realL start, real side, re
   const vec3L inverse = vec3((real)1 / away_from_zero(direction.x), (real)1 / away_from_zero(direction.y),
                              (real)1 / away_from_zero(direction.z));
   const realL longest = blend(along_x, inverse.x, blend(along_y, inverse.y, inverse.z));
-  store_lanes(origin.x, rows[0]);
-  store_lanes(origin.y, rows[1]);
-  store_lanes(origin.z, rows[2]);
-  store_lanes(direction.x, rows[3]);
-  store_lanes(direction.y, rows[4]);
-  store_lanes(direction.z, rows[5]);
-  store_lanes(inverse.x, rows[6]);
-  store_lanes(inverse.y, rows[7]);
-  store_lanes(inverse.z, rows[8]);
+  store3(origin, rows);
+  store3(direction, rows + 3);
+  store3(inverse, rows + 6);
   store_lanes(start, rows[9]);
   const maskL swaps = side * turned.z > 0;
   store_lanes(longest * blend(swaps, turned.y, turned.x), rows[10]);
@@ -313,9 +307,7 @@ static inline crossingL mesh_crossing(__constant const stone_t *stone, tree_t tr
   }
   const realL found = load_lanes(t);
   const maskL hit = mask & (found > (real)-1e29);
-  const crossingL crossing = {
-      hit, blend(hit, found, splat(0)),
-      to_world_axes(stone, vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2])))};
+  const crossingL crossing = {hit, blend(hit, found, splat(0)), to_world_axes(stone, load3(normal))};
   return crossing;
 }
 

@@ -150,12 +150,8 @@ static inline crossingL enter_one_by_one(__global const real *blocks, int count,
   int wanted[LANES];
   real rows[7][LANES], t[LANES], normal[3][LANES], hit[LANES];
   store_mask(mask, wanted);
-  store_lanes(origin.x, rows[0]);
-  store_lanes(origin.y, rows[1]);
-  store_lanes(origin.z, rows[2]);
-  store_lanes(direction.x, rows[3]);
-  store_lanes(direction.y, rows[4]);
-  store_lanes(direction.z, rows[5]);
+  store3(origin, rows);
+  store3(direction, rows + 3);
   store_lanes(t_min, rows[6]);
   for (int lane = 0; lane < LANES; lane++) {
     hit[lane] = t[lane] = 0;
@@ -167,8 +163,7 @@ static inline crossingL enter_one_by_one(__global const real *blocks, int count,
     hit[lane] = enters_alone(blocks, count, from, towards, rows[6][lane], t + lane, facet);
     EACH (k, 3) normal[k][lane] = facet[k];
   }
-  const crossingL crossing = {load_lanes(hit) > 0, load_lanes(t),
-                              vec3(load_lanes(normal[0]), load_lanes(normal[1]), load_lanes(normal[2]))};
+  const crossingL crossing = {load_lanes(hit) > 0, load_lanes(t), load3(normal)};
   return crossing;
 }
 

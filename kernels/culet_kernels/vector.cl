@@ -12,6 +12,16 @@ static inline vec3L vec3(realL x, realL y, realL z) {
   return v;
 }
 
+// To three rows of numbers, and back.
+static inline void store3(vec3L v, real rows[3][LANES]) {
+  store_lanes(v.x, rows[0]);
+  store_lanes(v.y, rows[1]);
+  store_lanes(v.z, rows[2]);
+}
+static inline vec3L load3(real rows[3][LANES]) {
+  return vec3(load_lanes(rows[0]), load_lanes(rows[1]), load_lanes(rows[2]));
+}
+
 static inline realL dot3(vec3L a, vec3L b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
 // With a vector that is the same in every lane.

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -305,8 +307,8 @@ def view(
     """Take the latest frames of a session, straight from the engine, into a folder."""
     from culet_client.view import view as view_frames
 
-    with errors_in_one_line():
-        count = view_frames(endpoint, _watch_of(session, watch), frames, out, timeout_seconds=timeout)
+    with errors_in_one_line(), _watched(session, watch) as watched:
+        count = view_frames(endpoint, watched, frames, out, timeout_seconds=timeout)
         typer.echo(f"{out}: {count} frames")
 
 
@@ -322,23 +324,28 @@ def record(
     """Take every frame of a session that comes in some seconds, straight from the engine, into a folder."""
     from culet_client.view import record as record_frames
 
-    with errors_in_one_line():
-        count = record_frames(endpoint, _watch_of(session, watch), seconds, out, timeout_seconds=timeout)
+    with errors_in_one_line(), _watched(session, watch) as watched:
+        count = record_frames(endpoint, watched, seconds, out, timeout_seconds=timeout)
         typer.echo(f"{out}: {count} frames")
 
 
-def _watch_of(session: str | None, watch: str | None) -> str:
-    """The watch id of what the user named."""
-    from culet_client import ClientError
+@contextmanager
+def _watched(session: str | None, watch: str | None) -> Iterator[str]:
+    """The watch id of what the user named; that none of its frames came is said of the session that was named."""
+    from culet_client import ClientError, SilenceError
     from culet_protocol.watch import watch_id
 
     if (session is None) == (watch is None):
         raise ClientError("expected --session or --watch, got both or neither")
     if watch is not None:
-        return watch
+        yield watch
+        return
     if session is None or not re.fullmatch("[0-9a-f]{32}", session):
         raise ClientError(f"a session's id has 32 hexadecimal digits, got {session!r}")
-    return watch_id(session)
+    try:
+        yield watch_id(session)
+    except SilenceError as error:
+        raise SilenceError(f"session {session}: {error}") from error
 
 
 app.add_typer(study_app, name="study")

@@ -36,15 +36,21 @@ def bind(socket: zmq.Socket[Any], endpoint: str, option: str) -> None:
         raise InputError(f"--{option}: cannot listen at {endpoint!r}: {_reason(error)}", option) from error
 
 
+REACHED = {
+    "frames": "sees every session that is watched and its id for watching, by which nothing can be changed",
+    "control": "sees, changes and deletes every session",
+}
+"""What whoever reaches an endpoint does, by the option that names the endpoint."""
+
+
 def check_trusted(endpoint: str, option: str, *, trusted: bool) -> None:
-    """InputError for an endpoint that others than this machine can reach, unless their network is trusted."""
+    """InputError for an endpoint of REACHED that other machines can reach too, unless their network is trusted."""
     parts = _TCP.fullmatch(endpoint)
     if trusted or parts is None or _is_loopback(parts["address"]):
         return
     raise InputError(
-        f"--{option}: other machines reach {endpoint!r}, and whoever does sees every session that is watched and its "
-        "id, by which it may be changed and deleted; --trust-network permits that, tcp://127.0.0.1:PORT serves this "
-        "machine alone",
+        f"--{option}: other machines reach {endpoint!r}, and whoever does {REACHED[option]}; --trust-network permits "
+        "that, tcp://127.0.0.1:PORT serves this machine alone",
         option,
     )
 

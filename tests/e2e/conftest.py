@@ -28,6 +28,9 @@ SMALL = {"width": 384, "height": 216}
 WITH_PANEL = {"width": 640, "height": 240}
 """Pixels of the smallest page on which the panel is open."""
 
+BESIDE_PANEL = {"width": 350, "height": 240}
+"""Pixels of the picture there: what the panel leaves."""
+
 ARGUMENTS = (
     "--no-sandbox",  # which containers do not allow it to set up
     "--disable-gpu",

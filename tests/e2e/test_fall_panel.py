@@ -26,30 +26,15 @@ def with_fall(view_of: ViewOf, session: str) -> View:
     return view
 
 
-def drag(view: View, label: str, *to: float) -> None:
-    """Take a slider to parts of its length, and let it go at the last."""
-    slider = view.page.locator(".lil-controller", has_text=label).locator(".lil-slider")
-    slider.scroll_into_view_if_needed()
-    box = slider.bounding_box()
-    assert box is not None
-    mouse = view.page.mouse
-    mouse.move(box["x"] + 1, box["y"] + 5)
-    mouse.down()
-    for part in to:
-        mouse.move(box["x"] + part * box["width"], box["y"] + 5)
-        view.settle_messages()
-    mouse.up()
-
-
 def shown(view: View, label: str) -> float:
-    return float(view.page.get_by_label(label).input_value())
+    return float(view.page.get_by_role("spinbutton", name=label).input_value())
 
 
 def test_a_slider_acts_on_the_falling_stone_and_on_every_page(view_of: ViewOf, falling: View, server: Server) -> None:
     guest = with_fall(view_of, falling.session)
     falling.record()
-    drag(falling, "Gravity", 0.3, 0.5, 0.1)
-    drag(falling, "Friction", 0.25)
+    falling.drag_slider("Gravity", 0.3, 0.5, 0.1)
+    falling.drag_slider("Friction", 0.25)
     falling.until("() => culet.state.scene.simulation.friction !== 0.3")
     time = falling.number("framesShown")
     falling.until("before => culet.framesShown > before + 3", time)
@@ -69,9 +54,9 @@ def test_a_slider_acts_on_the_falling_stone_and_on_every_page(view_of: ViewOf, f
 
 def test_another_drop_height_or_spin_drops_the_stone_from_there(falling: View, server: Server) -> None:
     before = server.session(falling.session)["scene"]
-    drag(falling, "Drop height", 0.5)
+    falling.drag_slider("Drop height", 0.5)
     falling.until("() => culet.state.scene.stones[0].position[1] > 3")
-    drag(falling, "Spin", 0, 0.5)
+    falling.drag_slider("Spin", 0, 0.5)
     falling.until("() => culet.state.scene.stones[0].spin[1] > 10")
     after = server.session(falling.session)["scene"]
     x, y, z = after["stones"][0]["position"]
@@ -88,7 +73,8 @@ def test_another_drop_height_or_spin_drops_the_stone_from_there(falling: View, s
 
 
 def test_integrator_and_model_are_chosen_and_what_a_model_does_not_know_is_grey(falling: View, server: Server) -> None:
-    integrator, friction = (falling.page.get_by_label(label) for label in ("Integrator", "Friction"))
+    integrator = falling.page.get_by_label("Integrator")
+    friction = falling.page.get_by_role("slider", name="Friction")
     integrator.select_option("midpoint")
     falling.until("() => culet.state.scene.simulation.integrator === 'midpoint'")
     falling.page.get_by_label("Model").select_option("the report's")

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Download
 
-from e2e.conftest import SMALL, WITH_PANEL, ViewOf
+from e2e.conftest import BESIDE_PANEL, SMALL, WITH_PANEL, ViewOf
 from e2e.server import Server
 from e2e.view import View, difference, pixels_of
 
@@ -64,7 +64,7 @@ def test_the_panel_offers_png_first_and_the_same_picture_as_targa(view_of: ViewO
     width, height, depth = (
         int.from_bytes(saved[1][12:14], "little"), int.from_bytes(saved[1][14:16], "little"), saved[1][16]
     )  # fmt: skip
-    assert (width, height, depth) == (WITH_PANEL["width"], WITH_PANEL["height"], 24)
+    assert (width, height, depth) == (BESIDE_PANEL["width"], BESIDE_PANEL["height"], 24)
     assert difference(pixels_of(saved[0]), pixels_of(saved[1])) == 0
 
 

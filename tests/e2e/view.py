@@ -27,6 +27,8 @@ Pixels = NDArray[np.int16]
 
 MILLISECONDS = 1e3
 POLL_MILLISECONDS = 20
+THUMB = 16.0
+"""CSS pixels of a range input's thumb in Chromium: its middle goes from one half of that to the other."""
 OF_ONE_VIEWER = ("ack", "ping", "resize", "visibility")
 """Messages that change nothing in the session."""
 
@@ -156,6 +158,21 @@ class View:
     def change_by(self, key: str) -> tuple[Seen, Seen]:
         """As `change`, by a key."""
         return self.change(lambda: self.page.keyboard.press(key))
+
+    def drag_slider(self, name: str, *to: float) -> None:
+        """Take a slider from its start to parts of its length, and let it go at the last."""
+        slider = self.page.get_by_role("slider", name=name)
+        slider.scroll_into_view_if_needed()
+        box = slider.bounding_box()
+        assert box is not None
+        start, length, y = box["x"] + THUMB / 2, box["width"] - THUMB, box["y"] + box["height"] / 2
+        mouse = self.page.mouse
+        mouse.move(start, y)
+        mouse.down()
+        for part in to:
+            mouse.move(start + part * length, y)
+            self.settle_messages()
+        mouse.up()
 
     def settle_messages(self) -> None:
         """Wait until the page has sent, and this process has heard of, all that its user's acts so far call for."""

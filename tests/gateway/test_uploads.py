@@ -15,6 +15,7 @@ from PIL import Image
 
 from culet.gateway.upload_folder import UploadFolder
 from culet.optics.panoramas import STUDIO
+from culet_protocol.messages import Outline
 from gateway.running import PATIENCE, TETRAHEDRON, Endpoints, Gateway, gateway_before, png
 
 
@@ -33,6 +34,35 @@ async def test_an_uploaded_mesh_is_described_and_can_be_rendered(gateway: Gatewa
     scene = {"stones": [{"mesh": mesh["id"]}]}
     picture = await gateway.http.post("/api/render", json={"scene": scene, "width": 32, "height": 18})
     assert picture.status_code == 200, picture.text
+
+
+async def test_each_stone_of_a_scene_is_of_an_upload_of_its_own(gateway: Gateway) -> None:
+    """Tetrahedra, each higher than the one before, seen from far in front."""
+
+    async def uploaded(number: int) -> str:
+        data = TETRAHEDRON.replace(b"v 1 1 1\n", b"v 1 %d 1\n" % (1 + number))
+        answer = await gateway.http.post("/api/meshes", files=form("stone.obj", data))
+        assert answer.status_code == 201, answer.text
+        return str(answer.json()["id"])
+
+    camera = {"kind": "orthographic", "position": [0, 0, 20], "target": [0, 0, 0], "height": 12}
+    stones = [
+        {"id": f"s{number}", "mesh": await uploaded(number), "orientation": [1, 0, 0, 0], "position": [0, y, 0]}
+        for number, y in enumerate((-4, 0, 4))
+    ]
+    corners = []
+    async with gateway.viewer(await gateway.session({"camera": camera, "stones": stones})) as viewer:
+        frame = await viewer.frame()
+        for stone in stones:
+            await viewer.say(Outline(stone=stone["id"], step=frame.step))
+            outlined = await viewer.notice("outlined")
+            assert outlined["stone"] == stone["id"]
+            corners.append(np.reshape(outlined["points"], (-1, 2)) * 6 - (0, stone["position"][1]))
+    for each in corners:
+        assert np.linalg.norm(each, axis=1).max() == pytest.approx(1, abs=0.3)
+    proportions = [float(np.divide(*np.ptp(each, axis=0))) for each in corners]
+    assert proportions == sorted(proportions, reverse=True)
+    assert proportions[0] > 1.2 * proportions[1] > 1.2**2 * proportions[2]
 
 
 def mean_colour(picture: bytes) -> list[float]:

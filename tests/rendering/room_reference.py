@@ -1,13 +1,13 @@
 """The room once more, from its description: floor, walls, checkers, lights, shadows, mirrors and skies, ray by ray.
 
-Double precision, in the world's own coordinates, with shadows by clipping the segment to the light against the stone's
+Double precision, in the world's own coordinates, with shadows by clipping the segment to the light against each stone's
 half-spaces: nothing here is shared with the kernels but the description.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,21 +113,26 @@ def ground(environment: Environment, direction: Array) -> Array:
             return np.array((0.05, 0.05, 0.1)) * (1 - height) + np.array((0.2, 0.2, 0.3)) * height
 
 
-def world_half_spaces(scene: Scene, stone: Shape | None) -> Array:
-    """(F, 4) the stone's facets where the scene has it."""
+NOTHING = np.array([[1.0, 0, 0, -1e9], [-1.0, 0, 0, -1e9]])
+"""Half-spaces that no point is inside both of."""
+
+
+def world_half_spaces(scene: Scene, stone: Shape | None, number: int = 0) -> Array:
+    """(F, 4) the facets of the scene's stone of that number, where and as large as the scene has it."""
     if stone is None or not scene.stones:
-        return np.array([[1.0, 0, 0, -1e9], [-1.0, 0, 0, -1e9]])  # nothing is inside both
-    w, *v = scene.stones[0].orientation
+        return NOTHING
+    settings = scene.stones[number]
+    w, *v = settings.orientation
     axis = np.array(v)
     normals = stone.planes[:, :3]
     turned = normals + 2 * w * np.cross(axis, normals) + 2 * np.cross(axis, np.cross(axis, normals))
-    return np.column_stack([turned, stone.planes[:, 3] + turned @ np.array(scene.stones[0].position)])
+    offsets = settings.scale * stone.planes[:, 3]
+    return np.column_stack([turned, offsets + turned @ np.array(settings.position)])
 
 
-def passes_through(
-    planes: Array, origin: Array, direction: Array, length: float | Array = math.inf
-) -> NDArray[np.bool_]:
-    """Whether the segments origin + t direction, 0 < t < length, have a part inside all half-spaces."""
+def span(planes: Array, origin: Array, direction: Array) -> tuple[Array, Array]:
+    """(N,) where the lines origin + t direction come inside all half-spaces, and where they leave: never, if they leave
+    before they come."""
     gap = planes[:, 3] - origin @ planes[:, :3].T
     speed = direction @ planes[:, :3].T
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -135,18 +140,29 @@ def passes_through(
     enter = np.where(speed < 0, t, -math.inf).max(axis=1)
     leave = np.where(speed > 0, t, math.inf).min(axis=1)
     outside = ((speed == 0) & (gap < 0)).any(axis=1)
-    hits: NDArray[np.bool_] = ~outside & (np.maximum(enter, 0) < np.minimum(leave, length))
+    return np.where(outside, math.inf, enter), leave
+
+
+def passes_through(
+    planes: Array, origin: Array, direction: Array, length: float | Array = math.inf
+) -> NDArray[np.bool_]:
+    """Whether the segments origin + t direction, 0 < t < length, have a part inside all half-spaces."""
+    enter, leave = span(planes, origin, direction)
+    hits: NDArray[np.bool_] = np.maximum(enter, 0) < np.minimum(leave, length)
     return hits
 
 
-def lighting(scene: Scene, planes: Array, point: Array, normal: Array, which: NDArray[np.integer]) -> Array:
+def lighting(
+    scene: Scene, stones: Sequence[Array], point: Array, normal: Array, which: NDArray[np.integer]
+) -> Array:
     """(N, 3) light on surfaces, as the radiance of white ones: the sky's, which `test_unshaded_light.py` judges, and
-    each point's colour by its cosine, none of it in the shadow."""
+    each point's colour by its cosine, none of it in the shadow of any stone."""
     total = np.array(sky_light(Stage(scene, (), None))[which])
     for light in scene.points:
         way = np.array(light.position) - point
         cosine = (way * normal).sum(axis=1) / np.linalg.norm(way, axis=1)
-        shadow = np.where(passes_through(planes, point, way, 1.0), 0.0, 1.0)
+        shaded = np.any([passes_through(planes, point, way, 1.0) for planes in stones], axis=0)
+        shadow = np.where(shaded, 0.0, 1.0)
         total += (np.maximum(cosine, 0) * shadow)[:, None] * np.array(light.colour)
     return total
 
@@ -171,10 +187,10 @@ Thrown = Callable[[NDArray[np.integer], Array], Array]
 
 
 def look_around(scene: Scene, stone: Shape | None, width: int, height: int, thrown: Thrown | None = None) -> Seen:
-    """(height, width) what the pixels' centres see of the room."""
+    """(height, width) what the pixels' centres see of the room. All stones of the scene have that shape."""
     direction = pixel_directions(scene, width, height).reshape(-1, 3)
     origin = np.tile(np.array(scene.camera.position, float), (len(direction), 1))
-    planes = world_half_spaces(scene, stone)
+    stones = [world_half_spaces(scene, stone, number) for number in range(len(scene.stones))] or [NOTHING]
     kinds = [scene.floor.kind, *[scene.walls.kind] * 3]
     radiance, weight = np.zeros(direction.shape), np.ones(len(direction))
     stopped, met_stone = np.zeros(len(direction), bool), np.zeros(len(direction), bool)
@@ -186,7 +202,8 @@ def look_around(scene: Scene, stone: Shape | None, width: int, height: int, thro
                 t = -gap / speed
             nearer = (speed < 0) & (gap > -1e-9) & (t < nearest) & (kind != "none")
             nearest, which = np.where(nearer, t, nearest), np.where(nearer, number, which)
-        met_stone |= ~stopped & passes_through(planes, origin, direction, nearest)
+        in_the_way = np.any([passes_through(planes, origin, direction, nearest) for planes in stones], axis=0)
+        met_stone |= ~stopped & in_the_way
         stopped |= met_stone
         seen = sky(scene, direction)
         met = which >= 0
@@ -198,7 +215,7 @@ def look_around(scene: Scene, stone: Shape | None, width: int, height: int, thro
         cell = np.array([cell_of(scene.floor), *[cell_of(scene.walls)] * 3])[which]
         odd = ((np.floor(along / cell) + np.floor(across / cell)) % 2).astype(int)
         albedos = np.array([albedos_of(scene.floor), *[albedos_of(scene.walls)] * 3])
-        light = lighting(scene, planes, point, normal, which)
+        light = lighting(scene, stones, point, normal, which)
         if thrown is not None:
             added = np.where(mirror[:, None], 0, thrown(which, point))
             light = np.maximum(light + added, 0)

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from conftest import RendererOf
 from culet.errors import SceneError
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
+from culet.rendering.chains import GROUPS, chain_table
 from culet.rendering.features import Features, Geometry, Stones, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
+from culet.scene.room import FLOOR_Y, Plane
 from culet.scene.stone import StoneSettings
 from culet.stage import NOTHING, Stage
 from pictures import compared
-from rendering.views import BARE, Array, radiance
+from rendering.room_reference import span, world_half_spaces
+from rendering.views import BARE, Array, pixel_directions, radiance
 from shared.stones import ring
 
 SIZE = 96, 54
@@ -59,6 +64,20 @@ def twelve() -> list[dict[str, Any]]:
         }
         for number in range(12)
     ]
+
+
+POLARISED_BANDS: dict[str, Any] = {"bands": 4, "polarised": True}
+
+
+def of_materials(stones: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The same with measured dispersion, by turns of their three indices."""
+    names = {2.41: "diamond", 1.76: "spinel", 1.5: "bk7"}
+    return [{**stone, "material": names[stone["material"]["ior"][0]]} for stone in stones]
+
+
+def under_any_sky(of: Stage) -> Features:
+    """The program for what light carries there, shared by all skies and by stones of any facets."""
+    return replace(features_of(of), few_mirrors=0).without("sky")
 
 
 def take(renderer: Renderer, of: Stage, features: Features | None = None, size: tuple[int, int] = SIZE) -> Picture:
@@ -127,14 +146,19 @@ def brick(half_height: float) -> Shape:
     return shape_from_half_spaces("brick", np.array(planes))
 
 
-def bricks(*places: tuple[float, float]) -> Stage:
-    """Bricks of glass by their height and half height, seen from straight below, under a sky that is 1 above."""
-    glass = {"material": {"ior": [1.5] * 3}, "orientation": [1, 0, 0, 0]}
-    stones = [{**glass, "position": [0, y, 0], "scale": np.sqrt(2 + h * h)} for y, h in places]
+def bricks(*places: tuple[float, float], materials: Sequence[object] = (), **optics: object) -> Stage:
+    """Bricks by their height and half height, of glass or these materials, seen from straight below, under a sky that
+    is 1 above."""
+    glass: list[object] = [{"ior": [1.5] * 3}] * len(places)
+    stones = [
+        {"material": material, "position": [0, y, 0], "orientation": [1, 0, 0, 0], "scale": np.sqrt(2 + h * h)}
+        for (y, h), material in zip(places, materials or glass, strict=True)
+    ]
     camera = {"kind": "orthographic", "position": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1], "height": 0.5}
     sky = {"kind": "half", "radiance": [1, 1, 1]}
     shapes = [brick(h) for _, h in places]
-    return stage(stones, shapes, **{**FURNACE, "environment": sky, "camera": camera})
+    view = {"environment": sky, "camera": camera, "optics": {**FURNACE["optics"], **optics}}
+    return stage(stones, shapes, **{**FURNACE, **view})
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-5, 0.1, -1e-5])
@@ -146,6 +170,177 @@ def test_halves_of_a_cut_stone_have_two_more_surfaces_whatever_the_gap(exact: Re
     whole = radiance(take(exact, bricks((0, 0.6)), size=(8, 8)))
     assert whole == pytest.approx((1 - reflected) / (1 + reflected), abs=2e-6)  # the cut-off; measured 3.3e-7
     assert halves == pytest.approx((1 - reflected) / (1 + 3 * reflected), abs=2e-5)
+
+
+def test_each_stone_of_a_pile_has_the_index_of_its_own_material(exact: Renderer) -> None:
+    """1 / T - 1 is the sum of R / (1 - R) over all surfaces that light falls on straight (Stokes, as above, for any R).
+    Each brick differs from the others in what it passes, in each channel."""
+    indices = np.array([[1.4, 1.5, 1.6], [2.2, 2.4, 2.6], [1.8, 1.75, 1.7]])
+    reflected = ((indices - 1) / (indices + 1)) ** 2
+    expected = 1 / (1 + (2 * reflected / (1 - reflected)).sum(axis=0))
+    pile = bricks((0.7, 0.3), (0, 0.2), (-0.6, 0.25), materials=[{"ior": [*each]} for each in indices])
+    seen = radiance(take(exact, pile, size=(4, 4)))
+    assert seen == pytest.approx(np.broadcast_to(expected, seen.shape), abs=1e-4)
+
+
+def test_each_stone_of_a_pile_has_the_index_of_its_own_material_at_each_wavelength(exact: Renderer) -> None:
+    """Polarised as well, which at these surfaces changes nothing."""
+    materials = ["bk7", "diamond"]
+    pile = bricks((0.5, 0.3), (-0.4, 0.2), materials=materials, **POLARISED_BANDS, cutoff=1e-9)
+    chains = chain_table(pile.scene, 0, np.float64, common=False).reshape(len(materials), -1)
+    reflected = ((chains["eta"] - 1) / (chains["eta"] + 1)) ** 2
+    passed = 1 / (1 + (2 * reflected / (1 - reflected)).sum(axis=0))
+    expected = np.array([passed[group::GROUPS] @ chains["share"][0, group::GROUPS] for group in range(GROUPS)])
+    pixels = radiance(take(exact, pile, under_any_sky(pile), size=(8, 8))).reshape(-1, 3)
+    distance = abs(pixels[:, None] - expected[None]).max(axis=-1)
+    assert np.bincount(distance.argmin(axis=1)).tolist() == [16] * GROUPS
+    assert distance.min(axis=1).max() < 1e-6
+
+
+@pytest.mark.parametrize("stones", [TRIO, twelve()], ids=["three", "twelve"])
+@pytest.mark.parametrize("optics", [{"bands": 4}, {"polarised": True}, POLARISED_BANDS], ids=str)
+def test_white_stays_white_among_stones_whatever_light_carries(
+    renderer: Renderer, stones: list[dict[str, Any]], optics: dict[str, Any]
+) -> None:
+    """By wavelength or polarised, what is cut bounds what is missing: channels see parts of either sign."""
+    of = stage(of_materials(stones), **{**FURNACE, "optics": {**FURNACE["optics"], **optics}})
+    picture = take(renderer, of, under_any_sky(of))
+    seen, cut = radiance(picture), picture.cut_map().astype(float)
+    with compared(seen, 1):
+        assert (abs(seen.mean(axis=-1) - 1) <= cut + 5e-7).all()  # measured 1.4e-7 beyond
+        assert seen == pytest.approx(1, abs=2e-5)  # measured 3.5e-6 and 9.7e-6
+    assert 0 < cut.mean() < 1e-5  # measured 2.9e-7 to 4.3e-7
+    assert (cut > 0).mean() > 0.1  # the stones are in the picture
+
+
+def test_polarised_bands_among_stones_are_in_single_precision_what_they_are_in_double_in_whatever_order(
+    renderer: Renderer, exact: Renderer
+) -> None:
+    """But where rounding decides on which side of an edge light goes. Another order changes no bit."""
+    sky = {"kind": "gradient", "bottom": [1, 0.5, 2], "top": [2, 1, 0.5]}
+    there, back = (
+        stage(of_materials(stones), **{**FURNACE, "environment": sky, "optics": FURNACE["optics"] | POLARISED_BANDS})
+        for stones in (twelve(), twelve()[::-1])
+    )
+    single, turned, double = (
+        radiance(take(used, of, under_any_sky(of)))
+        for used, of in ((renderer, there), (renderer, back), (exact, there))
+    )
+    assert (single == turned).all()
+    difference: Array = abs(single - double).max(axis=-1)
+    with compared(single, double):
+        assert (difference > 1e-3).mean() < 0.004  # measured 0.0017
+        assert single.mean() == pytest.approx(double.mean(), rel=1e-5)  # measured 2.7e-6
+
+
+def clear(**settings: Any) -> dict[str, Any]:  # noqa: ANN401
+    """A stone of index 1: light goes straight through, and is absorbed."""
+    return {"material": {"ior": [1, 1, 1]}, **settings}
+
+
+def clear_program(of: Stage) -> Features:
+    """For clear stones, shared by eyes inside and outside, with and without a floor."""
+    return features_of(of).without("camera_inside").without("floor").without("lamps").without("boxes")
+
+
+JUST_BELOW = 1e-3
+"""R: from there light still sees the floor, as from a stone that rests on it."""
+
+
+def straight_on(of: Stage, eye_inside: int | None = None) -> tuple[Array, NDArray[np.bool_]]:
+    """(height, width, 3) optical depth of what is before each pixel, and whether the floor stops its line.
+
+    Light on its way belongs to the stone that it entered first, until it leaves that stone; if it then is within
+    another, to that one. NaN where it then is within several others: to which of them is not said. A stone that reaches
+    through the floor is a hole in the floor; NaN where light leaves a stone just below.
+    """
+    direction = pixel_directions(of.scene, *SIZE).reshape(-1, 3)
+    origin = np.tile(np.array(of.scene.camera.position, float), (len(direction), 1))
+    spans = [
+        span(world_half_spaces(of.scene, shape, number), origin, direction) for number, shape in enumerate(of.shapes)
+    ]
+    floor = np.full(len(direction), math.inf)
+    if of.scene.floor.kind != "none":
+        floor = np.where(direction[:, 1] < 0, (FLOOR_Y - origin[:, 1]) / direction[:, 1], math.inf)
+    depth, stopped = np.zeros(direction.shape), np.zeros(len(direction), bool)
+    for pixel in range(len(direction)):
+        t, ways = 0.0, [(float(enter[pixel]), float(leave[pixel]), n) for n, (enter, leave) in enumerate(spans)]
+        first = eye_inside
+        while ahead := [(max(enter, t), leave, n) for enter, leave, n in ways if max(enter, t) < leave]:
+            entry, end, number = min(ahead) if first is None else next(each for each in ahead if each[2] == first)
+            if t < floor[pixel] < entry:
+                break
+            if first is None and sum(each[0] == entry for each in ahead) > 1:
+                depth[pixel] = math.nan
+            depth[pixel] += (end - entry) * np.array(of.scene.stones[number].absorption)
+            t, first = end, None
+            ways = [each for each in ways if each[2] != number]
+            if 0 < (floor[pixel] - t) * direction[pixel, 1] < JUST_BELOW:
+                depth[pixel] = math.nan
+        stopped[pixel] = t < floor[pixel] < math.inf
+    return depth.reshape(SIZE[1], SIZE[0], 3), stopped.reshape(SIZE[1], SIZE[0])
+
+
+GRADIENT: dict[str, Any] = {
+    **BARE, "environment": {"kind": "gradient", "bottom": [1, 0.5, 2], "top": [2, 1, 0.5]}, "optics": {"cutoff": 1e-9},
+    "emitters": [],
+}  # fmt: skip
+
+
+def clear_twelve() -> list[dict[str, Any]]:
+    """A heap of twelve sizes and colours."""
+    random = np.random.default_rng(3)
+    return [
+        clear(**{**each, "scale": random.uniform(0.2, 0.6), "material": {"ior": [1, 1, 1]}, "absorption": [*colour]})
+        for each, colour in zip(twelve(), random.random((12, 3)), strict=True)
+    ]
+
+
+def compare_straight(exact: Renderer, of: Stage, bare: Stage, eye_inside: int | None = None) -> NDArray[np.bool_]:
+    """That light comes to each pixel straight through the stones; says which pixels the floor is seen in."""
+    depth, stopped = straight_on(of, eye_inside)
+    assert (depth > 0).any(axis=-1).mean() > 0.1
+    said = np.isfinite(depth)
+    assert said.mean() > 0.99
+    without = replace(bare, scene=bare.scene.model_copy(update={"floor": Plane(kind="none")}))
+    floor, sky = (radiance(take(exact, behind, clear_program(of))) for behind in (bare, without))
+    seen = radiance(take(exact, of, clear_program(of)))
+    expected = np.where(stopped[..., None], floor, sky) * np.exp(-depth)
+    with compared(np.where(said, seen, 0), np.where(said, expected, 0)):
+        assert seen[said] == pytest.approx(expected[said], abs=1e-5)  # overlaps of 2e-6 of a radius count as touching
+    return stopped
+
+
+def test_light_belongs_to_the_stone_that_it_entered_first_until_it_leaves_that_stone(exact: Renderer) -> None:
+    """Through all of a heap, in their order, from where the eye is."""
+    compare_straight(exact, stage(clear_twelve(), **GRADIENT, **VIEW), stage([], **GRADIENT, **VIEW))
+
+
+def test_stones_that_reach_through_the_floor_are_holes_in_the_floor(exact: Renderer) -> None:
+    """What is entered above the floor is left below the floor, also into another stone, and to the sky; what lies below
+    the floor beside that is hidden."""
+    room = {**GRADIENT, **VIEW, "floor": {"kind": "matte"}}
+    sunk = [
+        {**each, "position": [each["position"][0], each["position"][1] - 1, each["position"][2]]}
+        for each in clear_twelve()
+    ]
+    stopped = compare_straight(exact, stage(sunk, **room), stage([], **room))
+    depth, _ = straight_on(stage(sunk, **GRADIENT, **VIEW))
+    within = (depth > 0).any(axis=-1)
+    assert (within & stopped).mean() > 0.02
+    assert (within & ~stopped).mean() > 0.02
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0)])
+def test_an_eye_within_two_stones_is_in_the_one_in_which_it_is_deepest(
+    exact: Renderer, order: tuple[int, int, int]
+) -> None:
+    shallow = clear(position=[0.1, 0.3, 0], absorption=[3, 0, 0], scale=0.8)
+    deep = clear(position=[0, 0, 0.1], absorption=[0, 1, 0.2], scale=2)
+    small = clear(position=[-1, 0, -3], absorption=[0, 0, 4], scale=0.7)
+    camera: dict[str, Any] = {"camera": {"position": [0, 0.1, 0], "target": [-0.3, 0, -1], "fov_degrees": 70}}
+    stones = [(shallow, deep, small)[number] for number in order]
+    compare_straight(exact, stage(stones, **GRADIENT, **camera), stage([], **GRADIENT, **camera), eye_inside=1)
 
 
 EXTREMES: dict[str, list[dict[str, Any]]] = {

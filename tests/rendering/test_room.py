@@ -10,11 +10,11 @@ import pytest
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.rendering.features import Features, Geometry
-from culet.rendering.renderer import Renderer
+from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_LAMPS, legacy
 from pictures import compared
-from rendering.room_reference import look_around
+from rendering.room_reference import Seen, look_around
 from rendering.views import radiance, take
 
 SIZE = 96, 54
@@ -49,9 +49,12 @@ PAINTED: dict[str, dict[str, Any]] = {
 
 def compare(renderer: Renderer, scene: Scene, stone: Shape | None, tolerance: float, doubtful: int) -> None:
     """Pixels that see the room alone agree, but for those whose ray meets a checker's or a shadow's edge."""
-    expected = look_around(scene, stone, *SIZE)
-    seen = radiance(take(renderer, scene, stone, SIZE))
-    room = ~expected.stone
+    agree(take(renderer, scene, stone, SIZE), look_around(scene, stone, *SIZE), tolerance, doubtful)
+
+
+def agree(picture: Picture, expected: Seen, tolerance: float, doubtful: int) -> None:
+    """But for so many pixels, whose rays meet an edge."""
+    seen, room = radiance(picture), ~expected.stone
     assert room.mean() > 0.3
     difference = abs(seen - expected.radiance).max(axis=-1)[room]
     with compared(np.where(room[..., None], seen, 0), np.where(room[..., None], expected.radiance, 0)):
@@ -185,3 +188,35 @@ def test_a_mirror_shows_the_stones_shadow(exact: Renderer) -> None:
     data = {"floor": {"kind": "matte"}, "walls": {"kind": "mirror"}, "camera": camera, "optics": FINE}
     scene = legacy({**data, "stones": [{"position": [0, 0.2, -4]}]})
     compare(exact, scene, shape_of(scene.stones[0], {}), 1e-11, 0)
+
+
+def crowd(ior: float) -> list[dict[str, Any]]:
+    """Twelve stones by chance: through the floor, through the wall, in the air, some within another; so many that they
+    are in two groups."""
+    random = np.random.default_rng(7)
+    return [
+        {
+            "id": f"s{number}",
+            "material": {"ior": [ior] * 3},
+            "position": [*(random.random(3) * [6, 2.2, 3.4] + [-3, -1.3, -8.3])],
+            "orientation": [*random.normal(size=4)],
+            "scale": random.uniform(0.2, 0.8),
+        }
+        for number in range(12)
+    ]
+
+
+@pytest.mark.parametrize("light", ["low", "below the floor", "eight"])
+def test_each_of_many_stones_shades_and_is_hidden_as_it_would_be_alone(
+    renderer: Renderer, exact: Renderer, light: str
+) -> None:
+    """On floor and walls. What is seen of the stones is told by their material, which nothing else depends on."""
+    room = {"floor": {"kind": "matte"}, "walls": {"kind": "matte"}, "optics": FINE | {"max_bounces": 1}}
+    camera = {"position": [0.5, 2, 0], "target": [0, -0.6, -7], "fov_degrees": 50}
+    glass, dense = (legacy({**room, **LIGHTS[light], "camera": camera, "stones": crowd(ior)}) for ior in (1.5, 2.4))
+    shape = shape_of(glass.stones[0], {})
+    expected = look_around(glass, shape, *SIZE)
+    agree(take(exact, glass, shape, SIZE), expected, 1e-11, 0)
+    agree(take(renderer, glass, shape, SIZE), expected, 1e-3, 40)  # of 5184: edges
+    one, other = (radiance(take(exact, scene, shape, SIZE)) for scene in (glass, dense))
+    assert ((one != other).any(axis=-1) == expected.stone).all()

@@ -13,6 +13,7 @@ import pytest
 import trimesh
 
 from conftest import RendererOf
+from culet.geometry.load import shape_of
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.optics.panoramas import directions
@@ -20,11 +21,11 @@ from culet.rendering.features import ESTIMATOR, Features, features_of, geometry_
 from culet.rendering.light.unshaded import sky_light
 from culet.rendering.placed_stone import placed_stones, rotation_matrix
 from culet.rendering.renderer import Renderer
-from culet.rendering.studio import contact_form
+from culet.rendering.studio import LEAST_SHADE, contact_form
 from culet.scene import PRESETS, Scene
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from optics.closed_forms import fresnel
-from rendering.room_reference import passes_through, sky, world_half_spaces
+from rendering.room_reference import passes_through, sky, span, world_half_spaces
 from rendering.views import BARE, UPRIGHT, Array, pixel_directions, radiance, take
 from shared.stages import staged
 from shared.stones import slab
@@ -336,6 +337,70 @@ def test_the_shadows_ellipsoid_has_the_stones_moments(brilliant: Shape) -> None:
     rotation = rotation_matrix(turned.stones[0].orientation)
     upright = form(scene_of(stones=[{**UPRIGHT}]), brilliant)
     assert form(turned, brilliant) == pytest.approx(rotation @ upright @ rotation.T, abs=1e-12)
+
+
+def scattered(count: int) -> list[dict[str, Any]]:
+    """Stones of index 1, which change no light, above the floor, of many sizes; more than eight are in two groups."""
+    random = np.random.default_rng(5)
+    return [
+        {
+            "id": f"s{number}",
+            "material": {"ior": [1, 1, 1]},
+            "position": [1.8 * (number % 4) - 2.7, random.uniform(-0.3, 0.3), 1.6 * (number // 4) - 2],
+            "orientation": [*random.normal(size=4)],
+            "scale": random.uniform(0.3, 0.7),
+        }
+        for number in range(count)
+    ]
+
+
+SCATTERED: dict[str, Any] = {
+    "environment": {"kind": "constant"}, "camera": {"position": [0, 6, 9], "target": [0, -0.8, 0], "fov_degrees": 32},
+}  # fmt: skip
+
+
+def uncovered(scene: Scene) -> Array:
+    """(pixels,) whether the camera sees past all stones."""
+    d = pixel_directions(scene, *SIZE).reshape(-1, 3)
+    eye = np.tile(np.array(scene.camera.position, float), (len(d), 1))
+    covers = [
+        passes_through(world_half_spaces(scene, shape_of(stone, {}), number), eye, d)
+        for number, stone in enumerate(scene.stones)
+    ]
+    bare: Array = ~np.any(covers, axis=0)
+    return bare
+
+
+def test_of_several_stones_each_takes_its_part_of_the_light_that_the_others_leave_to_the_floor(exact: Renderer) -> None:
+    floor = {"kind": "studio", "colour": [1, 1, 1], "reflectance": 0, "shadow": 0.8}
+    stones = scattered(11)
+    whole = scene_of(**SCATTERED, floor=floor, stones=stones)
+    alone = [scene_of(**SCATTERED, floor=floor, stones=[stone]) for stone in stones]
+    seen, *each = (radiance(take(exact, scene, size=SIZE))[..., 0].ravel() for scene in (whole, *alone))
+    bare = uncovered(whole)
+    expected = np.prod(each, axis=0)[bare]
+    assert (expected < 0.8).sum() > 100
+    assert abs(seen[bare] - expected).max() < len(stones) * LEAST_SHADE, "what is not worth a step is left out"
+    one = np.array(each).min(axis=0)[bare]
+    assert (one - expected).max() > 0.1, "somewhere several count"
+
+
+def test_the_floor_shows_of_several_stones_the_one_that_its_mirror_would(exact: Renderer) -> None:
+    """By the height at which the mirrored line of sight enters the first one."""
+    floor = {"kind": "studio", "colour": [0, 0, 0], "reflectance": 0.5, "fade": 0.7, "shadow": 0}
+    scene = scene_of(**SCATTERED, floor=floor, stones=scattered(11))
+    seen = radiance(take(exact, scene, size=SIZE))[..., 0].ravel()
+    points, d = floor_points(scene)
+    mirrored = d * (1, -1, 1)
+    first = np.full(len(d), np.inf)
+    for number, stone in enumerate(scene.stones):
+        enter, leave = span(world_half_spaces(scene, shape_of(stone, {}), number), points, mirrored)
+        first = np.where((enter < leave) & (enter > 0), np.minimum(first, enter), first)
+    bare = uncovered(scene)
+    meets = np.isfinite(first)
+    expected = np.where(meets, 0.5 * np.exp(-np.where(meets, first, 0) * mirrored[:, 1] / 0.7), 0)
+    assert (expected[bare] > 0).sum() > 150
+    assert seen[bare] == pytest.approx(expected[bare], abs=1e-7)
 
 
 def test_without_glare_the_first_reflection_is_missing_and_nothing_else(exact: Renderer) -> None:

@@ -169,3 +169,12 @@ def test_point_lights_stay_under_any_sky() -> None:
         scene = sky(document, environment={"kind": kind})
         assert len(scene.points) == 1
         assert bool(lamps(scene.emitters)) == (kind == "dark")
+
+
+@pytest.mark.parametrize("patch", [{"radiance": [2, 2, 2]}, {"kind": "constant", "radiance": [2, 2, 2]}])
+def test_a_sky_that_stays_of_its_kind_keeps_its_lamps(patch: dict[str, Any]) -> None:
+    sun = {"shape": "sun", "direction": [0, 1, 0], "colour": [1, 1, 1]}
+    sunny = Scene.read({"environment": {"kind": "constant"}, "emitters": [sun]})
+    brighter = sky(sunny.model_dump(mode="json"), environment=patch)
+    assert brighter.environment != sunny.environment
+    assert brighter.emitters == sunny.emitters

@@ -99,7 +99,7 @@ def test_every_compiler_comes_to_the_same_bits(compiler: str, tmp_path: Path, mo
         (each for version in range(25, 12, -1) if (each := shutil.which(f"{compiler}-{version}"))), None
     )
     if found is None:
-        pytest.skip(f"there is no {compiler}")
+        pytest.skip(f"whether {compiler} comes to the same bits as the solver that is in use: there is no {compiler}")
     expected = heaps.heap(12, 2)
     advance(expected, 5)
     made = library.loaded(build(tmp_path, found))

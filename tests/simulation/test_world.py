@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import math
+import struct
 import threading
 from dataclasses import replace
 
@@ -12,7 +14,9 @@ import pytest
 
 from culet.errors import InputError, TooLargeError
 from culet.geometry.shape import Shape
+from culet.simulation import together
 from culet.simulation.bodies import Body
+from culet.simulation.body import inertia_of
 from culet.simulation.rotation import IDENTITY
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
@@ -20,7 +24,7 @@ from culet.simulation.state import RigidState
 from culet.simulation.surfaces import FLOOR, WALLS
 from culet.simulation.world import World
 from culet.study.contacts.heaps import scattered
-from culet.study.contacts.worlds import BOWL, advance, corners, law, overlap, standing
+from culet.study.contacts.worlds import BOWL, advance, beside_another, corners, law, overlap, solid, standing
 from simulation.solids import TILTED
 from simulation.worlds import world
 
@@ -139,7 +143,21 @@ def test_a_stone_that_falls_on_a_sleeper_wakes_it_and_what_leans_on_it(box: Shap
     assert math.dist(moving.state.bodies[1].position, before) > 0.01
 
 
-@pytest.mark.parametrize("damage", ["version", "stones", "saved", "short", "nan"])
+HEADER = 24
+"""Bytes of what the solver saves before its bodies: six counts."""
+DAMAGED = {
+    "too fast": (HEADER + 7 * 8, "d", 1e31),
+    "asleep for ever": (HEADER + 13 * 8, "d", math.inf),
+    "in no bed": (HEADER + 15 * 8 + 8, "i", -1),
+    "in a bed to come": (HEADER + 15 * 8 + 8, "i", 2**30),
+    "no bed left": (12, "i", 2**31 - 1),
+    "more manifolds": (16, "i", 2**31 - 1),
+    "more contacts": (20, "i", 2**31 - 1),
+}
+"""Offset, format and value of a number."""
+
+
+@pytest.mark.parametrize("damage", ["version", "stones", "saved", "short", "nan", *DAMAGED])
 def test_a_damaged_snapshot_is_refused_and_changes_nothing(box: Shape, damage: str) -> None:
     moving = world(two(box))
     advance(moving, 0.5)
@@ -153,6 +171,11 @@ def test_a_damaged_snapshot_is_refused_and_changes_nothing(box: Shape, damage: s
             snapshot["saved"] = "not base64"
         case "short":
             snapshot["saved"] = snapshot["saved"][:-8]
+        case damage if damage in DAMAGED:
+            content = bytearray(base64.b64decode(snapshot["saved"]))
+            offset, kind, value = DAMAGED[damage]
+            struct.pack_into(kind, content, offset, value)
+            snapshot["saved"] = base64.b64encode(content).decode()
         case _:
             snapshot["saved"] = snapshot["saved"][:40] + "/" * 16 + snapshot["saved"][56:]
     with pytest.raises(InputError, match="snapshot"):
@@ -252,6 +275,40 @@ def test_a_held_stone_stops_another_and_does_not_move(box: Shape) -> None:
     assert high.position[1] < 1
 
 
+def test_a_push_moves_no_stone_that_is_held_nor_what_lies_on_it(box: Shape) -> None:
+    bodies = [standing("low", box, IDENTITY), standing("high", box, IDENTITY, gap=height_of(box))]
+    moving = world(bodies, friction=0.5)
+    moving.hold("low", held=True)
+    moving.push("low", (5.0, 0.0, 0.0), moving.state.bodies[0].position)
+    advance(moving, 0.5)
+    low, high = moving.state.bodies
+    assert low.velocity == (0.0, 0.0, 0.0)
+    assert math.hypot(high.position[0], high.position[2]) < 1e-3
+
+
+def test_a_stone_sleeps_on_a_base_of_many_corners() -> None:
+    rim = [(math.cos(a), 0.0, math.sin(a)) for a in np.linspace(0, 2 * math.pi, 701)[:-1].tolist()]
+    cone = solid("cone", [(x, y - 0.3, z) for x, y, z in (*rim, (0.0, 1.2, 0.0))])
+    moving = beside_another(standing("cone", cone, IDENTITY), law())
+    advance(moving, 1)
+    assert moving.state.bodies[0].asleep
+
+
+def test_a_law_that_one_of_the_stones_cannot_have_changes_nothing(box: Shape, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refusing(kind: str, shape: Shape, factor: float) -> object:
+        if factor == 2.0 and kind == "cone":
+            raise InputError("no such inertia")
+        return inertia_of(kind, shape, factor)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(together, "inertia_of", refusing)
+    moving, other = (world([one(box), Body("two", box, (0.3, 4.2, 0.0), IDENTITY, mass=2.0)]) for _ in range(2))
+    with pytest.raises(InputError):
+        moving.adjust(law(inertia="cone", gravity=1.0))
+    advance(moving, 0.5)
+    advance(other, 0.5)
+    assert moving.state == other.state
+
+
 def test_a_moved_stone_is_there_and_jumps_in_no_picture(box: Shape) -> None:
     moving = world(two(box))
     advance(moving, 0.5)
@@ -324,3 +381,28 @@ def test_states_are_plain_values(box: Shape) -> None:
         numbers = (*body.position, *body.orientation, *body.velocity, *body.spin)
         assert {type(number) for number in numbers} == {float}
         assert {type(body.asleep), type(body.held)} == {bool}
+
+
+def test_of_two_stones_that_meet_restitution_is_the_mean(box: Shape) -> None:
+    """Face to face, without gravity or spin: 3 R/s of approach become 3 times the mean of separation."""
+    wide = float(np.ptp(box.vertices[:, 0]))
+    kind = {"spin": (0.0, 0.0, 0.0), "friction": 0.0}
+    bodies = [
+        Body("one", box, (-wide, 0.0, 0.0), IDENTITY, (2.0, 0.0, 0.0), restitution=0.9, **kind),  # type: ignore[arg-type]
+        Body("two", box, (wide, 0.0, 0.0), IDENTITY, (-1.0, 0.0, 0.0), restitution=0.4, **kind),  # type: ignore[arg-type]
+    ]
+    moving = world(bodies, (), gravity=0)
+    advance(moving, 1)
+    one, two = moving.state.bodies
+    assert two.velocity[0] - one.velocity[0] == pytest.approx(3 * (0.9 + 0.4) / 2, rel=1e-4)
+
+
+def test_of_two_stones_that_rub_friction_is_the_geometric_mean(box: Shape) -> None:
+    """A stone slides on a held one: it slows by mu g."""
+    ground = Body("low", box, (0.0, 3.0, 0.0), IDENTITY, spin=(0.0, 0.0, 0.0), scale=8.0, friction=0.1)
+    height = 3 + (8 + 1) * height_of(box) / 2
+    slider = Body("high", box, (0.0, height, 0.0), IDENTITY, (2.0, 0.0, 0.0), (0.0, 0.0, 0.0), friction=0.4)
+    moving = world([ground, slider], (), restitution=0)
+    moving.hold("low", held=True)
+    advance(moving, 0.25)
+    assert moving.state.bodies[1].velocity[0] == pytest.approx(2 - math.sqrt(0.1 * 0.4) * 9.81 * 0.25, rel=1e-3)

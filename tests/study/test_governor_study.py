@@ -154,6 +154,16 @@ def test_a_run_in_which_nothing_moved_is_told_like_any_other() -> None:
     assert json.loads(governor.document(measured, SIZE, 30))["steady"] is None
 
 
+def test_a_run_without_changes_tells_of_the_steady_scene_alone() -> None:
+    seen = tuple(Seen.of(frame(step, Flags.MOVING), arrived=step / 30) for step in range(3))
+    measured = Measured(seen, (), (), 1.0)
+    text = governor.described(measured, SIZE, 30)
+    assert "out of order         0 frames" in text
+    assert "simulated            1.000 s a second" in text
+    assert "change" not in text.replace("changes of setting", "")
+    assert json.loads(governor.document(measured, SIZE, 30))["changes"] == []
+
+
 def test_a_file_that_cannot_be_written_is_refused_before_anything_is_measured(tmp_path: Path) -> None:
     run = invoke("study", "governor", "-o", tmp_path / "missing" / "out.json")
     assert run.returncode == 1

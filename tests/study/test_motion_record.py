@@ -20,7 +20,7 @@ from culet.study.motion_record import (
 )
 
 FRAME = Seen(
-    arrived=0, moving=True, simulation_time=0, width=1024, height=576, bands=3, max_bounces=48, cutoff=0.02,
+    arrived=0, sequence=0, moving=True, simulation_time=0, width=1024, height=576, bands=3, max_bounces=48, cutoff=0.02,
     simulate_ms=1, render_ms=20, encode_ms=2, error=0.05,
 )  # fmt: skip
 RATE = 25.0
@@ -29,7 +29,8 @@ INTERVAL = 1 / RATE
 
 def falling(intervals: list[float]) -> list[Seen]:
     """Frames of one fall that came so far apart."""
-    return [replace(FRAME, arrived=t, simulation_time=t) for t in accumulate(intervals, initial=0.0)]
+    times = accumulate(intervals, initial=0.0)
+    return [replace(FRAME, arrived=t, sequence=number, simulation_time=t) for number, t in enumerate(times)]
 
 
 def summary_of(frames: list[Seen]) -> Summary:
@@ -45,6 +46,16 @@ def test_a_steady_fall_has_the_rate_at_which_its_frames_came() -> None:
     assert (summary.late_intervals, summary.setting_changes_per_minute) == (0, 0)
     assert (summary.lowest_size, summary.largest_cutoff, summary.fewest_bounces) == ((1024, 576), 0.02, 48)
     assert (summary.fewest_bands, summary.error_mean) == (3, 0.05)
+
+
+def test_frames_in_order_and_in_real_time_are_told_from_others() -> None:
+    frames = falling([INTERVAL] * 10)
+    assert summary_of(frames).out_of_order == 0
+    assert summary_of(frames).pace == pytest.approx(1)
+    assert summary_of([*frames, frames[-1]]).out_of_order == 0, "the last one was sent again"
+    assert summary_of([*frames[:4], frames[5], frames[4], *frames[6:]]).out_of_order == 1
+    slow = [replace(frame, simulation_time=0.75 * frame.simulation_time) for frame in frames]
+    assert summary_of(slow).pace == pytest.approx(0.75)
 
 
 def test_the_mean_error_is_of_the_frames_whose_error_is_known() -> None:

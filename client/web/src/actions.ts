@@ -1,7 +1,9 @@
 /** Everything that a key or a button does: one catalogue for keyboard, panel and tests. */
 
+import type { JsonObject } from "@culet/protocol/messages";
 import type { SessionEvent, Target } from "./events";
 import type { Format } from "./rest";
+import { type Wording, worded } from "./wording";
 
 /** R a key press, as in the report. */
 export const STEP = 0.5;
@@ -10,11 +12,12 @@ export type Effect =
   | { kind: "select"; target: Target }
   | { kind: "send"; event: (target: Target) => SessionEvent }
   | { kind: "download"; format: Format }
-  | { kind: "stones"; command: "remove" | "putBack" };
+  | { kind: "stones"; command: "remove" | "putBack" }
+  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
 export interface Action {
   name: string;
-  label: string;
+  label: string | Wording;
   /** Letter or name printed on the key (`KeyboardEvent.key`, in lower case). */
   key: string;
   /** Where the key is on a QWERTY keyboard (`KeyboardEvent.code`). */
@@ -24,7 +27,7 @@ export interface Action {
   effect: Effect;
 }
 
-function letter(name: string, key: string, label: string, effect: Effect, repeats = false): Action {
+function letter(name: string, key: string, label: Action["label"], effect: Effect, repeats = false): Action {
   return { name, label, key: key.toLowerCase(), code: `Key${key}`, repeats, effect };
 }
 
@@ -36,7 +39,7 @@ function select(target: Target, key: string, code: string, label: string): Actio
   return { name: target, label, key, code, repeats: false, effect: { kind: "select", target } };
 }
 
-function plain(name: string, key: string, label: string, type: Plain): Action {
+function plain(name: string, key: string, label: Action["label"], type: Plain): Action {
   return letter(name, key, label, { kind: "send", event: () => ({ type }) });
 }
 
@@ -46,6 +49,8 @@ type Plain = "reset_camera" | "toggle_fall" | "reset_stone" | "toggle_mirror" | 
 function dolly(forward: number): Effect {
   return { kind: "send", event: (target) => ({ type: "dolly", target, forward }) };
 }
+
+const PUT_BACK = { one: "Put the stone back", several: "Put the stones back" };
 
 export const ACTIONS: readonly Action[] = [
   select("camera", "c", "KeyC", "Move the camera"),
@@ -59,13 +64,13 @@ export const ACTIONS: readonly Action[] = [
   letter("out", "O", "Out", dolly(-STEP), true),
   plain("reset_camera", "F", "Reset the camera", "reset_camera"),
   plain("fall", "P", "Fall or pause", "toggle_fall"),
-  plain("reset_stone", "R", "Put the stone back", "reset_stone"),
+  plain("reset_stone", "R", PUT_BACK, "reset_stone"),
   plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
   plain("sky", "L", "Light sky, or the scene's own", "toggle_environment"),
   plain("walls", "W", "Walls", "toggle_walls"),
   {
     name: "remove_stone",
-    label: "Remove the stone",
+    label: { one: "Remove the stone", several: "Remove the chosen stone" },
     key: "delete",
     code: "Delete",
     repeats: false,
@@ -73,6 +78,16 @@ export const ACTIONS: readonly Action[] = [
   },
   letter("put_back_stone", "U", "Take a removal back", { kind: "stones", command: "putBack" }),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
+  {
+    name: "keys",
+    label: "All keys",
+    key: "?",
+    code: "F1",
+    repeats: false,
+    effect: { kind: "page", command: "showKeys" },
+  },
+  letter("hide", "H", "Hide all but the picture", { kind: "page", command: "hideAll" }),
+  letter("full", "E", "Fill the screen", { kind: "page", command: "fillScreen" }),
 ];
 
 const KEY_NAMES: Record<string, string> = {
@@ -83,9 +98,14 @@ const KEY_NAMES: Record<string, string> = {
   delete: "Del",
 };
 
-/** "Reset the camera  [F]" */
-export function labelWithKey(action: Pick<Action, "label" | "key">): string {
-  return `${action.label}  [${KEY_NAMES[action.key] ?? action.key.toUpperCase()}]`;
+/** A key as it is printed. */
+export function keyName({ key }: Pick<Action, "key">): string {
+  return KEY_NAMES[key] ?? key.toUpperCase();
+}
+
+/** "Reset the camera  [F]": the label for a scene, with its key as it is printed. */
+export function labelWithKey(action: Pick<Action, "label" | "key">, scene: JsonObject | null = null): string {
+  return `${worded(action.label, scene)}  [${keyName(action)}]`;
 }
 
 /** The action of that name; throws if there is none. */

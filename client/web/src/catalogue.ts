@@ -8,18 +8,23 @@ export interface Catalogued {
   summary: string;
 }
 
-export interface Preset extends Catalogued {
-  /** What people call it. */
+/** Something of which a scene's name is not what people call it. */
+export interface Titled extends Catalogued {
   title: string;
+}
+
+export interface Preset extends Titled {
   group: string;
   /** Address of a small picture. */
   thumbnail: string;
   scene: JsonObject;
 }
 
-export interface Material extends Catalogued {
+export interface Material extends Titled {
   /** It absorbs by a spectrum of its own. */
   coloured: boolean;
+  /** Indices of refraction for red, green and blue. */
+  indices: readonly [number, number, number];
 }
 
 /** An uploaded mesh or sky: its id for the scene, and sentences about it for the user. */

@@ -1,20 +1,23 @@
 /** The panel's choices about the picture: material, sky and optics. */
 
-import type { Controller, GUI } from "lil-gui";
-import type { Catalogued, Material } from "./catalogue";
+import type { Material, Titled } from "./catalogue";
+import { Choice, type Option } from "./controls/choice";
+import type { Section } from "./controls/section";
+import type { Clamped } from "./controls/slider";
+import { Toggle } from "./controls/toggle";
 import { LiveControls } from "./live-controls";
-import { describeOptions } from "./option-titles";
 import {
   BANDS,
   type Choices,
   CUTOFFS,
   choicesOf,
   ENDS,
-  ENDS_SAID,
+  materialOption,
+  NOTHING_CHOSEN,
+  OWN_INDICES,
   patchOf,
   SKIES,
   TONE_MAPS,
-  TONE_MAPS_SAID,
 } from "./scene-choices";
 import { SizeControl } from "./size-control";
 import { imageSky, SkyChoice } from "./sky-choice";
@@ -23,7 +26,7 @@ import type { ViewState } from "./view-state";
 
 type Values = Record<string, unknown>;
 
-const HINTS: Partial<Record<keyof Choices, string>> = {
+const HINTS = {
   bands: "Wavelengths that are followed. 3: one each of red, green and blue; more spread the fire into a spectrum",
   polarised: "Follow how reflections polarise the light; without it, light is averaged at each one",
   cutoff: "Light that brings less than this part of what it began with is followed no further",
@@ -31,72 +34,67 @@ const HINTS: Partial<Record<keyof Choices, string>> = {
   toneMap: "How radiance becomes the colours of the screen",
 };
 
+/** The sections of the panel that the choices go into: about the stone, about what is around it, and how light is followed. */
+export interface Sections {
+  stone: Section;
+  surroundings: Section;
+  optics: Section;
+}
+
 export class ChoicePanel {
   private readonly controls: LiveControls<Choices>;
-  private readonly skies: Values = { ...SKIES };
+  private readonly material = new Choice<string>("Material", [OWN_INDICES], NOTHING_CHOSEN.material);
+  private readonly sky = new Choice<string>("Sky", SKIES, NOTHING_CHOSEN.sky);
   private readonly size: SizeControl;
-  private readonly sky = new SkyChoice();
+  private readonly studio = new SkyChoice();
+  private skies: readonly Option<string>[] = SKIES;
   private scene: ViewState["scene"] = null;
 
-  /** Material and sky go into one folder, how light is followed into another. */
-  constructor(subject: GUI, optics: GUI, send: (patch: Values) => void) {
+  constructor({ stone, surroundings, optics }: Sections, send: (patch: Values) => void, clamped: Clamped) {
     this.controls = new LiveControls<Choices>(
       () => choicesOf(this.scene),
-      (name, value) => send(name === "sky" ? this.skyPatch(value) : patchOf(this.scene, name, value)),
+      (name, value) => send(name === "sky" ? this.skyPatch(String(value)) : patchOf(this.scene, name, value)),
     );
-    this.add(subject, "material", "Material", {});
-    this.size = new SizeControl(subject, send);
-    this.add(subject, "sky", "Sky", this.skies);
-    this.add(optics, "bands", "Bands", BANDS);
-    this.add(optics, "polarised", "Polarised");
-    this.add(optics, "cutoff", "Cut-off", CUTOFFS);
-    describeOptions(this.add(optics, "end", "Below it", ENDS), ENDS_SAID);
-    describeOptions(this.add(optics, "toneMap", "Tone map", TONE_MAPS), TONE_MAPS_SAID);
+    this.controls.listen("material", stone.add(this.material));
+    this.size = new SizeControl(stone, send, clamped);
+    this.controls.listen("sky", surroundings.add(this.sky));
+    const numbers = (values: readonly number[]) => values.map((value) => ({ label: String(value), value }));
+    const { bands, polarised, cutoff, end, toneMap } = HINTS;
+    const none = NOTHING_CHOSEN;
+    this.controls.listen("bands", optics.add(new Choice("Bands", numbers(BANDS), none.bands)).hint(bands));
+    this.controls.listen("polarised", optics.add(new Toggle("Polarised")).hint(polarised));
+    this.controls.listen("cutoff", optics.add(new Choice("Cut-off", numbers(CUTOFFS), none.cutoff)).hint(cutoff));
+    this.controls.listen("end", optics.add(new Choice("Below it", ENDS, none.end)).hint(end));
+    this.controls.listen("toneMap", optics.add(new Choice("Tone map", TONE_MAPS, none.toneMap)).hint(toneMap));
   }
 
   update({ scene }: ViewState): void {
     this.scene = scene;
-    this.sky.see(scene);
+    this.studio.see(scene);
     this.controls.display();
-    this.controls.controllers.get("material")?.show(hasStone(scene));
+    this.material.show(hasStone(scene));
     this.size.update({ scene });
   }
 
   /** The merge patch for a sky. */
   skyPatch(sky: string): Values {
-    return this.sky.patch(this.scene, sky);
+    return this.studio.patch(this.scene, sky);
   }
 
   /** Another scene comes. */
   forgetSky(): void {
-    this.sky.forget();
+    this.studio.forget();
   }
 
-  addMaterials(materials: Material[]): void {
-    this.offer("material", Object.fromEntries(materials.map(({ name }) => [name, name])), materials);
+  addMaterials(materials: readonly Material[]): void {
+    this.material.offer(materials.map((material) => materialOption(material)));
     this.size.setColoured(materials.filter(({ coloured }) => coloured).map(({ name }) => name));
   }
 
-  /** Skies of the studio, or one that was uploaded under its file's name. */
-  addSkies(skies: Catalogued[], id = (sky: Catalogued) => sky.name): void {
-    for (const sky of skies) this.skies[sky.name] = imageSky(id(sky));
-    this.offer("sky", this.skies, skies);
-  }
-
-  private add(folder: GUI, name: keyof Choices, label: string, options?: Values | number[]): Controller {
-    const { shown } = this.controls;
-    const controller = options ? folder.add(shown, name, options) : folder.add(shown, name);
-    this.controls.listen(name, controller.name(label));
-    controller.domElement.title = HINTS[name] ?? "";
-    return controller;
-  }
-
-  private offer(name: keyof Choices, options: Values, described: Catalogued[]): void {
-    const controller = this.controls.controllers.get(name);
-    if (!controller) return;
-    const renewed = controller.options(options);
-    this.controls.listen(name, renewed);
-    describeOptions(renewed, described);
-    renewed.show(name !== "material" || hasStone(this.scene)).updateDisplay();
+  /** Skies of the studio, or one that was uploaded: its title is its file's name. */
+  addSkies(skies: readonly Titled[]): void {
+    const offered = skies.map(({ name, title, summary }) => ({ label: title, value: imageSky(name), summary }));
+    this.skies = [...this.skies, ...offered];
+    this.sky.offer(this.skies);
   }
 }

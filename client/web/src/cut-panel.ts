@@ -1,7 +1,9 @@
 /** The panel's sliders for the proportions of the stone's cut; hidden for a mesh, which has none. */
 
-import type { GUI } from "lil-gui";
 import type { CutKind } from "./catalogue";
+import { Command } from "./controls/command";
+import type { Section } from "./controls/section";
+import { type Clamped, Slider } from "./controls/slider";
 import { cutName, cutOf, cutPatch, type Proportion, proportionsOf } from "./cut";
 import { LiveControls } from "./live-controls";
 import { stonePatch } from "./stones";
@@ -10,20 +12,22 @@ import type { ViewState } from "./view-state";
 const STEP = 0.05;
 
 export class CutPanel {
-  private readonly folder: GUI;
+  private readonly section: Section;
+  private readonly clamped: Clamped;
   private readonly send: (patch: Record<string, unknown>) => void;
   private controls: LiveControls<Record<string, number>> | null = null;
   private cut = "";
   private scene: ViewState["scene"] = null;
 
-  constructor(folder: GUI, send: (patch: Record<string, unknown>) => void) {
-    this.folder = folder.hide();
+  constructor(section: Section, send: (patch: Record<string, unknown>) => void, clamped: Clamped) {
+    this.section = section.show(false);
     this.send = send;
+    this.clamped = clamped;
   }
 
   update({ scene }: ViewState): void {
     this.scene = scene;
-    this.folder.show(this.controls !== null && cutName(scene) === this.cut);
+    this.section.show(this.controls !== null && cutName(scene) === this.cut);
     this.controls?.display();
   }
 
@@ -36,13 +40,12 @@ export class CutPanel {
     );
     for (const proportion of proportions) this.addSlider(this.controls, proportion);
     const reset = () => this.send(stonePatch(this.scene, { cut: cut.name }));
-    this.folder.add({ reset }, "reset").name("The usual proportions");
+    this.section.add(new Command("The usual proportions", reset));
     this.update(state);
   }
 
   private addSlider(controls: LiveControls<Record<string, number>>, { name, label, least, most, hint }: Proportion) {
-    const controller = this.folder.add(controls.shown, name, least, most, STEP).decimals(2).name(label);
-    controller.domElement.title = hint;
-    controls.listen(name, controller);
+    const slider = new Slider(label, { least, most, step: STEP, decimals: 2 }, this.clamped);
+    controls.listen(name, this.section.add(slider).hint(hint));
   }
 }

@@ -3,14 +3,15 @@
 import { actionNamed, labelWithKey } from "./actions";
 import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
+import { worded } from "./wording";
 
-export const FALL = "Let the stone fall";
+export const FALL = { one: "Let the stone fall", several: "Let the stones fall" };
 export const PAUSE = "Pause the fall";
 
 /** What the button does next, or null if there is no stone. */
 export function fallLabel({ scene, falling, asleep }: Pick<ViewState, "scene" | "falling" | "asleep">): string | null {
   if (!hasStone(scene)) return null;
-  return falling && !asleep ? PAUSE : FALL;
+  return worded(falling && !asleep ? PAUSE : FALL, scene);
 }
 
 export class FallButton {

@@ -1,15 +1,18 @@
 /** The panel's sliders and lists about the fall. They act while the stone falls. */
 
-import type { GUI } from "lil-gui";
-import type { Catalogued } from "./catalogue";
+import type { Titled } from "./catalogue";
+import { Choice, optionsOf } from "./controls/choice";
+import type { Section } from "./controls/section";
+import { type Clamped, Slider } from "./controls/slider";
 import { type Direction, type Fall, fallOf, fallPatch, MODELS, OF_RIGID, spinAxis } from "./fall";
 import { LiveControls } from "./live-controls";
-import { describeOptions } from "./option-titles";
 import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
 
-interface Slider {
-  name: keyof Fall;
+type Name = "height" | "spin" | "gravity" | "restitution" | "friction" | "rolling";
+
+interface Setting {
+  name: Name;
   label: string;
   /** What a scene says may be beyond: then the number is right and the slider is at its end. */
   most: number;
@@ -17,7 +20,7 @@ interface Slider {
   hint: string;
 }
 
-const SLIDERS: readonly Slider[] = [
+const SLIDERS: readonly Setting[] = [
   { name: "height", label: "Drop height, R", most: 8, step: 0.05, hint: "From the floor to the bounding sphere" },
   { name: "spin", label: "Spin, rad/s", most: 30, step: 0.1, hint: "At the start, about the axis that the scene has" },
   { name: "gravity", label: "Gravity, R/s\u00b2", most: 30, step: 0.1, hint: "R is the stone's radius" },
@@ -26,51 +29,44 @@ const SLIDERS: readonly Slider[] = [
   { name: "rolling", label: "Rolling resistance", most: 0.5, step: 0.005, hint: "As a lever arm, R" },
 ];
 
+/** What a list is before the server said what there is to choose from. */
+const NOT_KNOWN = "";
+
 export class FallPanel {
   private readonly controls: LiveControls<Fall>;
-  private readonly folder: GUI;
+  private readonly section: Section;
+  private readonly sliders: ReadonlyMap<Name, Slider>;
+  private readonly integrator = new Choice<string>("Integrator", [], NOT_KNOWN);
   private scene: ViewState["scene"] = null;
   private axis: Direction | undefined;
 
-  constructor(folder: GUI, send: (patch: Record<string, unknown>) => void) {
-    this.folder = folder;
+  constructor(section: Section, send: (patch: Record<string, unknown>) => void, clamped: Clamped) {
+    this.section = section;
     this.controls = new LiveControls<Fall>(
       () => fallOf(this.scene),
       (name, value) => send(fallPatch(this.scene, name, value, this.axis)),
     );
-    for (const slider of SLIDERS) this.addSlider(slider);
-    const { shown } = this.controls;
-    this.controls.listen("model", folder.add(shown, "model", MODELS).name("Model"));
-    this.controls.listen("integrator", folder.add(shown, "integrator", {}).name("Integrator"));
+    this.sliders = new Map(
+      SLIDERS.map(({ name, label, most, step, hint }) => {
+        const slider = new Slider(label, { least: 0, most, step, decimals: step < 0.01 ? 3 : 2 }, clamped);
+        this.controls.listen(name, section.add(slider).hint(hint));
+        return [name, slider];
+      }),
+    );
+    this.controls.listen("model", section.add(new Choice<string>("Model", optionsOf(MODELS), NOT_KNOWN)));
+    this.controls.listen("integrator", section.add(this.integrator));
   }
 
   update({ scene }: ViewState): void {
     this.scene = scene;
     this.axis = spinAxis(scene) ?? this.axis; // so that a spin that was taken down to 0 comes back as it was
-    this.folder.show(hasStone(scene));
-    this.display();
-  }
-
-  addIntegrators(integrators: Catalogued[]): void {
-    const names = Object.fromEntries(integrators.map(({ name }) => [name, name]));
-    const controller = this.controls.controllers.get("integrator")?.options(names);
-    if (!controller) return;
-    this.controls.listen("integrator", controller);
-    describeOptions(controller, integrators);
-    this.display();
-  }
-
-  private addSlider({ name, label, most, step, hint }: Slider): void {
-    const controller = this.folder
-      .add(this.controls.shown, name, 0, most, step)
-      .decimals(step < 0.01 ? 3 : 2)
-      .name(label);
-    controller.domElement.title = hint;
-    this.controls.listen(name, controller);
-  }
-
-  private display(): void {
+    this.section.show(hasStone(scene));
     this.controls.display();
-    for (const name of OF_RIGID) this.controls.controllers.get(name)?.enable(this.controls.shown.model === "rigid");
+    const rigid = this.controls.shown.model === "rigid";
+    for (const name of OF_RIGID) (name === "integrator" ? this.integrator : this.sliders.get(name))?.enable(rigid);
+  }
+
+  addIntegrators(integrators: readonly Titled[]): void {
+    this.integrator.offer(integrators.map(({ name, title, summary }) => ({ label: title, value: name, summary })));
   }
 }

@@ -22,7 +22,7 @@ export interface Fall {
 export type Direction = readonly [number, number, number];
 
 /** The settings that the report's model does not know. */
-export const OF_RIGID: readonly (keyof Fall)[] = ["friction", "rolling", "integrator"];
+export const OF_RIGID = ["friction", "rolling", "integrator"] as const;
 
 export const MODELS = { "rigid body": "rigid", "the report's": "classic" };
 

@@ -102,6 +102,11 @@ describe("a key belongs to", () => {
     expect(keepsKey({ ...element("BUTTON"), closest: () => ({}) as Element }, key)).toBe(true);
   });
 
+  it("the slider that has the focus, if it is an arrow key, and the page if it is a letter", () => {
+    expect(keepsKey(element("INPUT", "range"), "ArrowLeft")).toBe(true);
+    expect(keepsKey(element("INPUT", "range"), "p")).toBe(false);
+  });
+
   it("the page, if it is a letter on a list that is folded", () => {
     expect(keepsKey(element("SELECT"), "p")).toBe(false);
     expect(keepsKey(element("SELECT", "", true), "p")).toBe(true);

@@ -22,7 +22,7 @@ export function actionOf(press: KeyPress): Action | null {
 
 const NOT_TEXT = new Set(["button", "checkbox", "color", "file", "image", "radio", "reset", "submit"]);
 
-/** Keys that walk through a list, whatever they mean elsewhere. */
+/** Keys that walk through a list or along a slider, whatever they mean elsewhere. */
 const WALKING = new Set(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]);
 
 type Focused = Pick<HTMLElement, "tagName" | "isContentEditable"> & {
@@ -31,9 +31,10 @@ type Focused = Pick<HTMLElement, "tagName" | "isContentEditable"> & {
   matches: (selector: string) => boolean;
 };
 
-/** Whether a key press is that of the element that has the focus, a text field or a list of choices, and so not ours. */
+/** Whether a key press is that of the element that has the focus, a text field, a slider or a list of choices, and so not ours. */
 export function keepsKey(element: Focused, key: string): boolean {
   if (element.isContentEditable || element.tagName === "TEXTAREA") return true;
+  if (element.tagName === "INPUT" && element.type === "range") return WALKING.has(key);
   if (element.tagName === "INPUT") return !NOT_TEXT.has(element.type ?? "text");
   if (element.tagName === "SELECT") return WALKING.has(key) || isOpen(element);
   return WALKING.has(key) && element.closest(LIST) !== null;
@@ -51,7 +52,7 @@ function isOpen(list: Focused): boolean {
   }
 }
 
-/** Listen while the page lives. In the capture phase, because the panel keeps key presses to itself. */
+/** Listen while the page lives. In the capture phase, so that nothing can keep key presses to itself. */
 export function listenToKeys(target: Window, perform: (action: Action) => void): void {
   target.addEventListener(
     "keydown",

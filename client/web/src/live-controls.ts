@@ -1,6 +1,6 @@
 /** Sliders and lists that act while a finger is on them, once a picture at most, and otherwise show what is. */
 
-import type { Controller } from "lil-gui";
+import type { Control } from "./controls/control";
 
 /**
  * For so long after it was let go, a slider or list stays where it is: what the server says of it may still be on its way,
@@ -9,38 +9,41 @@ import type { Controller } from "lil-gui";
 const ECHO_MS = 500;
 
 export class LiveControls<T extends object> {
-  /** What the controllers show; they are made on it. */
+  /** What the controls show. */
   readonly shown: T;
-  readonly controllers = new Map<keyof T, Controller>();
+  private readonly controls = new Map<keyof T, Control<T[keyof T]>>();
   /** Show where the finger is or was, not what the server last said; with the timer that ends this, if let go. */
   private readonly held = new Map<keyof T, ReturnType<typeof setTimeout> | undefined>();
-  private readonly waiting = new Map<keyof T, never>();
+  private readonly waiting = new Map<keyof T, T[keyof T]>();
   private readonly now: () => T;
-  private readonly send: (name: keyof T, value: never) => void;
+  private readonly send: (name: keyof T, value: T[keyof T]) => void;
 
   /** `now` says what the server last said, `send` asks it for another value. */
-  constructor(now: () => T, send: (name: keyof T, value: never) => void) {
+  constructor(now: () => T, send: (name: keyof T, value: T[keyof T]) => void) {
     this.now = now;
     this.send = send;
     this.shown = { ...now() };
   }
 
-  listen(name: keyof T, controller: Controller): void {
-    this.controllers.set(name, controller);
-    controller.onChange((value: never) => {
+  /** Let a control show and change the value of that name. */
+  listen<K extends keyof T>(name: K, control: Control<T[K]>): void {
+    this.controls.set(name, control as unknown as Control<T[keyof T]>);
+    control.value = this.shown[name];
+    control.onInput((value) => {
       this.hold(name);
+      this.shown[name] = value;
       this.display(); // what is not held shows what is, until the server says that it changed
       if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
       this.waiting.set(name, value);
     });
-    controller.onFinishChange(() => this.letGo(name));
+    control.onSettled(() => this.letGo(name));
   }
 
   display(): void {
     const now = this.now();
     for (const name of this.held.keys()) now[name] = this.shown[name];
     Object.assign(this.shown, now);
-    for (const controller of this.controllers.values()) controller.updateDisplay();
+    for (const [name, control] of this.controls) control.value = this.shown[name];
   }
 
   private hold(name: keyof T, timer?: ReturnType<typeof setTimeout>): void {

@@ -13,12 +13,15 @@ import {
   WAITING,
   WAITING_LONG,
 } from "./banner";
+import { Bareness } from "./bareness";
 import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
 import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
+import { Findings } from "./findings";
 import { framed, framingPatch } from "./framing";
 import { placeOf } from "./gestures";
+import { KeyCard } from "./key-card";
 import { listenToKeys } from "./keys";
 import { Meter } from "./meter";
 import { OutlineView } from "./outline-view";
@@ -34,17 +37,20 @@ import { sessionAddress, streamUrl, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
 import { StoneCommands } from "./stone-commands";
-import { idsOf, stonePatch } from "./stones";
+import { idsOf, stonePatch, stonesOf } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
 import { describeChange, INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
-import { Whereabouts } from "./whereabouts";
+import { Welcome } from "./welcome";
+import { LOOK, Whereabouts } from "./whereabouts";
+import { worded } from "./wording";
 
 const canvas = element("picture", HTMLCanvasElement);
 const banner = new Banner(element("banner", HTMLElement));
 const unseen = new Banner(element("unseen", HTMLElement), element("unseen-text", HTMLElement));
-element("unseen-button", HTMLButtonElement).onclick = () => viewer?.send({ type: "look_at_stone" });
+const unseenButton = element("unseen-button", HTMLButtonElement);
+unseenButton.onclick = () => viewer?.send({ type: "look_at_stone" });
 const waiting = new Banner(element("waiting", HTMLElement));
 const WAITING_LONG_MS = 1500;
 const obstacle = new Obstacle(
@@ -56,11 +62,12 @@ const toasts = new Toasts(element("toasts", HTMLElement));
 const announcement = element("announcement", HTMLElement);
 const statusLine = element("status", HTMLElement);
 const PROBLEMS_KEPT = 100;
+const COME_BACK = "H, Esc or a tap on the picture brings everything back.";
 const problems: string[] = [];
 const files = new OpenedFiles();
 let session: string | null = null;
 let viewer: Viewer | null = null;
-/** Where the stone is, if the picture does not show it. */
+/** Where the stones are, if the picture shows none of them. */
 let elsewhere: string | null = null;
 
 const outline = new OutlineView(element("outline", SVGSVGElement), canvas);
@@ -80,6 +87,12 @@ const stones = new StoneCommands({
   tell: problem,
 });
 
+/** Of one stone all was told when its mesh was opened. */
+const findings = new Findings(
+  async () => (session === null ? [] : (await rest.findSession(session)).findings),
+  (text) => toasts.finding(text),
+);
+
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
@@ -92,16 +105,28 @@ const panel = new Panel(element("panel", HTMLElement), {
   openSky: () => chooseFile(SKY_TYPES, (file) => attempt(() => openSky(file))),
   patch: (patch) => viewer?.send({ type: "patch_scene", patch }),
   newSession: startAnew,
+  clamped,
 });
 const strip = new SceneStrip(element("scenes", HTMLElement), element("scenes-toggle", HTMLButtonElement));
 const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
-const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance));
+const keyCard = new KeyCard(
+  element("keys", HTMLDialogElement),
+  element("keys-table", HTMLTableElement),
+  element("keys-close", HTMLButtonElement),
+);
+const welcome = new Welcome(element("welcome", HTMLElement));
+const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(COME_BACK));
+const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance), clamped);
 listenToKeys(window, perform);
 listenToPointers(
   canvas,
   () => viewer?.state.target ?? INITIAL.target,
   (event) => viewer?.send(event),
   (x, y) => {
+    if (bareness.on) {
+      bareness.toggle();
+      return;
+    }
     const at = placeOf(x, y, screen.area);
     if (idsOf(viewer?.state.scene ?? null).length > 1) chosen.pick(at.x, at.y);
   },
@@ -110,10 +135,29 @@ listenToPointers(
 
 function perform({ effect }: Action): void {
   if (effect.kind === "download") attempt(() => savePicture(effect.format));
+  else if (effect.kind === "page") onPage[effect.command]();
   else if (!viewer) problem("There is no session yet.");
   else if (effect.kind === "stones") stones[effect.command]();
   else if (effect.kind === "select") viewer.select(effect.target);
   else viewer.send(effect.event(viewer.state.target));
+}
+
+/** What changes the page alone. */
+const onPage = {
+  showKeys: () => keyCard.toggle(),
+  hideAll: () => bareness.toggle(),
+  fillScreen: () =>
+    attempt(() =>
+      document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen(),
+    ),
+};
+window.addEventListener("keydown", ({ key }) => {
+  if (key === "Escape" && bareness.on) bareness.toggle();
+});
+
+/** A number was typed that is beyond what a slider can be at. */
+function clamped(typed: number, taken: number): void {
+  toasts.note(`${typed} is beyond the slider: ${taken} is taken.`);
 }
 
 /** Run what may be refused, and tell the user why. */
@@ -177,14 +221,19 @@ async function openSky(file: File): Promise<void> {
   files.keep(sky.id, file, rest.uploadSky);
   const summary = sky.findings.join("\n");
   toasts.finding(`${file.name}:\n${summary}`);
-  panel.choices.addSkies([{ name: file.name, summary }], () => sky.id);
+  panel.choices.addSkies([{ name: sky.id, title: file.name, summary }]);
   viewer?.send({ type: "patch_scene", patch: panel.choices.skyPatch(imageSky(sky.id)) });
 }
 
 function choosePreset({ scene }: Preset): void {
   panel.choices.forgetSky();
   stones.forget();
-  viewer?.send({ type: "set_scene", scene: framed(scene, window.innerWidth / window.innerHeight) });
+  viewer?.send({ type: "set_scene", scene: framed(scene, aspect()) });
+}
+
+/** Of what the picture covers: width by height. */
+function aspect(): number {
+  return canvas.clientWidth / Math.max(canvas.clientHeight, 1);
 }
 
 function startAnew(): void {
@@ -244,8 +293,10 @@ async function leaveIfUnknown(id: string): Promise<void> {
 
 function stateChanged(before: ViewState, after: ViewState): void {
   chosen.there(idsOf(after.scene));
+  if (stonesOf(after.scene).length > 1 && after.scene?.stones !== before.scene?.stones) findings.changed();
   panel.update(viewer?.state ?? after);
   fallButton.update(after);
+  unseenButton.textContent = worded(LOOK, after.scene);
   meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
@@ -262,8 +313,9 @@ function watch(id: string): void {
     show: (picture, frame, arrival) => {
       screen.show(picture);
       clearTimeout(timer);
+      if (viewer?.player.shown === 0) welcome.show();
       waiting.show(null);
-      elsewhere = whereabouts.after(frame, arrival.time);
+      elsewhere = whereabouts.after(frame, arrival.time, viewer?.state.scene ?? null);
       if (viewer) showBanner(viewer.stream.connection);
       meter.take(frame, arrival);
       chosen.shown(frame.step, arrival.time);
@@ -282,7 +334,7 @@ function watch(id: string): void {
 /** The id of a session that is made for this window. */
 async function newSession(preset?: string): Promise<string> {
   const { id, scene } = await rest.createSession(preset);
-  const patch = framingPatch(scene, window.innerWidth / window.innerHeight);
+  const patch = framingPatch(scene, aspect());
   if (patch) await rest.patchSession(id, patch);
   return id;
 }

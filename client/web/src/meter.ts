@@ -2,9 +2,12 @@
 
 import type { Frame } from "@culet/protocol/frame";
 import type { Balance } from "@culet/protocol/messages";
-import { GUI } from "lil-gui";
 import "./meter.css";
 import { askedRate, type BalanceShown, balanceText, settingsText } from "./balance";
+import { Hints } from "./controls/hints";
+import { Section } from "./controls/section";
+import { type Clamped, Slider } from "./controls/slider";
+import { Toggle } from "./controls/toggle";
 import { type Arrival, FrameHistory } from "./frame-history";
 import { LiveControls } from "./live-controls";
 import type { Plots } from "./plots";
@@ -12,11 +15,14 @@ import { INITIAL, type ViewState } from "./view-state";
 
 const WIDTH = 330;
 const MARGIN = 12;
+const EXACTNESS = { least: 0, most: 1, step: 0.05, decimals: 2 };
+const EXACTNESS_HINT = "0: many frames a second; 1: few and good ones. For all viewers of this session";
+const PINNED_HINT = "Moving frames keep this quality, however long they take";
 /** Between two drawings of the plots. */
 const DRAW_MS = 100;
 
 export class Meter {
-  private readonly gui: GUI;
+  private readonly section = new Section("Speed and exactness", 2);
   private readonly controls: LiveControls<BalanceShown>;
   private state: BalanceShown = balanceOf(INITIAL);
   private readonly meaning = paragraph();
@@ -28,22 +34,21 @@ export class Meter {
   private open = false;
   private drawing: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(container: HTMLElement, send: (balance: Balance) => void) {
-    this.gui = new GUI({ container, title: "Speed and exactness", injectStyles: false, width: WIDTH }).close();
+  constructor(container: HTMLElement, send: (balance: Balance) => void, clamped: Clamped) {
+    this.section.fold(true);
     this.controls = new LiveControls<BalanceShown>(
       () => ({ ...this.state }),
       (name, value) => send({ type: "balance", ...this.controls.shown, [name]: value }),
     );
-    const { shown } = this.controls;
-    const exactness = this.gui.add(shown, "exactness", 0, 1, 0.05).name("Exactness");
-    exactness.domElement.title = "0: many frames a second; 1: few and good ones. For all viewers of this session";
-    const pinned = this.gui.add(shown, "pinned").name("Pin the quality");
-    pinned.domElement.title = "Moving frames keep this quality, however long they take";
-    this.controls.listen("exactness", exactness);
-    this.controls.listen("pinned", pinned);
+    const exactness = this.section.add(new Slider("Exactness", EXACTNESS, clamped));
+    const pinned = this.section.add(new Toggle("Pin the quality"));
+    this.controls.listen("exactness", exactness.hint(EXACTNESS_HINT));
+    this.controls.listen("pinned", pinned.hint(PINNED_HINT));
     this.figures.className = "figures";
-    this.gui.$children.append(this.meaning, this.settings, this.figures);
-    this.gui.onOpenClose(() => this.fold());
+    this.section.body.append(this.meaning, this.settings, this.figures);
+    this.section.onFold((open) => this.fold(open));
+    this.section.element.append(new Hints(this.section.element).element);
+    container.append(this.section.element);
     window.addEventListener("resize", () => this.plots?.resize(this.width));
     this.display();
   }
@@ -65,8 +70,8 @@ export class Meter {
     return Math.min(WIDTH, window.innerWidth) - MARGIN;
   }
 
-  private fold(): void {
-    this.open = !this.gui._closed;
+  private fold(open: boolean): void {
+    this.open = open;
     if (!this.open) this.history.clear();
     else if (!this.plots) void this.load();
   }

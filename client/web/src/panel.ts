@@ -1,17 +1,21 @@
-/** The panel: every action with its key, the state, and files. */
+/** The panel: every action with its key, the state, and files. What most want is first, numbers and optics are last. */
 
-import { type Controller, GUI } from "lil-gui";
-// By its path, since the package does not export it: a style sheet of our own origin instead of one that a script writes.
-import "../node_modules/lil-gui/dist/lil-gui.css";
+import "./controls/controls.css";
 import { type Action, actionNamed, labelWithKey } from "./actions";
 import type { CutKind } from "./catalogue";
 import { ChoicePanel } from "./choice-panel";
+import { Choice } from "./controls/choice";
+import { Command } from "./controls/command";
+import { Hints } from "./controls/hints";
+import { Section } from "./controls/section";
+import { Toggle } from "./controls/toggle";
 import { CutPanel } from "./cut-panel";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { withFirst } from "./stones";
 import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
+import { worded } from "./wording";
 
 export interface PanelActions {
   perform: (action: Action) => void;
@@ -25,51 +29,70 @@ export interface PanelActions {
   openSky: () => void;
   patch: (patch: Record<string, unknown>) => void;
   newSession: () => void;
+  /** A number was typed that is beyond a slider's ends. */
+  clamped: (typed: number, taken: number) => void;
 }
 
 const MOVES = ["left", "right", "up", "down", "in", "out"];
-const SWITCHES = { falling: "fall", mirror: "mirror", light: "sky", walls: "walls" } as const;
-const SWITCH_LABELS = { falling: "Falling", mirror: "Mirror", light: "Light sky", walls: "Walls" } as const;
+const TARGETS = ["camera", "light_1", "light_2"] as const;
+const STONE = { one: "Stone", several: "Stones" };
 const NARROW = 640;
+
+type Shown = Pick<ViewState, "falling" | "mirror" | "light" | "walls">;
 
 export class Panel {
   readonly choices: ChoicePanel;
   readonly fall: FallPanel;
   private readonly stones: StonePanel;
   private readonly cut: CutPanel;
-  private readonly gui: GUI;
-  private readonly files: GUI;
   private readonly actions: PanelActions;
-  private readonly shown = { target: "camera" as Target, falling: false, mirror: false, light: false, walls: false };
-  private readonly displays: Controller[] = [];
+  private readonly target: Choice<Target>;
+  private readonly toggles: [keyof Shown, Toggle][] = [];
+  /** Those whose labels tell how many stones they act on. */
+  private readonly counted: [Command, Action][] = [];
+  private readonly stone: Section;
   private state: ViewState | null = null;
 
   constructor(container: HTMLElement, actions: PanelActions) {
     this.actions = actions;
-    this.gui = new GUI({ container, title: "culet", injectStyles: false });
-    this.addMoves();
-    this.stones = new StonePanel(this.gui.addFolder("Stones"), actions.perform, actions.stones);
-    const surroundings = this.addSwitches();
-    this.cut = new CutPanel(this.gui.addFolder("Cut").close(), actions.patch);
-    this.fall = new FallPanel(this.gui.addFolder("Fall").close(), actions.patch);
-    this.choices = new ChoicePanel(surroundings, this.gui.addFolder("Optics").close(), actions.patch);
-    this.files = this.gui.addFolder("Pictures and scenes");
-    this.addButton(this.files, actionNamed("download"));
-    this.addCommand(this.files, "Save the picture (.tga)", () => actions.saveTarga());
-    this.addCommand(this.files, "Save the scene (.json)", () => actions.saveScene());
-    this.addCommand(this.files, "Open a scene\u2026", () => actions.openScene());
-    this.addCommand(this.files, "Open a mesh\u2026", () => actions.openMesh());
-    this.addCommand(this.files, "Open a sky\u2026", () => actions.openSky());
-    this.addCommand(this.files, "New session", () => actions.newSession());
-    if (window.innerWidth < NARROW) for (const folder of [this.gui, ...this.gui.folders]) folder.close();
+    const root = new Section("culet", 1);
+    const stone = root.section(STONE.one);
+    const surroundings = root.section("Surroundings");
+    const move = root.section("Move");
+    const cut = root.section("Cut").fold(true);
+    const fall = root.section("Fall").fold(true);
+    const optics = root.section("Optics").fold(true);
+    const files = root.section("Pictures and scenes");
+    const page = root.section("Help and page");
+    this.stone = stone;
+    this.choices = new ChoicePanel({ stone, surroundings, optics }, actions.patch, actions.clamped);
+    this.addToggle(stone, "falling", "fall", "Falling");
+    this.addButton(stone, actionNamed("reset_stone"));
+    this.stones = new StonePanel(stone, actions.perform, actions.stones);
+    this.addToggle(surroundings, "mirror", "mirror", "Mirror");
+    this.addToggle(surroundings, "light", "sky", "Light sky");
+    this.addToggle(surroundings, "walls", "walls", "Walls");
+    this.target = this.addMoves(move);
+    this.cut = new CutPanel(cut, actions.patch, actions.clamped);
+    this.fall = new FallPanel(fall, actions.patch, actions.clamped);
+    this.addFiles(files);
+    this.addButton(page, actionNamed("keys"));
+    this.addButton(page, actionNamed("hide"));
+    this.addButton(page, actionNamed("full")).show(document.fullscreenEnabled);
+    if (window.innerWidth < NARROW) {
+      for (const section of [root, stone, surroundings, move, files, page]) section.fold(true);
+    }
+    root.element.append(new Hints(root.element).element);
+    container.append(root.element);
   }
 
   update(state: ViewState): void {
     this.state = state;
-    const { target, mirror, light, walls } = state;
-    const falling = state.falling && !state.asleep;
-    Object.assign(this.shown, { target, falling, mirror, light, walls });
-    for (const display of this.displays) display.updateDisplay();
+    const shown = { ...state, falling: state.falling && !state.asleep };
+    this.target.value = state.target;
+    for (const [name, toggle] of this.toggles) toggle.value = shown[name];
+    for (const [button, action] of this.counted) button.label(labelWithKey(action, state.scene));
+    this.stone.title(worded(STONE, state.scene));
     this.stones.update(state, this.actions.removals());
     const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
     this.fall.update(chosen);
@@ -81,42 +104,41 @@ export class Panel {
     this.cut.addCut(cut, this.state ?? INITIAL);
   }
 
-  private addMoves(): void {
-    const folder = this.gui.addFolder("Move");
-    const targets = Object.fromEntries(
-      (["camera", "light_1", "light_2"] as const).map((target) => {
-        return [labelWithKey({ ...actionNamed(target), label: TARGET_NAMES[target] }), target];
-      }),
-    );
-    const target = folder.add(this.shown, "target", targets).name("What");
-    target.onChange((name: Target) => this.actions.perform(actionNamed(name)));
-    this.displays.push(target);
-    const buttons = MOVES.map((name) => this.addButton(folder, actionNamed(name)));
-    for (const button of buttons) button.domElement.classList.add("half");
-    this.addButton(folder, actionNamed("reset_camera"));
+  private addMoves(section: Section): Choice<Target> {
+    const options = TARGETS.map((target) => {
+      return { label: labelWithKey({ ...actionNamed(target), label: TARGET_NAMES[target] }), value: target };
+    });
+    const target = section.add(new Choice<Target>("What", options, "camera"));
+    target.onInput((name) => this.actions.perform(actionNamed(name)));
+    for (const name of MOVES) this.addButton(section, actionNamed(name)).element.classList.add("half");
+    this.addButton(section, actionNamed("reset_camera"));
+    return target;
   }
 
-  private addSwitches(): GUI {
-    const folder = this.gui.addFolder("Stone and surroundings");
-    for (const name of ["falling", "mirror", "light", "walls"] as const) {
-      const action = actionNamed(SWITCHES[name]);
-      const label = labelWithKey({ label: SWITCH_LABELS[name], key: action.key });
-      const display = folder.add(this.shown, name).name(label);
-      display.onChange(() => {
-        if (this.state) this.update(this.state); // shows what is, until the server says that it changed
-        this.actions.perform(action);
-      });
-      this.displays.push(display);
-    }
-    this.addButton(folder, actionNamed("reset_stone"));
-    return folder;
+  private addFiles(section: Section): void {
+    const button = (label: string, act: () => void) => section.add(new Command(label, act));
+    this.addButton(section, actionNamed("download"));
+    button("Save the picture (.tga)", () => this.actions.saveTarga());
+    button("Save the scene (.json)", () => this.actions.saveScene());
+    button("Open a scene\u2026", () => this.actions.openScene());
+    button("Open a mesh\u2026", () => this.actions.openMesh());
+    button("Open a sky\u2026", () => this.actions.openSky());
+    button("New session", () => this.actions.newSession());
   }
 
-  private addButton(folder: GUI, action: Action): Controller {
-    return this.addCommand(folder, labelWithKey(action), () => this.actions.perform(action));
+  private addToggle(section: Section, name: keyof Shown, command: string, label: string): void {
+    const action = actionNamed(command);
+    const toggle = section.add(new Toggle(labelWithKey({ label, key: action.key })));
+    toggle.onInput(() => {
+      if (this.state) this.update(this.state); // shows what is, until the server says that it changed
+      this.actions.perform(action);
+    });
+    this.toggles.push([name, toggle]);
   }
 
-  private addCommand(folder: GUI, label: string, act: () => void): Controller {
-    return folder.add({ act }, "act").name(label);
+  private addButton(section: Section, action: Action): Command {
+    const button = section.add(new Command(labelWithKey(action), () => this.actions.perform(action)));
+    if (typeof action.label !== "string") this.counted.push([button, action]);
+    return button;
   }
 }

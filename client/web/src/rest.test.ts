@@ -57,6 +57,13 @@ it("tells an unknown session by its status", async () => {
   await expect(findSession("abc")).rejects.toMatchObject({ status: 404 });
 });
 
+it("reads what was found in the scene of a session, which older servers do not say", async () => {
+  answering(200, { id: "abc", findings: ["two stones overlap"] });
+  expect(await findSession("abc")).toEqual({ findings: ["two stones overlap"] });
+  answering(200, { id: "abc" });
+  expect(await findSession("abc")).toEqual({ findings: [] });
+});
+
 it("says that the server cannot be reached", async () => {
   vi.stubGlobal("fetch", () => Promise.reject(new TypeError("failed to fetch")));
   await expect(findSession("abc")).rejects.toMatchObject({ status: 0, message: "The server cannot be reached." });

@@ -1,7 +1,7 @@
 /** The gateway's REST interface. Errors are problem documents (RFC 9457). */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import type { Catalogued, CutKind, Material, Preset, Upload } from "./catalogue";
+import type { CutKind, Material, Preset, Titled, Upload } from "./catalogue";
 import { object, part } from "./json";
 
 /** An answer other than 2xx; the message is fit to be shown. */
@@ -89,9 +89,11 @@ export async function patchSession(id: string, patch: JsonObject): Promise<void>
   await request(`/api/sessions/${encodeURIComponent(id)}`, { ...post(patch), method: "PATCH" });
 }
 
-/** Ends well if there is such a session; throws ProblemError with status 404 if not. */
-export async function findSession(id: string): Promise<void> {
-  await request(`/api/sessions/${encodeURIComponent(id)}`);
+/** What was found in the scene of a session, a sentence each; throws ProblemError with status 404 if there is none. */
+export async function findSession(id: string): Promise<{ findings: string[] }> {
+  const response = await request(`/api/sessions/${encodeURIComponent(id)}`);
+  const { findings } = object(await response.json());
+  return { findings: Array.isArray(findings) ? findings.map(String) : [] };
 }
 
 /** All that there is of something, under the name that the answer gives it too. */
@@ -114,11 +116,11 @@ export function cuts(): Promise<CutKind[]> {
   return catalogue("cuts");
 }
 
-export function skies(): Promise<Catalogued[]> {
+export function skies(): Promise<Titled[]> {
   return catalogue("skies");
 }
 
-export function integrators(): Promise<Catalogued[]> {
+export function integrators(): Promise<Titled[]> {
   return catalogue("integrators");
 }
 

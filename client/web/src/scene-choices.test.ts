@@ -4,14 +4,14 @@ import {
   type Choices,
   choicesOf,
   ENDS,
-  ENDS_SAID,
+  materialOption,
   NOTHING_CHOSEN,
   patchOf,
+  SKIES,
   sizeMatters,
   sizeOf,
   sizePatch,
   TONE_MAPS,
-  TONE_MAPS_SAID,
 } from "./scene-choices";
 import { imageSky } from "./sky-choice";
 
@@ -83,7 +83,16 @@ describe("the size", () => {
   });
 });
 
-it("explains each end and each tone map by the name that the list has", () => {
-  expect(ENDS_SAID.map(({ name }) => name)).toEqual(Object.keys(ENDS));
-  expect(TONE_MAPS_SAID.map(({ name }) => name)).toEqual(Object.keys(TONE_MAPS));
+it("explains each sky, end and tone map", () => {
+  for (const { label, value, summary } of [...SKIES, ...ENDS, ...TONE_MAPS]) {
+    expect([label, value, summary].every(Boolean)).toBe(true);
+  }
+});
+
+it("calls a material what people call it, and tells what its index does", () => {
+  const summary = "The usual reference.";
+  const diamond = { name: "diamond", title: "Diamond", summary, coloured: false };
+  const option = materialOption({ ...diamond, indices: [2.4, 2, 2.5] as const });
+  expect([option.label, option.value]).toEqual(["Diamond", "diamond"]);
+  expect(option.summary).toBe(`${summary}\nIndex 2.00 for green; critical angle 30.0\u00b0`);
 });

@@ -1,13 +1,14 @@
 /** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import type { Catalogued } from "./catalogue";
+import type { Material } from "./catalogue";
+import type { Option } from "./controls/choice";
 import { number, part, text } from "./json";
 import { imageSky, skyPatch } from "./sky-choice";
 import { stoneOf, stonePatch, stonesOf } from "./stones";
 
 export interface Choices {
-  /** A material's name, or what to call one that the scene describes by its indices. */
+  /** A material's name; OWN_INDICES of one that the scene describes by its indices. */
   material: string;
   /** The kind of the environment, or, of an image, which one: see `imageSky`. */
   sky: string;
@@ -21,40 +22,51 @@ export interface Choices {
 /** Values to choose from; a scene may have others. */
 export const BANDS = [3, 8, 16, 32];
 export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
-export const ENDS = { "cut, counted": "cut", "by chance": "roulette", "in the sky": "sky" };
-export const TONE_MAPS = {
-  neutral: "neutral",
-  sRGB: "srgb",
-  filmic: "filmic",
-  "the report's": "classic",
-  none: "none",
-};
-/** What they mean, by their names. */
-export const ENDS_SAID: Catalogued[] = [
+export const ENDS: readonly Option<string>[] = [
   {
-    name: "cut, counted",
+    label: "cut, counted",
+    value: "cut",
     summary: "Weak light is dropped. The picture says how much light was dropped: it is darker by that at most",
   },
   {
-    name: "by chance",
+    label: "by chance",
+    value: "roulette",
     summary: "Weak light is dropped at random, and the light that goes on counts for more: right on average, but noisy",
   },
   {
-    name: "in the sky",
+    label: "in the sky",
+    value: "sky",
     summary: "Weak light leaves the stone at once and meets the sky: the picture is not darker, but this is a guess",
   },
 ];
-export const TONE_MAPS_SAID: Catalogued[] = [
+export const TONE_MAPS: readonly Option<string>[] = [
   {
-    name: "neutral",
+    label: "neutral",
+    value: "neutral",
     summary: "As it is, but for what is brighter than 0.8: that approaches white without reaching it",
   },
-  { name: "sRGB", summary: "What is brighter than white is white" },
-  { name: "filmic", summary: "Highlights are rolled off, and keep their hues" },
-  { name: "the report's", summary: "As the report draws it" },
-  { name: "none", summary: "The radiance itself, without the screen's curve: too dark on a screen" },
+  { label: "sRGB", value: "srgb", summary: "What is brighter than white is white" },
+  { label: "filmic", value: "filmic", summary: "Highlights are rolled off, and keep their hues" },
+  { label: "the report's", value: "classic", summary: "As the report draws it" },
+  { label: "none", value: "none", summary: "The radiance itself, without the screen's curve: too dark on a screen" },
 ];
-export const SKIES = { "studio lamps": "studio", dark: "dark", light: "light", "half-lit": "half" };
+export const SKIES: readonly Option<string>[] = [
+  { label: "studio lamps", value: "studio", summary: "The scene's own lamps and soft boxes" },
+  { label: "dark", value: "dark", summary: "The report's night: lamps alone are bright" },
+  { label: "light", value: "light", summary: "The report's day: bright all around" },
+  { label: "half-lit", value: "half", summary: "Bright on one side, dark on the other" },
+];
+
+/** A material that the scene describes by its indices: shown, and not to be chosen. No name has spaces. */
+export const OWN_INDICES: Option<string> = { label: "its own indices", value: "its own indices" };
+
+/** A material under the name that people use, with what its index does: beyond the critical angle all light stays inside. */
+export function materialOption({ name, title, summary, indices }: Material): Option<string> {
+  const index = indices[1];
+  const critical = (Math.asin(1 / index) * 180) / Math.PI;
+  const said = `${summary}\nIndex ${index.toFixed(2)} for green; critical angle ${critical.toFixed(1)}\u00b0`;
+  return { label: title, value: name, summary: said };
+}
 
 /** The scene's before there is one. */
 export const NOTHING_CHOSEN: Choices = {
@@ -74,7 +86,7 @@ export function choicesOf(scene: JsonObject | null): Choices {
   const none = NOTHING_CHOSEN;
   const kind = text(environment.kind, none.sky);
   return {
-    material: text(material, material === undefined ? none.material : "its own indices"),
+    material: text(material, material === undefined ? none.material : OWN_INDICES.value),
     sky: kind === "image" ? imageSky(text(environment.image, "")) : kind,
     bands: number(optics.bands, none.bands),
     polarised: optics.polarised === true,

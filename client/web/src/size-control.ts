@@ -1,35 +1,36 @@
 /** The panel's slider for the stone's size; shown while a colour depends on it. */
 
-import type { Controller, GUI } from "lil-gui";
+import type { Section } from "./controls/section";
+import { type Clamped, Slider } from "./controls/slider";
 import { LiveControls } from "./live-controls";
 import { sizeMatters, sizeOf, sizePatch } from "./scene-choices";
 import type { ViewState } from "./view-state";
 
-const LEAST_MM = 0.5;
-const MOST_MM = 12;
-const STEP_MM = 0.05;
+const ENDS_MM = { least: 0.5, most: 12, step: 0.05, decimals: 2 };
 const HINT = "Of the girdle: the longer the ways through the stone, the deeper its colour. One carat is 3.25 mm";
 
 export class SizeControl {
   private readonly controls: LiveControls<{ size: number }>;
-  private readonly controller: Controller;
+  private readonly slider: Slider;
   private coloured: ReadonlySet<string> = new Set();
   private scene: ViewState["scene"] = null;
 
-  constructor(folder: GUI, send: (patch: Record<string, unknown>) => void) {
+  constructor(section: Section, send: (patch: Record<string, unknown>) => void, clamped: Clamped) {
     this.controls = new LiveControls(
       () => ({ size: sizeOf(this.scene) }),
       (_, value) => send(sizePatch(Number(value))),
     );
-    this.controller = folder.add(this.controls.shown, "size", LEAST_MM, MOST_MM, STEP_MM).decimals(2);
-    this.controller.name("Radius, mm").hide().domElement.title = HINT;
-    this.controls.listen("size", this.controller);
+    this.slider = section
+      .add(new Slider("Radius, mm", ENDS_MM, clamped))
+      .hint(HINT)
+      .show(false);
+    this.controls.listen("size", this.slider);
   }
 
   update({ scene }: Pick<ViewState, "scene">): void {
     this.scene = scene;
     this.controls.display();
-    this.controller.show(sizeMatters(scene, this.coloured));
+    this.slider.show(sizeMatters(scene, this.coloured));
   }
 
   /** The names of the materials that absorb by a spectrum of their own. */

@@ -1,7 +1,9 @@
 /** The panel's list of stones, for the keyboard as well, and what can be done to the one that is chosen. */
 
-import type { Controller, GUI } from "lil-gui";
 import { type Action, actionNamed, labelWithKey } from "./actions";
+import { Choice } from "./controls/choice";
+import { Command } from "./controls/command";
+import type { Section } from "./controls/section";
 import { idsOf } from "./stones";
 import type { ViewState } from "./view-state";
 
@@ -15,22 +17,19 @@ export interface StoneActions {
   scatter: () => void;
 }
 
-/** No id has brackets. */
-const NONE = "(none)";
+/** No id has brackets, and none is empty. */
+const NONE = { label: "(none)", value: "" };
 
 export class StonePanel {
-  private readonly shown = { stone: "" };
-  private readonly actions: StoneActions;
-  private readonly ofOne: readonly Controller[];
-  private readonly putBack: Controller;
-  private list: Controller;
+  private readonly list = new Choice<string>("Chosen", [NONE], NONE.value);
+  private readonly ofOne: readonly Command[];
+  private readonly remove: Command;
+  private readonly putBack: Command;
   private ids: readonly string[] = [];
 
-  constructor(folder: GUI, perform: (action: Action) => void, actions: StoneActions) {
-    this.actions = actions;
-    this.list = folder.add(this.shown, "stone", { [NONE]: "" });
-    this.listen();
-    const button = (label: string, act: () => void) => folder.add({ act }, "act").name(label);
+  constructor(section: Section, perform: (action: Action) => void, actions: StoneActions) {
+    section.add(this.list).onInput((id) => actions.choose(id || null));
+    const button = (label: string, act: () => void) => section.add(new Command(label, act));
     const acting = (name: string) => button(labelWithKey(actionNamed(name)), () => perform(actionNamed(name)));
     this.ofOne = [
       button("Look at this stone", () => actions.look()),
@@ -38,7 +37,7 @@ export class StonePanel {
       button("Hold this stone, or let go", () => actions.hold()),
     ];
     button("Add another like it", () => actions.add());
-    acting("remove_stone");
+    this.remove = acting("remove_stone");
     this.putBack = acting("put_back_stone");
     button("Scatter all", () => actions.scatter());
   }
@@ -48,16 +47,11 @@ export class StonePanel {
     const ids = idsOf(scene);
     if (String(ids) !== String(this.ids)) {
       this.ids = ids;
-      this.list = this.list.options({ [NONE]: "", ...Object.fromEntries(ids.map((id) => [id, id])) });
-      this.listen();
+      this.list.offer([NONE, ...ids.map((id) => ({ label: id, value: id }))]);
     }
-    this.shown.stone = stone ?? "";
-    this.list.updateDisplay();
+    this.list.value = stone ?? NONE.value;
     for (const button of this.ofOne) button.show(stone !== null);
+    this.remove.label(labelWithKey(actionNamed("remove_stone"), scene));
     this.putBack.enable(removed > 0);
-  }
-
-  private listen(): void {
-    this.list.name("Chosen").onChange((id: string) => this.actions.choose(id || null));
   }
 }

@@ -89,6 +89,12 @@ describe("a change in words", () => {
     expect(describeChange(asleep, { ...asleep, asleep: false })).toBe("the stone falls");
   });
 
+  it("speaks of all stones where there are several", () => {
+    const trio = { ...before, scene: { stones: [{}, {}, {}] } };
+    expect(describeChange(trio, { ...trio, falling: true })).toBe("the stones fall");
+    expect(describeChange(before, trio)).toBe("");
+  });
+
   it("says nothing of the first scene, or of a camera that moved", () => {
     expect(describeChange(INITIAL, before)).toBe("");
     expect(describeChange(before, { ...before, scene: {} })).toBe("");

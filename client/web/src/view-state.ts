@@ -4,6 +4,7 @@ import { BALANCED, type Change, type JsonObject, type Notice, type State } from 
 import type { Target } from "./events";
 import { part, text } from "./json";
 import { withParts } from "./scene-parts";
+import { type Wording, worded } from "./wording";
 
 export interface ViewState {
   target: Target;
@@ -13,7 +14,7 @@ export interface ViewState {
   /** Of what was told of the scene last; null before that. */
   revision: number | null;
   falling: boolean;
-  /** It came to rest and sleeps: nothing moves, though it was told to fall. */
+  /** All stones came to rest and sleep: nothing moves, though they were told to fall. */
   asleep: boolean;
   mirror: boolean;
   light: boolean;
@@ -88,7 +89,7 @@ export function describeChange(before: ViewState, after: ViewState): string {
   if (before.target !== after.target) said.push(`moving the ${TARGET_NAMES[after.target]}`);
   if (before.stone !== after.stone) said.push(after.stone === null ? "no stone chosen" : `${after.stone} chosen`);
   if (before.scene && after.scene) {
-    if (motion(before) !== motion(after)) said.push(motion(after));
+    if (motion(before) !== motion(after)) said.push(worded(motion(after), after.scene));
     if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");
     if (before.light !== after.light) said.push(after.light ? "light sky" : "the scene's own sky");
     if (before.walls !== after.walls) said.push(after.walls ? "walls shown" : "walls hidden");
@@ -98,9 +99,13 @@ export function describeChange(before: ViewState, after: ViewState): string {
   return said.join(", ");
 }
 
-function motion({ falling, asleep }: ViewState): string {
-  if (!falling) return "the stone is paused";
-  return asleep ? "the stone is at rest" : "the stone falls";
+const PAUSED = { one: "the stone is paused", several: "the stones are paused" };
+const AT_REST = { one: "the stone is at rest", several: "the stones are at rest" };
+const FALLING = { one: "the stone falls", several: "the stones fall" };
+
+function motion({ falling, asleep }: ViewState): Wording {
+  if (!falling) return PAUSED;
+  return asleep ? AT_REST : FALLING;
 }
 
 export function viewersText(count: number): string {

@@ -1,8 +1,10 @@
-/** Where the stone is when the picture does not show it: what an empty room does not say. */
+/** Where the stones are when the picture shows none of them: what an empty room does not say. */
 
 import { Flag, type Frame } from "@culet/protocol/frame";
+import type { JsonObject } from "@culet/protocol/messages";
+import { worded } from "./wording";
 
-/** ms for which a stone that moves may be out of the picture before that is said: it often comes back by itself. */
+/** ms for which stones that move may be out of the picture before that is said: they often come back by themselves. */
 export const GRACE_MS = 1000;
 
 type Seen = Pick<Frame, "flags" | "simulationTime">;
@@ -15,12 +17,18 @@ const SIDES = [
   [Flag.RIGHT, "to the right of the picture"],
 ] as const;
 
-/** What to say of the stone in a frame, or null if the picture may show it. */
-export function whereaboutsText({ flags, simulationTime }: Seen): string | null {
+/** Of several stones a frame tells where the nearest is. */
+const WHO = { one: "The stone", several: "The nearest stone" };
+const REMEDY = { one: "P lets it fall.", several: "P lets them fall." };
+/** The button that has all stones looked at. */
+export const LOOK = { one: "Look at it", several: "Look at them" };
+
+/** What to say of the stones of a frame of that scene, or null if the picture may show one. */
+export function whereaboutsText({ flags, simulationTime }: Seen, scene: JsonObject | null): string | null {
   const side = SIDES.find(([flag]) => flags & flag);
   if (!side) return null;
   const falls = side[0] === Flag.ABOVE && simulationTime === 0 && !(flags & Flag.MOVING);
-  return `The stone is ${side[1]}.${falls ? " P lets it fall." : ""}`;
+  return `${worded(WHO, scene)} is ${side[1]}.${falls ? ` ${worded(REMEDY, scene)}` : ""}`;
 }
 
 /** Follows the frames of a session. */
@@ -28,8 +36,8 @@ export class Whereabouts {
   private seenAt = Number.NEGATIVE_INFINITY;
 
   /** What to say once this frame is shown, at a time in ms, or null. */
-  after(frame: Seen, time: number): string | null {
-    const text = whereaboutsText(frame);
+  after(frame: Seen, time: number, scene: JsonObject | null): string | null {
+    const text = whereaboutsText(frame, scene);
     if (text === null) this.seenAt = time;
     return frame.flags & Flag.MOVING && time - this.seenAt < GRACE_MS ? null : text;
   }

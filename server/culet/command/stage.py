@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from culet.command.terminal import libraries_silenced
-from culet.errors import InputError, MeshError, SceneError
+from culet.errors import CuletError, InputError, MeshError, SceneError
 
 if TYPE_CHECKING:
     from culet.geometry.shape import Shape
@@ -43,7 +43,9 @@ def read_stage(file: Path | None, preset: str | None, mesh: Path | None, sky: Pa
         skies[FILE] = _sky(sky)
         scene = _under_the_file(scene, seen=file is None)
     with _naming(file):
-        return Stage.of(scene, Library(meshes, skies))
+        stage = Stage.of(scene, Library(meshes, skies))
+    _report_overlaps(stage)
+    return stage
 
 
 def _with_mesh(scene: Scene, shape: Shape) -> Scene:
@@ -101,6 +103,18 @@ def _under_the_file(scene: Scene, *, seen: bool) -> Scene:
 def _report(file: Path, findings: Iterable[str]) -> None:
     for finding in findings:
         typer.echo(f"{file}: {finding}", err=True)
+
+
+def _report_overlaps(stage: Stage) -> None:
+    """Which of several stones are inside each other, to stderr."""
+    if len(stage.scene.stones) < 2:
+        return
+    from culet.simulation.overlaps import overlaps
+    from culet.simulation.staged import world_of
+
+    with contextlib.suppress(CuletError):  # stones that no solver here can move are drawn all the same
+        for finding in overlaps(world_of(stage)):
+            typer.echo(finding, err=True)
 
 
 def _json(file: Path | None) -> object:

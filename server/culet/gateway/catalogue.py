@@ -19,21 +19,52 @@ router = APIRouter(tags=["catalogue"])
 WEBP = "image/webp"
 CUTS = {"brilliant": "A round brilliant by its proportions."}
 SKIES = {
-    "light-box": "A photographer's light box: bright above, softer at the sides, dark below.",
-    "ring-lights": "Three thin bright rings, as around a lens: much fire.",
-    "aset": "The Angular Spectrum Evaluation Tool's colours by elevation: green, red, blue.",
-    "ideal-scope": "The Ideal-Scope's: red from above, black where the eye is, white from below.",
+    "light-box": (
+        "Light box",
+        "A photographer's light box: bright above, softer at the sides, dark below.",
+    ),
+    "ring-lights": (
+        "Ring lights",
+        "Three thin bright rings, as around a lens: much fire.",
+    ),
+    "aset": (
+        "ASET",
+        "The Angular Spectrum Evaluation Tool's colours by elevation: green, red, blue.",
+    ),
+    "ideal-scope": (
+        "Ideal-Scope",
+        "The Ideal-Scope's: red from above, black where the eye is, white from below.",
+    ),
 }
-"""Made by the renderer, which the gateway does not load; a test compares the names."""
+"""What people call each, and a sentence. Made by the renderer, which the gateway does not load; a test compares the
+names."""
 INTEGRATORS = {
-    "rkmk4": "Munthe-Kaas's Runge-Kutta on the rotations, of fourth order.",
-    "rk4": "The classical Runge-Kutta on quaternions, of fourth order.",
-    "midpoint": "The Lie midpoint rule, of second order.",
-    "splitting": "Exact turns about the three principal axes in a row, of second order.",
-    "symmetric_top": "As a body of revolution, exactly, and the rest split off: of second order.",
-    "euler": "The report's, of first order.",
+    "rkmk4": (
+        "Runge-Kutta on rotations",
+        "Munthe-Kaas's Runge-Kutta on the rotations, of fourth order.",
+    ),
+    "rk4": (
+        "Runge-Kutta",
+        "The classical Runge-Kutta on quaternions, of fourth order.",
+    ),
+    "midpoint": (
+        "Midpoint",
+        "The Lie midpoint rule, of second order.",
+    ),
+    "splitting": (
+        "Turns in a row",
+        "Exact turns about the three principal axes in a row, of second order.",
+    ),
+    "symmetric_top": (
+        "Symmetric top",
+        "As a body of revolution, exactly, and the rest split off: of second order.",
+    ),
+    "euler": (
+        "Euler (the report's)",
+        "The report's, of first order.",
+    ),
 }
-"""A test compares the names with the scene's."""
+"""What people call each, and a sentence. A test compares the names with the scene's."""
 
 
 class Preset(Model):
@@ -60,6 +91,8 @@ class Material(Model):
     """A named material: where its numbers come from, and how far they can be trusted."""
 
     name: str
+    title: str
+    """What people call it."""
     summary: str
     source: str
     confidence: Literal["measured", "weak source", "as set"]
@@ -97,6 +130,8 @@ class Sky(Model):
     """A named panorama; `environment.image` of a scene takes the name."""
 
     name: str
+    title: str
+    """What people call it."""
     summary: str
 
 
@@ -110,6 +145,8 @@ class IntegratorDescription(Model):
     """A way to follow a free rotation; `simulation.integrator` of a scene takes the name."""
 
     name: str
+    title: str
+    """What people call it."""
     summary: str
 
 
@@ -151,6 +188,7 @@ async def materials() -> Materials:
         materials=tuple(
             Material(
                 name=name,
+                title=material.title,
                 summary=material.summary,
                 source=material.source,
                 confidence=material.confidence,
@@ -174,12 +212,14 @@ async def cuts() -> Cuts:
 @router.get("/api/skies")
 async def skies() -> Skies:
     """Panoramas of the studio; POST adds others."""
-    return Skies(skies=tuple(Sky(name=name, summary=summary) for name, summary in SKIES.items()))
+    return Skies(skies=tuple(Sky(name=name, title=title, summary=said) for name, (title, said) in SKIES.items()))
 
 
 @router.get("/api/integrators")
 async def integrators() -> Integrators:
     """Ways to follow the rotation of a stone in flight (model `rigid`)."""
     return Integrators(
-        integrators=tuple(IntegratorDescription(name=name, summary=summary) for name, summary in INTEGRATORS.items())
+        integrators=tuple(
+            IntegratorDescription(name=name, title=title, summary=said) for name, (title, said) in INTEGRATORS.items()
+        )
     )

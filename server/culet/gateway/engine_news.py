@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import time
 from collections.abc import Awaitable, Callable
@@ -36,7 +35,8 @@ class EngineNews(EngineEvents):
         """Set once this gateway knows the sessions that the engine had when it came."""
         self._link = link
         self._records = records
-        self._catching_up: set[asyncio.Task[None]] = set()
+        self._catching_up: dict[str, asyncio.Task[None]] = {}
+        """By session."""
         self._by_topic: dict[bytes, SessionRecord] = {}
         self._reopen = reopen
 
@@ -62,19 +62,24 @@ class EngineNews(EngineEvents):
         if session is None or session.revision is None:  # it is being opened, and the answer will say all
             return
         told = session.condition
-        if not session.hear(change):
-            task = asyncio.create_task(self._catch_up(session))
-            self._catching_up.add(task)
-            task.add_done_callback(self._catching_up.discard)
-        elif change.edited or session.condition != told:
+        if change.revision <= session.revision:  # an answer that said so already was faster
             session.tell(session.state())
+        elif session.hear(change):
+            if change.edited or session.condition != told:
+                session.tell(session.state())
+        elif session.id not in self._catching_up:  # or else the answer, which comes after this, will say it too
+            self._catching_up[session.id] = asyncio.create_task(self._catch_up(session))
 
     async def _catch_up(self, session: SessionRecord) -> None:
         """Ask for all of a session of which something was missed."""
-        with contextlib.suppress(CuletError):  # it is gone, or the engine is: then it will be given to the next one
+        try:
             described, _ = await self._link.request(GetSession(session=session.id))
             session.learn(described)
             session.tell(session.state())
+        except CuletError:
+            pass  # it is gone, or the engine is: then it will be given to the next one
+        finally:
+            del self._catching_up[session.id]
 
     def session_moved(self, motion: SessionMotion) -> None:
         """The session's stone moved, or its picture was refined."""

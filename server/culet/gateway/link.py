@@ -266,6 +266,7 @@ class EngineLink:
                     answer = self._pending.get(number)
                     if answer and not answer.done():
                         answer.set_result((message, parts[2].buffer if len(parts) > 2 else b""))
+                        await asyncio.sleep(0)  # whoever asked acts on it before anything that came later is heeded
                 case _:
                     assert_never(message)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from culet.optics.formulas import sellmeier
 from culet.optics.materials import CLASSIC_INDICES, PETER_1923, material_of
 from culet.optics.wavelengths import RGB_NANOMETRES
@@ -10,6 +12,7 @@ from culet.scene.stone import IndexMaterial, SellmeierMaterial
 __all__ = ["CLASSIC_INDICES", "PETER_1923", "RGB_NANOMETRES", "channel_indices", "sellmeier"]
 
 
+@lru_cache(maxsize=256)
 def channel_indices(
     material: str | IndexMaterial | SellmeierMaterial,
 ) -> tuple[float, float, float]:

@@ -22,6 +22,8 @@ class Material:
     """A transparent solid."""
 
     name: str
+    title: str
+    """What people call it."""
     summary: str
     formula: Formula
     source: str

@@ -55,6 +55,7 @@ EMERALD_BANDS = AbsorptionSpectrum(
 _ALL = (
     Material(
         "diamond",
+        "Diamond",
         "Diamond, the usual reference.",
         Sellmeier(PETER_1923),
         "F. Peter, Z. Phys. 15, 358 (1923)",
@@ -62,6 +63,7 @@ _ALL = (
     ),
     Material(
         "diamond-turri",
+        "Diamond, grown",
         "Diamond grown from vapour (type IIa), within 0.002.",
         Sellmeier(((4.658, 0.1125),)),
         "G. Turri et al., Opt. Mater. Express 7, 855 (2017)",
@@ -69,6 +71,7 @@ _ALL = (
     ),
     Material(
         "moissanite",
+        "Moissanite",
         "Silicon carbide 6H: more fire than diamond; its strong double refraction is not traced.",
         SinglePole(6.57232, 0.1401, 0.03178, 0.02153),
         "S. Wang et al., Laser Photonics Rev. 7, 831 (2013)",
@@ -77,6 +80,7 @@ _ALL = (
     ),
     Material(
         "cubic-zirconia",
+        "Cubic zirconia",
         "Zirconia with 12 mol% yttria.",
         Sellmeier(((1.347091, 0.062543), (2.117788, 0.166739), (9.452943, 24.320570))),
         "D. L. Wood, K. Nassau, Appl. Opt. 21, 2978 (1982)",
@@ -84,6 +88,7 @@ _ALL = (
     ),
     Material(
         "sapphire",
+        "Sapphire",
         "Corundum coloured blue by iron and titanium.",
         CORUNDUM,
         CORUNDUM_SOURCE,
@@ -93,6 +98,7 @@ _ALL = (
     ),
     Material(
         "ruby",
+        "Ruby",
         "Corundum coloured red by chromium; its fluorescence is not traced.",
         CORUNDUM,
         CORUNDUM_SOURCE,
@@ -102,6 +108,7 @@ _ALL = (
     ),
     Material(
         "emerald",
+        "Emerald",
         "Beryl coloured green by chromium; no measured dispersion formula of beryl was found.",
         Cauchy(1.566794, 0.004273),
         "Cauchy fit to gemmological tables (n_d 1.579), from the materials of gemray-studio",
@@ -112,6 +119,7 @@ _ALL = (
     ),
     Material(
         "spinel",
+        "Spinel",
         "Magnesium aluminate, colourless.",
         Sellmeier(((1.8938, 0.09942), (3.0755, 15.826))),
         "W. J. Tropf, M. E. Thomas in Handbook of Optical Constants of Solids II (1991), p. 881; formula in Handbook "
@@ -120,6 +128,7 @@ _ALL = (
     ),
     Material(
         "yag",
+        "YAG garnet",
         "Yttrium aluminium garnet, undoped.",
         Sellmeier.of_squares((2.28200, 0.01185), (3.27644, 282.734)),
         "D. E. Zelmon, D. L. Small, R. Page, Appl. Opt. 37, 4933 (1998)",
@@ -127,6 +136,7 @@ _ALL = (
     ),
     Material(
         "quartz",
+        "Rock crystal",
         "Crystalline quartz: rock crystal.",
         Sellmeier.of_squares((1.07044083, 1.00585997e-2), (1.10202242, 100), constant=1.28604141),
         "G. Ghosh, Opt. Commun. 163, 95 (1999)",
@@ -135,6 +145,7 @@ _ALL = (
     ),
     Material(
         "strontium-titanate",
+        "Strontium titanate",
         "Fabulite: nearly diamond's index, more than four times its dispersion.",
         Sellmeier(((3.042143, 0.1475902), (1.170065, 0.2953086), (30.83326, 33.18606))),
         "Data of W. L. Bond, J. Appl. Phys. 36, 1674 (1965); formula by M. J. Dodge, Handbook of Laser Science and "
@@ -143,6 +154,7 @@ _ALL = (
     ),
     Material(
         "rutile",
+        "Rutile",
         "Titanium dioxide: the most fire of all; its very strong double refraction is not traced.",
         SinglePole(5.913, 0.2441, 0.0803),
         "J. R. Devore, J. Opt. Soc. Am. 41, 416 (1951)",
@@ -151,6 +163,7 @@ _ALL = (
     ),
     Material(
         "bk7",
+        "Glass",
         "The most common optical glass.",
         Sellmeier.of_squares((1.03961212, 0.00600069867), (0.231792344, 0.0200179144), (1.01046945, 103.560653)),
         "SCHOTT, data sheet of N-BK7",
@@ -158,6 +171,7 @@ _ALL = (
     ),
     Material(
         "classic",
+        "The report's",
         "The report's indices, which exaggerate the fire.",
         ThroughLines(RGB_NANOMETRES, CLASSIC_INDICES),
         "Set by the report's author; Cauchy's n = a + b / l^2 between the lines of the channels",
@@ -175,6 +189,7 @@ def material_of(setting: str | IndexMaterial | SellmeierMaterial) -> Material:
     if isinstance(setting, IndexMaterial):
         return Material(
             "ior",
+            "Three indices",
             "Three indices of refraction.",
             ThroughLines(RGB_NANOMETRES, setting.ior),
             "Set by the scene; Cauchy's n = a + b / l^2 between the lines of the channels",
@@ -185,6 +200,7 @@ def material_of(setting: str | IndexMaterial | SellmeierMaterial) -> Material:
     if isinstance(setting, SellmeierMaterial):
         return Material(
             "sellmeier",
+            "A formula",
             "A Sellmeier formula.",
             Sellmeier(setting.sellmeier),
             "Set by the scene",

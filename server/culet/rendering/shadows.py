@@ -25,7 +25,7 @@ def shadow_planes(planes: Array, vertices: Array, edges: NDArray[np.integer], li
     lit = distance > 0
     silhouette = edges[lit[edges[:, 2]] != lit[edges[:, 3]]]
     a, b = vertices[silhouette[:, 0]] - light, vertices[silhouette[:, 1]] - light
-    normals = np.cross(a, b)
+    normals = _cross(a, b)
     lengths = np.linalg.norm(normals, axis=1)
     normals = normals[lengths > 1e-12 * np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)]
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -35,3 +35,8 @@ def shadow_planes(planes: Array, vertices: Array, edges: NDArray[np.integer], li
         light @ surfaces[:, :3].T > surfaces[:, 3]
     ).all()
     return sides if in_front else np.vstack([sides, planes[lit]])
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """(N, 3) cross products. `np.cross` takes ten times as long for some dozens, of which there are many a picture."""
+    return a[:, [1, 2, 0]] * b[:, [2, 0, 1]] - a[:, [2, 0, 1]] * b[:, [1, 2, 0]]

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.polygons import edges_of_facets
+from culet.geometry.shape import Shape
 from culet.rendering.chains import absorption, chains_of_stones
 from culet.rendering.device import Real
 from culet.rendering.features import Features, Geometry, Stones, by_half_spaces
@@ -160,8 +162,19 @@ def _shadow_volumes(scene: Scene, stone: PlacedStone, planes: Array) -> list[Arr
     """The planes of each light, in the stone's own measure."""
     surfaces = shown_surfaces(scene, stone.centre)
     surfaces[:, 3] /= stone.scale
-    edges = edges_of_facets(stone.shape)
+    edges = _edges_of(stone.shape)
     return [shadow_planes(planes, stone.vertices, edges, stone.own(light.position), surfaces) for light in scene.points]
+
+
+_EDGES: WeakKeyDictionary[Shape, NDArray[np.int32]] = WeakKeyDictionary()
+
+
+def _edges_of(shape: Shape) -> NDArray[np.int32]:
+    """`edges_of_facets`, made once."""
+    edges = _EDGES.get(shape)
+    if edges is None:
+        edges = _EDGES[shape] = edges_of_facets(shape)
+    return edges
 
 
 def _seen(projection: Projection, centres: Array, reach: Array, width: int, height: int) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -68,16 +69,23 @@ def towards_observer(scene: Scene, origin: Array) -> Array:
 
 
 def _set_box(p: NDArray[np.void], number: int, box: BoxLamp) -> None:
-    """See add_boxes in sky.cl: ways across and up are scaled so that a share of 1 is where it fades no more."""
+    """See add_boxes in sky.cl."""
+    p["box"][number], p["box_edge"][number], p["box_level"][number] = _box_form(box)
+    p["box_radiance"][number] = box.radiance
+
+
+@lru_cache(maxsize=256)
+def _box_form(box: BoxLamp) -> tuple[Array, Array, Array]:
+    """(3, 3) the ways to a box, across it and up, scaled so that a share of 1 is where it fades no more, and (2,) edge
+    and (2,) level. Boxes seldom change, and are asked for in each picture."""
     halves = np.radians([box.half_width_degrees, box.half_height_degrees])
     fades = np.sin(box.softness * halves)
     to_box, across, up = box_axes(box)
     reach = np.cos(halves) / fades
-    p["box"][number] = to_box, reach[0] * across, reach[1] * up
-    p["box_edge"][number] = np.sin(halves) / fades
+    form = np.array([to_box, reach[0] * across, reach[1] * up])
     # 1 at the upper edge, where the way up is reach sin(half height), and 1 - fade at the lower
-    p["box_level"][number] = 1 - box.fade / 2, box.fade / 2 / (reach[1] * np.sin(halves[1]))
-    p["box_radiance"][number] = box.radiance
+    level = np.array([1 - box.fade / 2, box.fade / 2 / (reach[1] * np.sin(halves[1]))])
+    return form, np.sin(halves) / fades, level
 
 
 def _set_backdrop(p: NDArray[np.void], backdrop: Backdrop, width: int, height: int) -> None:

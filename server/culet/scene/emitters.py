@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator
 
-from culet.scene.fields import Colour, Model, Part, Vector
+from culet.scene.fields import Colour, Model, Part, Vector, said
 
 MOST_LAMPS = 24
 """In the sky: round ones, boxes and suns together."""
@@ -94,7 +94,7 @@ class PointLight(Model):
 
 
 def _form(value: object) -> str | None:
-    shape = value.get("shape") if isinstance(value, dict) else getattr(value, "shape", None)
+    shape = said(value, "shape")
     return f"<{shape}>" if shape in ("round", "box", "sun", "point") else None
 
 

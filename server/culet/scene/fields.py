@@ -34,3 +34,8 @@ class Model(BaseModel):
     """Immutable; unknown keys, NaN and infinity are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+def said(value: object, field: str, default: object = None) -> object:
+    """What a document, or a model that was made of one, says in a field; `default` where a document says nothing."""
+    return value.get(field, default) if isinstance(value, dict) else getattr(value, field, None)

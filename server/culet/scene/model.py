@@ -107,11 +107,9 @@ class Scene(Model):
         return () if self.environment.kind in SKIES_WITHOUT_LAMPS else lamps(self.emitters)
 
     def only_stone(self) -> StoneSettings | None:
-        """The stone, or None; SceneError for more than one, or one of another scale, where only one can be handled."""
+        """The stone, or None; SceneError for more than one, where only one can be handled."""
         if len(self.stones) > 1:
             raise SceneError(f"stones: expected at most 1 here, got {len(self.stones)}", "stones")
-        if self.stones and self.stones[0].scale != 1:
-            raise SceneError(f"stones.0.scale: expected 1 here, got {self.stones[0].scale:g}", "stones.0.scale")
         return self.stones[0] if self.stones else None
 
     def moved(self, *poses: Pose) -> Scene:

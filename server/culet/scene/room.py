@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from culet.scene.fields import Colour, Model, Part
+from culet.scene.fields import Colour, Model, Part, said
 
 FLOOR_Y = -1.0
 """Height of the floor, R."""
@@ -85,7 +85,7 @@ class StudioFloor(Model):
 
 
 def _form_of_floor(value: object) -> str | None:
-    kind = value.get("kind", "none") if isinstance(value, dict) else getattr(value, "kind", None)
+    kind = said(value, "kind", "none")
     if kind == "studio":
         return "<studio>"
     return "<matte>" if kind in ("none", "matte", "mirror") else None

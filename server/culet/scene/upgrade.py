@@ -14,7 +14,7 @@ from culet.scene import atelier
 from culet.scene.backdrop import Backdrop, GradientBackdrop
 from culet.scene.camera import Camera, Head
 from culet.scene.emitters import MOST_LAMPS, MOST_POINTS, BoxLamp, PointLight, RoundLamp
-from culet.scene.fields import Colour, Model, Orientation, Vector
+from culet.scene.fields import Colour, Model, Orientation, Vector, said
 from culet.scene.film import Film, Sampling
 from culet.scene.motion import Simulation
 from culet.scene.optics import Optics
@@ -55,7 +55,7 @@ class Light1(Model):
 
 
 def _shape_of_lamp(value: object) -> str | None:
-    shape = value.get("shape", "round") if isinstance(value, dict) else getattr(value, "shape", None)
+    shape = said(value, "shape", "round")
     return f"<{shape}>" if shape in ("round", "box") else None
 
 

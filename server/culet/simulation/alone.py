@@ -25,9 +25,8 @@ class Alone:
     def __init__(self, law: Law, body: Body, surfaces: Sequence[Surface]) -> None:
         """At the start. InputError for an inertia that cannot be used."""
         self._law, self._body, self._held = law, body, False
-        self._one = Simulation(
-            self._settings(), body.shape, self._from_world(body.position), body.orientation, self._surfaces(surfaces)
-        )
+        start = self._from_world(body.position)
+        self._one = Simulation(_settings(law, body), body.shape, start, body.orientation, self._surfaces(surfaces))
 
     @property
     def simulation(self) -> Simulation:
@@ -64,9 +63,10 @@ class Alone:
         )
 
     def set_law(self, law: Law) -> None:
-        """Another law, which may be another model; asleep, it wakes just if it would move."""
+        """Another law, which may be another model; asleep, it wakes just if it would move. InputError, and nothing
+        changed, if it cannot be used."""
+        self._one.adjust(_settings(law, self._body))
         self._law = law
-        self._one.adjust(self._settings())
 
     def set_surfaces(self, surfaces: Sequence[Surface]) -> None:
         """Other surfaces; asleep, it wakes just if it would move."""
@@ -74,8 +74,8 @@ class Alone:
 
     def set_body(self, body: Body) -> None:
         """Another mass, restitution or friction; velocity and spin stay."""
+        self._one.adjust(_settings(self._law, body))
         self._body = body
-        self._one.adjust(self._settings())
 
     def set_state(self, state: BodyState) -> None:
         """Put it somewhere else, or make it move otherwise; awake unless it is said to sleep."""
@@ -114,20 +114,6 @@ class Alone:
         self._one.restore({name: value for name, value in saved.items() if name != "held"})
         self._held = bool(saved.get("held"))
 
-    def _settings(self) -> SimulationSettings:
-        body, law, scale = self._body, self._law, self._body.scale
-        return SimulationSettings.model_construct(
-            **{name: getattr(law, name) for name in Law.model_fields}
-            | {
-                "mass": body.mass,
-                "velocity": _times(body.velocity, 1 / scale),
-                "spin": body.spin,
-                "restitution": body.restitution_by(law),
-                "friction": body.friction_by(law),
-                "gravity": law.gravity / scale,
-            }
-        )
-
     def _surfaces(self, surfaces: Sequence[Surface]) -> tuple[Surface, ...]:
         """n . x >= d is n . (x - c) >= d - n . c, with c the point of the floor."""
         if self._body.scale == 1:
@@ -143,6 +129,20 @@ class Alone:
 
     def _to_world(self, point: Triple) -> Triple:
         return point if self._body.scale == 1 else _about_floor(point, self._body.scale)
+
+
+def _settings(law: Law, body: Body) -> SimulationSettings:
+    return SimulationSettings.model_construct(
+        **{name: getattr(law, name) for name in Law.model_fields}
+        | {
+            "mass": body.mass,
+            "velocity": _times(body.velocity, 1 / body.scale),
+            "spin": body.spin,
+            "restitution": body.restitution_by(law),
+            "friction": body.friction_by(law),
+            "gravity": law.gravity / body.scale,
+        }
+    )
 
 
 ORIGIN: Triple = (0.0, FLOOR.offset, 0.0)

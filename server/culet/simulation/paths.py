@@ -62,17 +62,45 @@ class Path:
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """One-dimensional arrays by name, with the axis after an underscore: what a table of the path holds."""
-        table: dict[str, NDArray[Any]] = {"step": self.step, "time": self.time}
-        for name, axes in (
-            ("position", "xyz"),
-            ("orientation", "wxyz"),
-            ("velocity", "xyz"),
-            ("angular_velocity", "xyz"),
-        ):
-            table |= {f"{name}_{axis}": getattr(self, name)[:, index] for index, axis in enumerate(axes)}
+        table: dict[str, NDArray[Any]] = {"step": self.step, "time": self.time} | by_axis(self)
         for name in ("energy", "asleep", "impacts", "coarse", "contacts", "penetration", "clearance"):
             table[name] = getattr(self, name)
         return table
+
+
+class Poses(Protocol):
+    """What is recorded of every stone; the arrays' last axis is that of the world."""
+
+    @property
+    def position(self) -> Floats:
+        """(..., 3), R"""
+
+    @property
+    def orientation(self) -> Floats:
+        """(..., 4), unit quaternion w, x, y, z"""
+
+    @property
+    def velocity(self) -> Floats:
+        """(..., 3), R/s"""
+
+    @property
+    def angular_velocity(self) -> Floats:
+        """(..., 3), world axes, rad/s"""
+
+
+def by_axis(poses: Poses) -> dict[str, Floats]:
+    """One-dimensional arrays by name, with the axis after an underscore."""
+    vectors = {
+        "position": poses.position,
+        "orientation": poses.orientation,
+        "velocity": poses.velocity,
+        "angular_velocity": poses.angular_velocity,
+    }
+    return {
+        f"{name}_{axis}": vector[..., index].ravel()
+        for name, vector in vectors.items()
+        for index, axis in enumerate("wxyz" if vector.shape[-1] == 4 else "xyz")
+    }
 
 
 def record(stage: Stage, seconds: float, progress: Progress | None = None) -> Path:

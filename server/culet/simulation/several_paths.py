@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import TooLargeError
-from culet.simulation.paths import MAX_STEPS, Floats, Progress, whole_steps
+from culet.simulation.paths import MAX_STEPS, Floats, Progress, by_axis, whole_steps
 from culet.simulation.staged import world_of
 from culet.simulation.world import World
 from culet.stage import Stage
@@ -53,14 +53,7 @@ class SeveralPaths:
             "stone": np.tile(self.stone, count),
             "step": np.repeat(self.step, stones),
             "time": np.repeat(self.time, stones),
-        }
-        for name, axes in (
-            ("position", "xyz"),
-            ("orientation", "wxyz"),
-            ("velocity", "xyz"),
-            ("angular_velocity", "xyz"),
-        ):
-            table |= {f"{name}_{axis}": getattr(self, name)[..., index].ravel() for index, axis in enumerate(axes)}
+        } | by_axis(self)
         table["energy"] = np.repeat(self.energy, stones)
         for name in ("asleep", "contacts", "penetration", "clearance"):
             table[name] = getattr(self, name).ravel()

@@ -57,10 +57,13 @@ class Simulation:
 
     @classmethod
     def of(cls, stage: Stage) -> Self:
-        """At the start of the stage's stone, between the surfaces of the scene."""
+        """At the start of the stage's stone, between the surfaces of the scene. SceneError for none, for several, and
+        for one of another scale than 1."""
         scene, stone = stage.scene, stage.scene.only_stone()
         if stone is None:
             raise SceneError("stones: a simulation needs a stone; the scene has none", "stones")
+        if stone.scale != 1:
+            raise SceneError(f"stones.0.scale: expected 1, got {stone.scale:g}; a world moves others", "stones.0.scale")
         (shape,) = stage.shapes
         settings = SimulationSettings.of(scene, stone, shape)
         return cls(settings, shape, stone.position, stone.orientation, surfaces_of(scene))

@@ -55,7 +55,8 @@ class Together:
         if world is None:
             raise MemoryError("a world of stones")
         self._world = ctypes.c_void_p(world)
-        weakref.finalize(self, self._library.culet_world_free, self._world)
+        # At the process's end it stays: a daemon thread may still be stepping it.
+        weakref.finalize(self, self._library.culet_world_free, self._world).atexit = False
         self.set_law(law)
         self.set_surfaces(surfaces)
         for body in bodies:
@@ -82,8 +83,8 @@ class Together:
         )
 
     def set_law(self, law: Law) -> None:
-        """Another gravity, or whatever else of the law; wakes all."""
-        self._law = _checked(law)
+        """Another gravity, or whatever else of the law; wakes all. InputError, and nothing changed, if it cannot be."""
+        _checked(law)
         given = interface.Law(
             gravity=law.gravity,
             bounce_speed=law.bounce_speed,
@@ -94,9 +95,11 @@ class Together:
             sweeps=self._effort.sweeps,
         )
         with self._lock:
+            properties = [_properties(body, law) for body in self._bodies]
+            self._law = law
             self._library.culet_world_set_law(self._world, ctypes.byref(given))
-            for body in self._bodies:
-                self.set_body(body)
+            for number, each in enumerate(properties):
+                self._library.culet_world_set_body(self._world, number, ctypes.byref(each))
 
     def set_surfaces(self, surfaces: Sequence[Surface]) -> None:
         """Other surfaces; wakes all."""

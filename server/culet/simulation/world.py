@@ -119,13 +119,16 @@ class World:
             self.step()
 
     def push(self, name: str, impulse: Triple, point: Triple) -> None:
-        """Strike a stone at a point of the world (R) with an impulse (mass R/s), and wake it.
+        """Strike a stone at a point of the world (R) with an impulse (mass R/s), and wake it. One that is held does not
+        move.
 
         InputError if one of them is not finite, there is no such stone, or it would be faster than a scene can ask for.
         """
         number = self.number(name)
         if not all(math.isfinite(c) for c in (*impulse, *point)):
             raise InputError(f"a push is finite; got {impulse} at {point}", "impulse")
+        if self.state.bodies[number].held:
+            return
         match self._mover:
             case Alone():
                 self._mover.push(impulse, point)

@@ -3,46 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, Self
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictStr, ValidationError, model_validator
+from pydantic import StrictBool, StrictStr, model_validator
 
 from culet.errors import InputError
-from culet.scene.refusal import scene_error
 from culet.simulation.bodies import BodyState, WorldState
-from culet.simulation.snapshot import Count, Number
+from culet.simulation.records import Count, Numbers, Record, Rotation, Time, plain, read_record
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class _BodyRecord(_Record):
+class _BodyRecord(Record):
     """A BodyState, field by field."""
 
-    position: tuple[Number, Number, Number]
-    orientation: tuple[Number, Number, Number, Number]
-    velocity: tuple[Number, Number, Number]
-    spin: tuple[Number, Number, Number]
+    position: Numbers
+    orientation: Rotation
+    velocity: Numbers
+    spin: Numbers
     asleep: StrictBool
     held: StrictBool
 
-    @model_validator(mode="after")
-    def _is_a_rotation(self) -> Self:
-        if abs(sum(c * c for c in self.orientation) - 1) > 1e-9:  # stepping keeps it to 1e-15
-            raise ValueError("orientation must be a unit quaternion")
-        return self
 
-
-class _WorldRecord(_Record):
+class _WorldRecord(Record):
     version: Literal[2]
     stones: tuple[StrictStr, ...]
     step: Count
-    time: Annotated[float, Field(strict=True, ge=0, le=1e30)]
+    time: Time
     previous: tuple[_BodyRecord, ...]
     previous_step: Count
-    previous_time: Annotated[float, Field(strict=True, ge=0, le=1e30)]
+    previous_time: Time
     at_start: StrictBool
     saved: dict[str, Any] | StrictStr | None
 
@@ -78,7 +66,7 @@ def write_world_snapshot(
         "stones": list(names),
         "step": state.step,
         "time": state.time,
-        "previous": [_plain(body) for body in previous.bodies],
+        "previous": [plain(body) for body in previous.bodies],
         "previous_step": previous.step,
         "previous_time": previous.time,
         "at_start": at_start,
@@ -88,17 +76,9 @@ def write_world_snapshot(
 
 def read_world_snapshot(data: Any, names: Sequence[str]) -> WorldSnapshot:  # noqa: ANN401 - whatever JSON held
     """Of a world of these stones in this order; InputError that names the first field that cannot be used."""
-    try:
-        record = _WorldRecord.model_validate(data)
-    except ValidationError as error:
-        found = scene_error(error)
-        raise InputError(f"simulation snapshot: {found}", found.field) from error
+    record = read_record(_WorldRecord, data)
     if list(record.stones) != list(names):
         raise InputError(f"simulation snapshot: expected one of the stones {names}; got {record.stones}", "stones")
     bodies = tuple(BodyState(**body.model_dump()) for body in record.previous)
     previous = WorldState(record.previous_step, record.previous_time, bodies)
     return WorldSnapshot(record.step, record.time, previous, record.at_start, record.saved)
-
-
-def _plain(body: BodyState) -> dict[str, Any]:
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(body).items()}

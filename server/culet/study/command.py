@@ -160,15 +160,16 @@ def contacts(
 def governor(
     scene: SceneFile = None,
     preset: Preset = None,
-    seconds: Annotated[float, typer.Option(min=5, help="Of the stone that falls in a scene that stays.")] = 60,
+    seconds: Annotated[float, typer.Option(min=5, help="Of the stones that fall in a scene that stays.")] = 60,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 1280,
     height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 720,
     exactness: Annotated[float, typer.Option(min=0, max=1, help="Of the balance: 0 many frames, 1 good ones.")] = 0.5,
+    changes: Annotated[bool, typer.Option(help="Change walls, sky, floor and camera afterwards.")] = True,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every frame's header.")
     ] = None,
 ) -> None:
-    """Let a stone fall again and again, then change things around it: what does a viewer get, and how soon."""
+    """Let all stones fall again and again, then change things around them: what does a viewer get, and how soon."""
     from culet.study.governor_study import described, document, measure, rate_of
 
     with errors_in_one_line():
@@ -176,7 +177,7 @@ def governor(
         if not stage.shapes:
             raise SceneError("stones: expected a scene with a stone, got none: nothing can fall", "stones")
         with opened(out) as file:
-            measured = asyncio.run(measure(stage.scene, seconds, size, exactness))
+            measured = asyncio.run(measure(stage.scene, seconds, size, exactness, changes=changes))
             if file is not None:
                 file.truncate(0)
                 file.write(document(measured, size, rate_of(exactness)) + "\n")

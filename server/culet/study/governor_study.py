@@ -1,7 +1,7 @@
-"""`culet study governor`: a real engine, one subscriber, and a stone that falls again and again.
+"""`culet study governor`: a real engine, one subscriber, and stones that fall again and again.
 
-First the scene stays and the stone falls anew whenever it has come to rest, or is about to; then things change while it
-falls: walls, sky, floor, camera. What counts is what a viewer gets: the headers of its frames, and when they came.
+First the scene stays and its stones fall anew whenever all have come to rest; then things change while they fall:
+walls, sky, floor, camera. What counts is what a viewer gets: the headers of its frames, and when they came.
 """
 
 from __future__ import annotations
@@ -149,8 +149,10 @@ class Play:
         await self._link.request(CloseSession(session=self.session))
 
 
-async def measure(scene: Scene, seconds: float, size: tuple[int, int], exactness: float) -> Measured:
-    """Run an engine and play to it; takes the seconds and three quarters of a minute more."""
+async def measure(
+    scene: Scene, seconds: float, size: tuple[int, int], exactness: float, *, changes: bool = True
+) -> Measured:
+    """Run an engine and play to it; takes the seconds and some ten more, and with `changes` half a minute more."""
     async with running_engine() as (link, process):
         recorder = Recorder()
         link.events = recorder
@@ -165,13 +167,13 @@ async def measure(scene: Scene, seconds: float, size: tuple[int, int], exactness
         spent = processor_seconds(process) - before
         steady = tuple(recorder.seen)
         recorder.seen.clear()
-        changes = []
-        for name, event in CHANGES:
-            changes.append(Change(name, time.monotonic()))
+        made = []
+        for name, event in CHANGES if changes else ():
+            made.append(Change(name, time.monotonic()))
             await play.control(event)
             await play.fall(CHANGE_SECONDS)
         await play.close()
-        return Measured(steady, tuple(recorder.seen), tuple(changes), spent)
+        return Measured(steady, tuple(recorder.seen), tuple(made), spent)
 
 
 def rate_of(exactness: float) -> float:
@@ -211,6 +213,10 @@ def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
         f"asked for            {size[0]}x{size[1]}, {rate:g} frames/s",
         *_rows(summarise(measured.steady, rate)),
         f"processor            {milliseconds:.1f} ms a frame, on {os.cpu_count()} cores",
+    ]
+    if not measured.changes:
+        return "\n".join(rows)
+    rows += [
         "",
         f"after a change       settled after   settings in {CHANGE_SECONDS:g} s",
         *(_change_row(settled) for settled in settle(measured.changing, measured.changes, rate)),
@@ -228,6 +234,8 @@ def _rows(summary: Summary | None) -> list[str]:
     return [
         f"of a moving stone    {summary.moving_seconds:.1f} s",
         f"frames per second    {summary.frames_per_second:.2f}, {summary.late_intervals:.2%} late by half a frame",
+        f"out of order         {summary.out_of_order} frames",
+        f"simulated            {summary.pace:.3f} s a second",
         f"least size           {summary.lowest_size[0]}x{summary.lowest_size[1]}",
         f"largest cut-off      {summary.largest_cutoff:g}, {summary.fewest_bands} indices",
         f"fewest bounces       {summary.fewest_bounces}",

@@ -6,7 +6,7 @@ import math
 import statistics
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from culet_protocol.frame import Flags, Frame
@@ -25,6 +25,8 @@ class Seen:
 
     arrived: float
     """s, steady clock."""
+    sequence: int
+    """Of the session's frames; one that is sent again keeps its own."""
     moving: bool
     simulation_time: float
     """s."""
@@ -42,8 +44,9 @@ class Seen:
     def of(cls, frame: Frame, arrived: float) -> Seen:
         """From the frame itself."""
         return cls(
-            arrived, Flags.MOVING in frame.flags, frame.simulation_time, frame.width, frame.height, frame.bands,
-            frame.max_bounces, frame.cutoff, frame.simulate_ms, frame.render_ms, frame.encode_ms, frame.error,
+            arrived, frame.sequence, Flags.MOVING in frame.flags, frame.simulation_time, frame.width, frame.height,
+            frame.bands, frame.max_bounces, frame.cutoff, frame.simulate_ms, frame.render_ms, frame.encode_ms,
+            frame.error,
         )  # fmt: skip
 
     @property
@@ -81,6 +84,10 @@ class Summary:
     frames_per_second: float
     late_intervals: float
     """Part of the intervals that took over one and a half times as long as asked for."""
+    out_of_order: int
+    """Frames that came after a later one, of all."""
+    pace: float
+    """Seconds of simulation that were shown in a second: 1 in real time."""
     lowest_size: tuple[int, int]
     largest_cutoff: float
     fewest_bounces: int
@@ -116,6 +123,8 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
         moving_seconds=sum(intervals),
         frames_per_second=len(intervals) / sum(intervals),
         late_intervals=sum(interval > 1.5 / rate for interval in intervals) / len(intervals),
+        out_of_order=sum(after.sequence < before.sequence for before, after in pairwise(seen)),
+        pace=sum(after.simulation_time - before.simulation_time for before, after in pairs) / sum(intervals),
         lowest_size=min((frame.width, frame.height) for frame in moving),
         largest_cutoff=max(frame.cutoff for frame in moving),
         fewest_bounces=min(frame.max_bounces for frame in moving),
@@ -133,9 +142,9 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
 
 def settle(seen: Sequence[Seen], changes: Sequence[Change], rate: float) -> list[Settled]:
     """For each change: how long until SETTLED_FRAMES moving frames in a row came at HELD of the rate."""
-    ends = [change.made_at for change in changes[1:]] + [float("inf")]
+    ends = chain((change.made_at for change in changes[1:]), (math.inf,))
     found = []
-    for change, end in zip(changes, ends, strict=True):
+    for change, end in zip(changes, ends, strict=False):
         until_next = [frame for frame in seen if change.made_at < frame.arrived <= end]
         pairs = moving_pairs(until_next)
         intervals = [after.arrived - before.arrived for before, after in pairs]

@@ -8,10 +8,13 @@ from PIL import Image
 
 from culet.engine.library import upload_store
 from culet.engine.library.upload_process import Room
-from culet.engine.library.upload_store import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore
+from culet.engine.library.upload_store import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore, mesh_size
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
+from culet.geometry.mesh import shape_from_mesh
+from culet.geometry.shape import Shape
+from culet.scene.stone import MOST_STONES
 from engine.peer import TETRAHEDRON
 
 
@@ -137,3 +140,25 @@ async def test_what_is_kept_is_bounded_in_memory_too() -> None:
         await store.put(name, "png", png(1000, 500, (1, 2, 3)))
         assert memory.free >= 0
     assert list(store) == ["d", "e", "f"]
+
+
+async def test_a_mesh_for_each_stone_is_kept_and_the_one_that_memory_has_no_room_for_is_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """While a scene shows them, none of as many as a scene may have makes room for another."""
+
+    async def read(_kind: str, _error: object, file_type: str, data: bytes, *_: object) -> Shape:
+        return shape_from_mesh(data, file_type)
+
+    monkeypatch.setattr(upload_store, "read_upload", read)
+    meshes = {f"m{number}": TETRAHEDRON + b"#%d" % number for number in range(MOST_STONES)}
+    one = mesh_size(shape_from_mesh(TETRAHEDRON, "off"))
+    memory = Memory(LEAST_TO_READ + (MOST_STONES - 1) * one)
+    store = UploadStore(MESH, Limits(max_uploads=1), memory, in_use=lambda: meshes)
+    for name, data in meshes.items():
+        await store.put(name, "off", data)
+    assert list(store) == list(meshes)
+    with pytest.raises(BusyError, match=r"reading a mesh needs 64 MiB of memory, 6\d MiB .* are free"):
+        await store.put("one-more", "off", TETRAHEDRON)
+    assert list(store) == list(meshes)
+    assert memory.free >= 0

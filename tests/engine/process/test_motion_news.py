@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 from itertools import count
 
+import pytest
+
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.process.motion_news import MotionNews
 from culet.engine.session.session import Session
@@ -38,4 +40,24 @@ async def test_that_all_sleep_is_told_however_late_the_step_after_the_last_fell_
         session.advance(next(times))
     await eventually(a_change_is_told)
     assert [each.asleep for each in told if isinstance(each, SessionChange)] == [True]
+    news.cancel()
+
+
+async def test_a_session_that_cannot_be_told_of_keeps_no_other_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    odd, other = (Session(digit * 32, Stage.of(Scene())) for digit in "01")
+    told: list[SessionChange | SessionMotion] = []
+    news = asyncio.create_task(MotionNews([LivePicture(odd), LivePicture(other)], told.append).run())
+
+    def failing(**_: object) -> None:
+        raise ZeroDivisionError
+
+    async def the_fall_is_told() -> bool:
+        return any(isinstance(each, SessionChange) and each.falling for each in told)
+
+    for name in ("change_told", "motion_told"):
+        monkeypatch.setattr(odd, name, failing)
+    for session in (odd, other):
+        session.set_falling(True)
+    await eventually(the_fall_is_told)
+    assert {each.session for each in told} == {other.name}
     news.cancel()

@@ -203,14 +203,28 @@ def test_a_push_moves_the_stone_that_is_seen_there_alone() -> None:
     assert speeds["s0"] == speeds["s2"] == (0, 0, 0)
 
 
-def test_stones_that_a_snapshot_makes_too_fast_for_numbers_stop_at_their_starts() -> None:
+def test_stones_that_come_to_be_where_no_number_is_stop_at_their_starts() -> None:
+    """Which neither a scene nor a snapshot can ask for."""
+    session = falling(2)
+    first, _ = session.motion.world.state.bodies
+    session.motion.world.move("s0", first.position, first.orientation, spin=(1e300, 0.0, 0.0))
+    with pytest.raises(CuletError, match="faster than numbers"):
+        advance(session, 0, 0.25)
+    assert not session.motion.moving
+    assert shown(session) == shown(session_of(stone(0), stone(1)))
+
+
+def test_a_session_takes_no_snapshot_of_stones_too_fast_for_numbers() -> None:
+    """What it takes, moves on to where numbers still are."""
     session = falling(2)
     snapshot = session.snapshot().model_dump(mode="json")
-    saved = bytearray(base64.b64decode(snapshot["simulation"]["saved"]))
-    struct.pack_into("d", saved, FIRST_MOMENTUM, 1e300)
-    hostile = snapshot | {"simulation": snapshot["simulation"] | {"saved": base64.b64encode(bytes(saved)).decode()}}
-    restored = Session.restored(NAME, session.stage, Snapshot.read(hostile))
-    with pytest.raises(CuletError, match="faster than numbers"):
-        advance(restored, 0, 0.25)
-    assert not restored.motion.moving
-    assert shown(restored) == shown(session_of(stone(0), stone(1)))
+
+    def restored(momentum: float) -> Session:
+        saved = bytearray(base64.b64decode(snapshot["simulation"]["saved"]))
+        struct.pack_into("d", saved, FIRST_MOMENTUM, momentum)
+        changed = snapshot["simulation"] | {"saved": base64.b64encode(bytes(saved)).decode()}
+        return Session.restored(NAME, session.stage, Snapshot.read(snapshot | {"simulation": changed}))
+
+    with pytest.raises(InputError, match="simulation snapshot"):
+        restored(1e300)
+    advance(restored(1e30), 0, 2)

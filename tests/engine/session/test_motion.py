@@ -137,6 +137,68 @@ def test_a_pause_is_neither_made_up_for_nor_lost() -> None:
     assert motion.pace.dropped == 0
 
 
+def test_stones_pause_where_they_were_seen_between_two_steps() -> None:
+    motion = falling()
+    motion.look_on(0, 1)
+    motion.run(0)
+    motion.run(10.0 * STEP)
+    seen = motion.seen(10.75 * STEP)
+    motion.set_falling(False)
+    paused = motion.seen()
+    assert paused.time == pytest.approx(seen.time, abs=1e-12)
+    assert paused.poses["stone"][0] == pytest.approx(seen.poses["stone"][0], abs=1e-12)
+    assert motion.seen(60) == paused
+
+
+def test_what_was_seen_before_a_reset_has_no_part_in_a_pause() -> None:
+    motion = falling()
+    motion.look_on(0, 1)
+    motion.run(0)
+    motion.run(10.0 * STEP)
+    motion.seen(10.75 * STEP)
+    motion.reset()
+    motion.set_falling(True)
+    motion.set_falling(False)
+    assert motion.fraction == 0
+
+
+def test_who_looks_away_keeps_the_motion_where_it_is_even_while_a_step_is_taken() -> None:
+    motion = falling()
+    motion.look_on(0, 1)
+    motion.run(0)
+    with step_under_way(motion, 2.5 * STEP):
+        motion.look_away()
+    assert motion.run(5 * STEP) is None
+    stopped = motion.seen(5 * STEP)
+    motion.look_on(60, 1)
+    motion.run(60)
+    assert motion.seen(60) == stopped
+    assert motion.pace.dropped == 0
+
+
+async def test_however_many_wait_for_a_step_they_take_one_thread() -> None:
+    motion = falling()
+    motion.look_on(0, 1)
+    motion.run(0)
+    waited = 0
+
+    async def wait() -> None:
+        nonlocal waited
+        async with motion.still():
+            waited += 1
+
+    with step_under_way(motion, 2 * STEP) as go:
+        waiting = [asyncio.create_task(wait()) for _ in range(64)]
+        for _ in range(10):
+            await asyncio.sleep(0)
+        async with asyncio.timeout(PATIENCE):
+            assert await asyncio.to_thread(lambda: "there is a thread") == "there is a thread"
+            assert waited == 0
+            go.set()
+            await asyncio.gather(*waiting)
+    assert waited == 64
+
+
 async def test_a_change_waits_for_the_step_that_is_taken_without_keeping_the_loop() -> None:
     motion = falling()
     motion.look_on(0, 1)

@@ -74,7 +74,8 @@ def test_while_stones_move_a_pointers_event_does_not_repeat_their_motion() -> No
 
 
 def test_what_was_told_once_is_not_told_again() -> None:
-    subject, news = session(), News(NAME, Scene())
+    subject = session()
+    news = News(NAME, Scene(), subject.condition())
     snapshot = subject.snapshot().model_dump(mode="json")
     first, second = (
         news.change(subject.scene, subject.condition(), snapshot, moving=False, edited=True) for _ in range(2)

@@ -43,15 +43,6 @@ def test_a_push_wakes_a_stone_that_rests_without_a_jump_in_time() -> None:
     assert session.shown.simulation_time == pytest.approx(time, abs=0.01)
 
 
-def test_what_is_seen_at_a_point_of_the_picture_is_picked_by_its_id_and_nothing_is_changed() -> None:
-    session = Session("0" * 32, Stage.of(SCENE))
-    shown = session.shown
-    assert session.pick(0, 0) == SCENE.stones[0].id
-    assert session.pick(5, 5) is None
-    assert session.shown is shown
-    assert Session("0" * 32, Stage.of(Scene(stones=()))).pick(0, 0) is None
-
-
 def test_a_push_past_the_stone_changes_nothing() -> None:
     session = Session("0" * 32, Stage.of(SCENE))
     before = session.shown

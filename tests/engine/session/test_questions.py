@@ -13,7 +13,7 @@ from culet.engine.session.picking import Placed
 from culet.engine.session.session import Session
 from culet.engine.session.viewpoint import axes
 from culet.scene import Camera, Scene
-from culet_protocol.messages import Outline, Outlined, Pick, Picked
+from culet_protocol.messages import Answer, Outline, Outlined, Pick, Picked, Question
 from shared import stones
 from shared.stages import staged
 
@@ -25,6 +25,10 @@ ASIDE: dict[str, Any] = {"camera": AHEAD.model_dump(), "stones": [{"id": "left",
 
 def session(**scene: Any) -> Session:  # noqa: ANN401
     return Session("0" * 32, staged(Scene.read(scene)))
+
+
+def answer(subject: Session, question: Question) -> Answer:
+    return questions.answering(subject, question)()
 
 
 def placed(x: float = 0, y: float = 0, z: float = 0, scale: float = 1) -> Placed:
@@ -59,26 +63,34 @@ def test_a_plate_seen_edge_on_has_an_outline_too() -> None:
 
 def test_a_stone_is_found_where_its_outline_is() -> None:
     subject = session(**ASIDE)
-    told = questions.answer(subject, Outline(stone="left", step=subject.shown.step))
+    told = answer(subject, Outline(stone="left", step=subject.shown.step))
     assert isinstance(told, Outlined)
     x, y = np.array(told.points).reshape(-1, 2).mean(axis=0)
-    assert questions.answer(subject, Pick(number=4, x=x, y=y)) == Picked(number=4, stone="left")
-    assert questions.answer(subject, Pick(number=5, x=0, y=0.9)) == Picked(number=5, stone=None)
+    assert answer(subject, Pick(number=4, x=x, y=y)) == Picked(number=4, stone="left")
+    assert answer(subject, Pick(number=5, x=0, y=0.9)) == Picked(number=5, stone=None)
+
+
+def test_a_question_changes_nothing_and_where_no_stone_is_none_is_found() -> None:
+    subject = session(**ASIDE)
+    shown = subject.shown
+    assert answer(subject, Pick(number=1, x=5, y=5)) == Picked(number=1, stone=None)
+    assert subject.shown is shown
+    assert answer(session(stones=[]), Pick(number=2, x=0, y=0)) == Picked(number=2, stone=None)
 
 
 def test_the_outline_is_that_of_the_picture_of_its_step() -> None:
     subject = session(**ASIDE)
     before = Outline(stone="left", step=subject.shown.step)
-    first = questions.answer(subject, before)
+    first = answer(subject, before)
     subject.remember(subject.shown)
     right, _, _ = axes(AHEAD)
     camera = AHEAD.model_copy(update={"position": tuple(np.add(AHEAD.position, right))})
     subject.change(subject.stage.showing(subject.scene.model_copy(update={"camera": camera})))
-    assert questions.answer(subject, before) == first
-    assert questions.answer(subject, Outline(stone="left", step=subject.shown.step)) != first
+    assert answer(subject, before) == first
+    assert answer(subject, Outline(stone="left", step=subject.shown.step)) != first
 
 
 @pytest.mark.parametrize(("stone", "step"), [("gone", 1), ("left", 99)])
 def test_what_is_not_there_has_no_outline(stone: str, step: int) -> None:
-    told = questions.answer(session(**ASIDE), Outline(stone=stone, step=step))
+    told = answer(session(**ASIDE), Outline(stone=stone, step=step))
     assert told == Outlined(stone=stone, step=step, points=())

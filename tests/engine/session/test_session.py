@@ -107,6 +107,16 @@ def test_a_restored_session_uses_no_number_again() -> None:
     assert restored.sequence > session.sequence + 240
 
 
+@pytest.mark.parametrize("number", [1, 2**53 - 1001, 2**53 - 1000, 2**53 - 999, 2**53, 2**63 - 1])
+def test_numbers_after_the_last_are_the_first_again_which_are_numbers_too(number: int) -> None:
+    session = Session(NAME, Stage.of(Scene()))
+    snapshot = session.snapshot().model_copy(update={"step": number, "sequence": number})
+    restored = Session.restored(NAME, session.stage, snapshot).snapshot()
+    assert 1 <= restored.step <= 2**53
+    assert 0 <= restored.sequence < 2**53
+    assert Snapshot.read(restored.model_dump(mode="json")) == restored
+
+
 def test_a_snapshot_that_is_none_is_refused_by_field() -> None:
     with pytest.raises(InputError, match="snapshot") as caught:
         Snapshot.read({"simulation": None, "fraction": 2, "falling": False, "home": {}, "step": 1, "sequence": 0})

@@ -26,13 +26,9 @@ class Counted:
 
     def __init__(self, runs: int) -> None:
         self.left, self.done = runs, threading.Event()
-        self.running, self.most_at_a_time = 0, 0
 
     def run(self, now: float) -> float | None:
-        self.running += 1
-        self.most_at_a_time = max(self.most_at_a_time, self.running)
         self.left -= 1
-        self.running -= 1
         if self.left > 0:
             return now
         self.done.set()
@@ -75,7 +71,6 @@ def test_what_is_kept_going_runs_until_nothing_is_left_to_do(stepper: Stepper) -
         stepper.keep_going(each)
     for each in several:
         assert each.done.wait(PATIENCE)
-        assert each.most_at_a_time == 1
 
 
 def test_a_step_is_taken_when_it_is_due_and_not_before(stepper: Stepper) -> None:
@@ -107,6 +102,27 @@ def test_what_is_kept_going_while_it_runs_for_the_last_time_runs_again(stepper: 
     slow.go.set()
     assert slow.begun.wait(PATIENCE)
     assert slow.runs == 2
+
+
+def test_of_one_motion_never_two_runs_are_made_at_a_time(stepper: Stepper) -> None:
+    """Though a thread is free, and the motion was to be kept going meanwhile."""
+    slow, quick = Blocked(), Counted(100)
+    stepper.keep_going(slow)
+    assert slow.begun.wait(PATIENCE)
+    stepper.keep_going(slow)
+    stepper.keep_going(quick)  # by the thread that is free, after whatever was due before
+    assert quick.done.wait(PATIENCE)
+    assert slow.runs == 1
+    slow.go.set()
+
+
+def test_while_a_step_takes_long_what_was_put_off_before_is_run_when_it_is_due(stepper: Stepper) -> None:
+    slow, later = Blocked(), Timed(time.monotonic() + 0.1)
+    stepper.keep_going(later)
+    stepper.keep_going(slow)
+    assert slow.begun.wait(PATIENCE)
+    assert later.done.wait(PATIENCE)
+    slow.go.set()
 
 
 def test_nothing_runs_after_the_end() -> None:

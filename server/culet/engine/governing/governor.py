@@ -35,11 +35,17 @@ MEMORY = 0.2
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
 LEAST_PIXELS = 640 * 360
-"""Of a frame, below which none is scaled unless the viewer asked for less, or many share the render thread: then down
-to this times the share, so that all frames together have as many pixels."""
+"""Of a frame, below which none is scaled unless the viewer asked for less, or the cheapest setting at that size is too
+dear for ALONE_RATE and CROWDED_RATE."""
+SMALLEST_PIXELS = 320 * 180
+"""Of a frame, below which none is scaled then either, unless many share the render thread: then down to LEAST_PIXELS
+times the share, so that all frames together have as many pixels."""
+ALONE_RATE = 15.0
+"""Frames per second for which a frame of a session that is alone is made smaller than LEAST_PIXELS: with fewer the eye
+sees single pictures, and no motion. Frames of the cheapest setting at the least size may come oftener, if there is
+time, but are not made smaller for it."""
 CROWDED_RATE = 8.0
-"""Frames per second for which a frame is made smaller than that: fewer look like a row of pictures. Frames of the
-cheapest setting at the least size may come oftener, if there is time, but are not made smaller for it."""
+"""The same where many share the render thread."""
 SHRINK = 2**-0.25
 """Of width and height, each time: a step that is hardly seen."""
 
@@ -171,13 +177,15 @@ class Governor:
             return
         overhead = min(overhead, 1 / frames_per_second)  # a longer one was a stall, and says nothing of the next frame
         unit = seconds / (plan.size[0] * plan.size[1] * plan.setting.pixel_cost)
-        late = seconds + overhead > LATE * share / frames_per_second
+        least_rate = min(frames_per_second, max(ALONE_RATE * share, CROWDED_RATE))
+        held = frames_per_second if self.has_cheaper(plan) else least_rate
+        late = seconds + overhead > LATE * share / held
         if self._unit is None or (late and unit > self._unit):
             self._unit = unit
         self._unit += MEMORY * (unit - self._unit)
         self._overhead += MEMORY * (overhead - self._overhead)
         self._choose(plan.wanted, self._budget(frames_per_second, share))
-        self._shrink(plan.wanted, self._budget(min(frames_per_second, CROWDED_RATE), share), share)
+        self._shrink(plan.wanted, self._budget(least_rate, share), share)
 
     def _budget(self, frames_per_second: float, share: float) -> float:
         """For rendering a frame."""
@@ -185,12 +193,14 @@ class Governor:
         return max(SHARE * interval - self._overhead, LEAST_SHARE * interval)
 
     def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
-        """Make frames of the cheapest setting so small that a crowd's rate is held, and larger when there is time."""
+        """Make frames of the cheapest setting so small that the least rate is held, and larger when there is time."""
         cost = self._expected(self._rung, wanted)
         if self._rung != worthwhile_rungs(self._ladder, self._errors, wanted)[-1] or cost <= 0:
             self._shrunk = 0
             return
-        most = math.floor(math.log(max(share, 1e-6)) / 2 / math.log(SHRINK))
+        pixels = wanted[0] * wanted[1] * _scale(self.setting, wanted) ** 2
+        smallest = max(min(share, SMALLEST_PIXELS / pixels), 1e-6)
+        most = math.floor(math.log(smallest) / 2 / math.log(SHRINK) + 1e-9)
         needed = min(most, max(0, math.ceil(math.log(budget / cost) / 2 / math.log(SHRINK))))
         if needed > self._shrunk:
             self._shrunk, self._easier = needed, 0

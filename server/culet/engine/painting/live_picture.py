@@ -260,7 +260,7 @@ class LivePicture:
         if isinstance(self.making, FrameWork):
             self.making = None
         self.picture = None
-        self.session.motion.pause()
+        self.session.motion.look_away()
         self.unwatched_at = now
         if self.state in (State.REDUCED, State.FULL):
             self.state = State.BLANK

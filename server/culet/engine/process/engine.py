@@ -185,9 +185,6 @@ class Engine:
             self._spawn(self._try_again(session))
         problem = protocol.SessionProblem(session=session, title=error.title, detail=str(error))
         self._spawn(self._peers.tell(encoded(problem)))
-        live = self._painter.pictures.get(session)
-        if live is not None:  # its stone may have stopped
-            self._tell(live.session.change_told(edited=True))
 
     async def _try_again(self, session: str) -> None:
         await asyncio.sleep(RETRY_SECONDS)

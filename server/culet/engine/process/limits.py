@@ -16,7 +16,7 @@ class Limits(Settings):
     trust_network: bool = Field(
         default=False,
         description="Let the engine publish frames, and take control, at tcp:// addresses that other machines reach. "
-        "Whoever reaches them sees every session that is watched and its id, by which it may be changed and deleted.",
+        "Whoever reaches the frames sees every session that is watched; whoever reaches control changes all sessions.",
     )
     engine_idle_seconds: float = Field(
         3600,

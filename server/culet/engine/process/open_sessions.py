@@ -12,12 +12,12 @@ from culet.engine.painting.painter import Painter
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.engine.session import events
-from culet.engine.session.overlaps import overlaps
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
 from culet.errors import BusyError, NotFoundError
 from culet.scene import Environment, Scene
-from culet.stage import Library, Sky, Stage
+from culet.simulation.overlaps import overlaps
+from culet.stage import Library, Stage
 from culet_protocol.engine import OpenSession
 
 SUBSCRIPTIONS = 4096
@@ -79,14 +79,10 @@ class OpenSessions:
         snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
         self._make_room()
         own = scene.environment if snapshot is None else snapshot.environment or scene.environment
-        stage, sky = await asyncio.to_thread(self._staged, scene, own)
+        session = await asyncio.to_thread(self._made, request.session, scene, own, snapshot)
         if request.session in self:  # opened twice at once
             return self.get(request.session)
         self._make_room()
-        if snapshot is None:
-            session = Session(request.session, stage, sky=sky, history=self._history)
-        else:
-            session = Session.restored(request.session, stage, snapshot, sky=sky, history=self._history)
         if request.client is not None:
             self._clients[request.session] = request.client
         self._painter.pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
@@ -145,9 +141,12 @@ class OpenSessions:
             raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
         self.close(oldest)
 
-    def _staged(self, scene: Scene, environment: Environment) -> tuple[Stage, Sky]:
-        """The stage of a new session, and its own sky, which is of another environment if the scene's is the light."""
-        return Stage.of(scene, self._library), events.own_sky(self._library.sky(environment))
+    def _made(self, name: str, scene: Scene, own: Environment, snapshot: Snapshot | None) -> Session:
+        """A session whose own sky is of that environment. Takes a while, as shapes and their hulls are made."""
+        stage, sky = Stage.of(scene, self._library), events.own_sky(self._library.sky(own))
+        if snapshot is None:
+            return Session(name, stage, sky=sky, history=self._history)
+        return Session.restored(name, stage, snapshot, sky=sky, history=self._history)
 
 
 def history_length(limits: Limits, budget: int) -> int:
@@ -159,7 +158,7 @@ async def described(live: LivePicture) -> dict[str, Any]:
     """A session as the gateway is told of it."""
     session = live.session
     async with session.motion.still():
-        state, found = session.described(), overlaps(session.motion.world)
+        state, found = session.described(), await asyncio.to_thread(overlaps, session.motion.world)
     return state | {
         "watched": live.watched,
         "step": session.shown.step,

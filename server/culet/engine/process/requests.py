@@ -6,6 +6,7 @@ import asyncio
 import os
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any, assert_never
 
@@ -59,6 +60,7 @@ class Requests:
         self._library = Library(self._meshes, self._skies)
         self.sessions = OpenSessions(painter, limits, memory, self._library)
         self._stills = StillRequests(painter, stills, self.sessions, self._library, limits, memory)
+        self._question_thread = ThreadPoolExecutor(1, "questions")
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)
 
@@ -131,8 +133,11 @@ class Requests:
 
     async def _ask(self, request: protocol.Ask) -> dict[str, Any]:
         session = self.sessions.get(request.session).session
-        async with session.lock:
-            return questions.answer(session, request.question).model_dump(mode="json")
+        async with session.asked:
+            async with session.lock:
+                work = questions.answering(session, request.question)
+            answer = await asyncio.get_running_loop().run_in_executor(self._question_thread, work)
+        return answer.model_dump(mode="json")
 
     def _demand(self, request: protocol.Demand) -> dict[str, Any]:
         live = self.sessions.get(request.session)

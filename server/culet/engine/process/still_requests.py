@@ -81,8 +81,8 @@ class StillRequests:
             return await asyncio.to_thread(Stage.of, Scene.read(request.scene), self._library), STILL_SIZE, None
         live = self._sessions.get(request.session)
         async with live.session.lock:
-            past = live.session.recall(request.step)
-            stage = await asyncio.to_thread(events.past_stage, past, live.session, self._library)
+            past, before = live.session.recall(request.step), events.known_to(live.session)
+        stage = await asyncio.to_thread(events.past_stage, past, before, self._library)
         return stage, live.size, past.step
 
     def _make_room_for(self, still: Still) -> None:

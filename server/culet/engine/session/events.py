@@ -50,22 +50,22 @@ def apply(session: Session, event: SessionEvent, library: Library) -> None:
         case messages.Balance():
             session.balance = event
         case messages.SetScene():
-            stage = stage_for(Scene.read(event.scene), session, library)
+            stage = Stage.of(Scene.read(event.scene), library, before=known_to(session))
             session.replace(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
         case _:
             assert_never(event)
 
 
-def stage_for(scene: Scene, session: Session, library: Library) -> Stage:
-    """The stage of a scene, with what the session has of it already. May make shapes, which takes a while."""
-    return Stage.of(scene, library, before=session.stage.under(session.sky))
+def known_to(session: Session) -> Stage:
+    """The shapes that the session has, and the picture of its own sky, for another stage to be made of."""
+    return session.stage.under(session.sky)
 
 
-def past_stage(past: Past, session: Session, library: Library) -> Stage:
-    """What a session showed at a step; NotFoundError if that is not kept any more. May make shapes, which takes a
-    while."""
+def past_stage(past: Past, before: Stage, library: Library) -> Stage:
+    """What a session showed at a step, by what is `known_to` the session; NotFoundError if that is not kept any more.
+    May make shapes, which takes a while."""
     try:
-        return stage_for(past.scene, session, library)
+        return Stage.of(past.scene, library, before=before)
     except SceneError as error:
         raise NotFoundError(f"what was shown at step {past.step} is not kept any more: {error}") from error
 
@@ -177,6 +177,6 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
     if "camera" in patch:
         at_home = document | {"camera": home.model_dump(mode="json")}
         home = read_patched(at_home, patch).camera
-    stage = stage_for(after, session, library)
+    stage = Stage.of(after, library, before=known_to(session))
     sky = None if after.environment == before.environment else own_sky(stage.sky)
     session.change(put_down(stage, session.stage), home=home, sky=sky)

@@ -101,6 +101,9 @@ class Motion:
         self._timer = timer
         self._allowance = Allowance()
         self._guard = threading.Lock()
+        self._turn = asyncio.Lock()
+        """Of those on the loop who want the guard: one at a time waits for it in a thread. If many did, no thread might
+        be left for what the one who has it waits for, and all would wait for ever."""
         self._lease: Lease | None = None
         self._lost = 0.0
         """s of it that are accounted for."""
@@ -109,6 +112,8 @@ class Motion:
         self._advanced_at: float | None = None
         """s, steady clock, without what was lost: up to when time was simulated. None: time begins with the next
         look."""
+        self._seen_until = 0.0
+        """s of simulation: up to when the motion was shown last."""
         self._write_down()
 
     def restore(self, snapshot: dict[str, Any] | None, fraction: float, *, falling: bool) -> None:
@@ -123,17 +128,18 @@ class Motion:
     @contextlib.asynccontextmanager
     async def still(self) -> AsyncIterator[None]:
         """No step is taken meanwhile. Waits for the steps that are being taken, without keeping the loop."""
-        if not self._guard.acquire(blocking=False):
-            taking = asyncio.get_running_loop().run_in_executor(None, self._guard.acquire)
+        async with self._turn:
+            if not self._guard.acquire(blocking=False):
+                taking = asyncio.get_running_loop().run_in_executor(None, self._guard.acquire)
+                try:
+                    await asyncio.shield(taking)
+                except asyncio.CancelledError:
+                    taking.add_done_callback(lambda _: self._guard.release())
+                    raise
             try:
-                await asyncio.shield(taking)
-            except asyncio.CancelledError:
-                taking.add_done_callback(lambda _: self._guard.release())
-                raise
-        try:
-            yield
-        finally:
-            self._guard.release()
+                yield
+            finally:
+                self._guard.release()
 
     @property
     def moving(self) -> bool:
@@ -158,10 +164,13 @@ class Motion:
         if instant.settled:  # nothing changes, not even the time shown: another time would be another picture
             fraction = 1.0
         before, after = instant.previous.time, instant.state.time
+        time = before + (after - before) * fraction
+        if now is not None:
+            self._seen_until = time
         poses = between(instant.previous, instant.state, fraction)
         return Seen(
             {name: (pose.position, pose.orientation) for name, pose in zip(instant.names, poses, strict=True)},
-            before + (after - before) * fraction,
+            time,
             self.moving,
         )
 
@@ -201,7 +210,6 @@ class Motion:
         if _moved_by(stage) == _moved_by(self._stage):
             self._stage = stage
             return
-        was_moving = self.moving
         bodies = {body.name: body for body in bodies_of(stage)}
         if any(body.name in bodies and _same_form(body, bodies[body.name]) for body in self.world.bodies):
             self._adapt(stage, bodies, states or {})
@@ -215,8 +223,6 @@ class Motion:
         time_step = stage.scene.simulation.time_step
         if time_step != self.clock.time_step:
             self.clock = _clock(time_step, self.fraction)
-        if not was_moving:
-            self.pause()  # the time that they rested is not made up for
         self._write_down()
 
     def replace(self, stage: Stage) -> None:
@@ -240,8 +246,9 @@ class Motion:
         self._check_stones("fall")
         if falling:
             self.world.prepare()
+        elif self.falling:
+            self._put_by_what_was_seen()
         self.falling = falling
-        self.pause()
         self._write_down()
 
     def toggle_fall(self, name: str | None = None) -> None:
@@ -269,13 +276,10 @@ class Motion:
     def push(self, name: str, point: Triple, velocity: Triple) -> None:
         """Strike a stone at a point of the world (R) so that its centre's velocity changes by `velocity` (R/s), and let
         time go on. InputError without that stone, or if the blow is too strong."""
-        was_moving = self.moving
         body = self.world.bodies[self.world.number(name)]
         x, y, z = (component * body.mass for component in velocity)
         self.world.push(name, (x, y, z), point)
         self.falling = True
-        if not was_moving:
-            self.pause()
         self._write_down()
 
     def advance(self, now: float, share: float = 1.0) -> bool:
@@ -343,6 +347,11 @@ class Motion:
         problem, self.problem = self.problem, None
         return problem
 
+    def look_away(self) -> None:
+        """Nobody sees the stones any more: no further step is taken, and the time until the next look is not lost. From
+        any thread, even while a step is taken."""
+        self._lease = None
+
     def pause(self) -> None:
         """Time that passes until the next look at the clock is not made up for, nor is any lost."""
         self._advanced_at = self._lease = None
@@ -352,6 +361,7 @@ class Motion:
         self.falling = False
         self.pause()
         self.clock.restart()
+        self._seen_until = 0.0
         self._write_down()
 
     def _adapt(self, stage: Stage, wanted: Mapping[str, Body], states: Mapping[str, BodyState]) -> None:
@@ -411,6 +421,13 @@ class Motion:
         else:
             self._write_down()
 
+    def _put_by_what_was_seen(self) -> None:
+        """As much of the next step as pictures have shown: or else the stones would stop where they were when the last
+        step was taken, which is back from where they were seen."""
+        before, step = self.world.previous.time, self.clock.time_step
+        seen = min((self._seen_until - before) / step, LARGEST_FRACTION)
+        self.clock.advance(max(seen - self.fraction, 0.0) * step)
+
     def _check_stones(self, verb: str) -> None:
         if not self.world.bodies:
             raise InputError(f"expected a scene with a stone, got none: nothing can {verb}")
@@ -446,6 +463,8 @@ class Motion:
     def _write_down(self) -> None:
         """The latest states, for those who look on."""
         world = self.world
+        if not self.falling or world.settled:
+            self.pause()  # the time that stones rest is not made up for, whatever lets them go on
         self._instant = Instant(
             names=tuple(body.name for body in world.bodies),
             previous=world.previous,

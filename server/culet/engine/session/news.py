@@ -11,14 +11,16 @@ from culet_protocol.parts import STONE, changed_parts
 
 
 class News:
-    """Mutable: it remembers what was told. Used under the session's lock, or two could tell the same."""
+    """Mutable: it remembers what was told. Used on the loop, while nothing of the session is being changed."""
 
-    def __init__(self, session: str, scene: Scene) -> None:
-        """Of the session of that name, which has just been opened with this scene, and of whose snapshot nothing was
-        told."""
+    def __init__(self, session: str, scene: Scene, condition: Condition) -> None:
+        """Of the session of that name, which is about to be opened with this scene in this condition, and of whose
+        snapshot nothing was told."""
         self._session = session
         self.revision = 0
         """Of what was told last."""
+        self.condition = condition
+        """What was told last."""
         self._scene = scene
         self._snapshot: dict[str, Any] = {}
 
@@ -30,7 +32,8 @@ class News:
         parts = scene_parts(self._scene, scene)
         if moving and not any(name.startswith(STONE) or name == "stones" for name in parts):
             snapshot = {name: value for name, value in snapshot.items() if name != "simulation"}
-        since, self.revision, self._scene = self.revision, self.revision + 1, scene
+        since, self.revision = self.revision, self.revision + 1
+        self._scene, self.condition = scene, condition
         return SessionChange(
             session=self._session,
             revision=self.revision,

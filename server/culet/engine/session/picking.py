@@ -19,6 +19,10 @@ from culet.stage import Stage
 Array = NDArray[np.float64]
 
 
+NEARLY = 1e-9
+"""Of a stone's radius: a corner so near to the line of sight counts as being on either side."""
+
+
 class Placed(NamedTuple):
     """A stone where it is."""
 
@@ -111,7 +115,7 @@ def _into_planes(start: Array, way: Array, planes: Array) -> float:
 def _into_triangles(start: Array, way: Array, shape: Shape, behind: float) -> float:
     """Along a line to the first triangle beyond `behind` that it meets from outside (Moeller and Trumbore 1997); a line
     through an edge meets the triangles on both of its sides."""
-    corners = shape.vertices[shape.triangles]
+    corners = shape.vertices[shape.triangles[_about(start, way, shape)]]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     across = np.cross(way, second)
     facing = np.einsum("ij,ij->i", first, across)
@@ -124,3 +128,15 @@ def _into_triangles(start: Array, way: Array, shape: Shape, behind: float) -> fl
     distances = np.einsum("ij,ij->i", second, beside) / facing
     met = (u >= 0) & (v >= 0) & (u + v <= 1) & (distances > behind)
     return float(distances[met].min(initial=math.inf))
+
+
+def _about(start: Array, way: Array, shape: Shape) -> NDArray[np.bool_]:
+    """(T,) whether a triangle may meet the line: not if all of it is on one side of a plane through the line."""
+    across = np.cross(way, np.eye(3)[np.abs(way).argmin()])
+    across /= np.linalg.norm(across)
+    about = np.ones(len(shape.triangles), bool)
+    for normal in (across, np.cross(way, across)):
+        height = (shape.vertices - start) @ normal
+        for outside in (height > NEARLY, height < -NEARLY):
+            about &= ~outside[shape.triangles].all(axis=1)
+    return about

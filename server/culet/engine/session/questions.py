@@ -2,38 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import assert_never
 
 from culet.engine.session.outline import outline_of
-from culet.engine.session.picking import Placed
+from culet.engine.session.picking import Placed, placed, struck
 from culet.engine.session.session import Session
 from culet.errors import NotFoundError
-from culet.scene import Scene
+from culet.scene import Camera, Scene
 from culet.stage import Stage
 from culet_protocol.messages import Answer, Outline, Outlined, Pick, Picked, Question
 
 
-def answer(session: Session, question: Question) -> Answer:
-    """Of what the session shows, or showed at the step that is asked about; changes nothing."""
+def answering(session: Session, question: Question) -> Callable[[], Answer]:
+    """What works out the answer from what the session shows now, or showed at the step that is asked about. In any
+    thread: of many stones of many triangles it takes a while."""
     match question:
-        case Pick(number=number, x=x, y=y):
-            return Picked(number=number, stone=session.pick(x, y))
-        case Outline(stone=name, step=step):
-            points = _outline(session, name, step)
-            return Outlined(stone=name, step=step, points=tuple(c for point in points for c in point))
+        case Pick():
+            return partial(_picked, session.scene.camera, session.shown.stage, question)
+        case Outline():
+            try:
+                past = session.recall(question.step).scene
+            except NotFoundError:
+                past = None
+            return partial(_outlined, past, session.shown.stage, question)
         case _:
             assert_never(question)
 
 
-def _outline(session: Session, name: str, step: int) -> list[tuple[float, float]]:
-    """Empty for a stone that is not there, or not any more: another viewer may have removed or cut it anew."""
-    try:
-        past = session.recall(step).scene
-    except NotFoundError:
-        return []
-    stones = _placed(past, session.shown.stage)
-    return next((outline_of(past.camera, stone) for stone in stones if stone.name == name), [])
+def _picked(camera: Camera, stage: Stage, question: Pick) -> Picked:
+    met = struck(camera, placed(stage), question.x, question.y)
+    return Picked(number=question.number, stone=None if met is None else met.name)
+
+
+def _outlined(past: Scene | None, stage: Stage, question: Outline) -> Outlined:
+    """Without points for a stone that is not there, or not any more: another viewer may have removed or cut it anew."""
+    stones = [] if past is None else [stone for stone in _placed(past, stage) if stone.name == question.stone]
+    points = [] if past is None or not stones else outline_of(past.camera, stones[0])
+    return Outlined(stone=question.stone, step=question.step, points=tuple(c for point in points for c in point))
 
 
 def _placed(scene: Scene, stage: Stage) -> Iterator[Placed]:

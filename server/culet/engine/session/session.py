@@ -62,6 +62,8 @@ class Session:
         self.key = watch_key(name)
         """Its watch id: the 16 bytes that its frames begin with."""
         self.lock = asyncio.Lock()
+        self.asked = asyncio.Lock()
+        """Held while a question is answered: of each session one at a time, so that none keeps all others waiting."""
         self.balance = Balance(exactness=BALANCED, pinned=False)
         """Of speed and exactness, while things move."""
         self.sequence = 0
@@ -70,7 +72,7 @@ class Session:
         self.removals = Removals()
         """Stones that may come back."""
         self.motion = Motion(stage, timer=timer)
-        self.news = News(name, stage.scene)
+        self.news = News(name, stage.scene, self.condition())
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
         self.home = stage.scene.camera
@@ -140,11 +142,6 @@ class Session:
         """As `Motion.toggle_fall`."""
         self.motion.toggle_fall(name)
         self._show()
-
-    def pick(self, x: float, y: float) -> str | None:
-        """The id of the stone that is seen at a point of the picture (halves of its height); None if there is none."""
-        met = struck(self.scene.camera, placed(self.shown.stage), x, y)
-        return None if met is None else met.name
 
     def push(self, x: float, y: float, right: float, up: float) -> None:
         """Strike the stone at a point of the picture (halves of its height), by R/s along the camera's right and up.

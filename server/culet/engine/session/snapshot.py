@@ -60,7 +60,7 @@ class Snapshot(BaseModel):
     @property
     def next_step(self) -> int:
         """A step number that was never used."""
-        return (self.step + NUMBER_GAP) % NUMBERS
+        return (self.step - 1 + NUMBER_GAP) % NUMBERS + 1
 
     @property
     def next_sequence(self) -> int:

@@ -1,16 +1,17 @@
 /* Islands: stones that press on each other, which gain energy, fall asleep and wake together. */
 #include "solver.h"
 
-#define STILL 1e-3       /* sqrt(g size): a stone slower than this for STILL_SECONDS may sleep */
+#define STILL 1e-3         /* sqrt(g size): a stone slower than this for STILL_SECONDS may sleep */
 #define STILL_SECONDS 0.3
-#define FIXED 1e-7       /* sqrt(g size): of a stone that leans, which only time tells from one that falls */
+#define FIXED 1e-7         /* sqrt(g size): of a stone that leans, which only time tells from one that falls */
 #define FIXED_SECONDS 0.5
-#define WAKING 3e-2      /* sqrt(g size): what is slower does not wake a sleeper by touching it */
-#define WAKING_GAP 1e-3  /* size */
-#define SUPPORT_GAP 1e-4 /* size */
-#define SUPPORT 1e-3     /* size: nearer to the edge of what carries it a stone is balancing */
-#define LEVEL 0.999      /* cosine: contacts more slanted than this do not make a level base */
-#define MAX_FEET 256
+#define WAKING 3e-2        /* sqrt(g size): what is slower does not wake a sleeper by touching it */
+#define WAKING_GAP 1e-3    /* size */
+#define SUPPORT_GAP 1e-4   /* size */
+#define SUPPORT 1e-3       /* size: nearer to the edge of what carries it a stone is balancing */
+#define LEVEL 0.999        /* cosine: contacts more slanted than this do not make a level base */
+#define MAX_FEET                                                                                                       \
+  (2 * CULET_MAX_VERTICES) /* a hull lies on all of its vertices at most, and on a few points of others */
 
 void separate_islands(World *world) {
   for (int i = 0; i < world->count; i++) world->courses[i].parent = i;
@@ -63,6 +64,32 @@ int wake_touched(World *world) {
 
 typedef enum { FALLS, LEANS, STANDS } Support;
 
+/* Whether the origin is within the convex polygon of these points, and no nearer to its edges than SUPPORT. The edges are
+ * found one after the other (Jarvis 1973), with all points to their left. */
+static int carried(const double *x, const double *z, int feet, double size) {
+  int start = 0, p;
+  for (int i = 1; i < feet; i++)
+    if (x[i] < x[start] || (x[i] == x[start] && z[i] < z[start])) start = i;
+  p = start;
+  for (int edges = 0; edges < feet; edges++) {
+    int q = NONE;
+    double ex = 0, ez = 0;
+    for (int r = 0; r < feet; r++) {
+      double rx = x[r] - x[p], rz = z[r] - z[p], squared = rx * rx + rz * rz, side = ex * rz - ez * rx;
+      if (squared < 1e-18 * size * size) continue;
+      if (q != NONE && (side > 0 || (side == 0 && squared <= ex * ex + ez * ez))) continue;
+      q = r;
+      ex = rx;
+      ez = rz;
+    }
+    if (q == NONE) return 0; /* all in one point */
+    if ((ez * x[p] - ex * z[p]) / sqrt(ex * ex + ez * ez) < SUPPORT * size) return 0;
+    p = q;
+    if (p == start) break;
+  }
+  return 1;
+}
+
 /* STANDS if the centre of mass is above the polygon of the points that carry it, by SUPPORT: then no small push makes it
  * fall. LEANS if slanted contacts hold it, or walls and floor together. */
 static Support support_of(const World *world, int number) {
@@ -81,18 +108,7 @@ static Support support_of(const World *world, int number) {
     x[feet] = arm.x;
     z[feet++] = arm.z;
   }
-  /* each pair of feet with all others on one side is an edge of their polygon */
-  int inside = feet >= 3;
-  for (int p = 0; inside && p < feet; p++)
-    for (int q = 0; inside && q < feet; q++) {
-      double ex = x[q] - x[p], ez = z[q] - z[p], size = sqrt(ex * ex + ez * ez);
-      if (size < 1e-9 * body->size) continue;
-      int edge = 1;
-      for (int r = 0; edge && r < feet; r++)
-        edge = ex * (z[r] - z[p]) - ez * (x[r] - x[p]) >= -1e-9 * size * body->size;
-      if (edge && (ez * x[p] - ex * z[p]) / size < SUPPORT * body->size) inside = 0;
-    }
-  if (inside) return STANDS;
+  if (feet >= 3 && carried(x, z, feet, body->size)) return STANDS;
   return slanted && feet >= 2 ? LEANS : FALLS;
 }
 

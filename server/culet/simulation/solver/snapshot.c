@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#define MOST_BEDS (INT32_MAX / 2) /* as many stones can still fall asleep, one each second for 34 years */
+
 typedef struct {
   int32_t version, bodies, surfaces, beds, manifolds, contacts;
 } Header;
@@ -78,37 +80,42 @@ void culet_world_save(const CuletWorld *world, void *bytes) {
   }
 }
 
-static int all_finite(const double *numbers, int count) {
+/* No scene reaches 1e30, and the square of what 1e30 leads to is still a double. */
+static int usable(const double *numbers, int count) {
   for (int i = 0; i < count; i++)
-    if (!isfinite(numbers[i])) return 0;
+    if (!(fabs(numbers[i]) <= 1e30)) return 0;
   return 1;
 }
 
-static int sound_body(const SavedBody *body) {
+static int sound_body(const SavedBody *body, const Header *header) {
   const double *q = body->orientation;
   double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  return all_finite(body->position, 15) && fabs(norm - 1) < 1e-9 && body->still >= 0 && body->fixed >= 0 &&
-         (body->asleep & ~1) == 0 && (body->held & ~1) == 0;
+  return usable(body->position, 3) && fabs(norm - 1) < 1e-9 && usable(body->velocity, 3) &&
+         usable(body->angular_momentum, 3) && usable(&body->still, 1) && body->still >= 0 && usable(&body->fixed, 1) &&
+         body->fixed >= 0 && (body->asleep & ~1) == 0 && (body->held & ~1) == 0 && body->bed >= 0 &&
+         body->bed < header->beds;
 }
 
 static int sound_manifold(const SavedManifold *manifold, const Header *header) {
   int of_surface = manifold->other == NONE && manifold->surface >= 0 && manifold->surface < header->surfaces;
   int of_pair = manifold->other >= 0 && manifold->other < manifold->body && manifold->surface == NONE;
   return manifold->body >= 0 && manifold->body < header->bodies && manifold->count > 0 && (of_surface || of_pair) &&
-         all_finite(manifold->rolling_impulse, 3);
+         usable(manifold->rolling_impulse, 3);
 }
 
 /* Whether the bytes are a snapshot of a world with so many bodies and surfaces. */
 static int sound(const World *world, const Header *header, const char *bytes, size_t size) {
   if (header->version != CULET_INTERFACE || header->bodies != world->count ||
-      header->surfaces != world->surface_count || header->beds < 0 || header->manifolds < 0 || header->contacts < 0 ||
+      header->surfaces != world->surface_count || header->beds < 0 || header->beds > MOST_BEDS ||
+      header->manifolds < 0 || header->contacts < 0 || (size_t)header->manifolds > size / sizeof(SavedManifold) ||
+      (size_t)header->contacts > size / sizeof(SavedContact) ||
       size != size_of(header->bodies, header->manifolds, header->contacts))
     return 0;
   const char *at = bytes + sizeof *header;
   for (int i = 0; i < header->bodies; i++) {
     SavedBody body;
     at = take(at, &body, sizeof body);
-    if (!sound_body(&body)) return 0;
+    if (!sound_body(&body, header)) return 0;
   }
   int left = header->contacts;
   for (int i = 0; i < header->manifolds; i++) {
@@ -119,7 +126,8 @@ static int sound(const World *world, const Header *header, const char *bytes, si
     for (int k = 0; k < manifold.count; k++) {
       SavedContact contact;
       at = take(at, &contact, sizeof contact);
-      if (!all_finite(&contact.normal_impulse, 4) || contact.normal_impulse < 0) return 0;
+      if (!usable(&contact.normal_impulse, 1) || contact.normal_impulse < 0 || !usable(contact.slip_impulse, 3))
+        return 0;
     }
   }
   return left == 0;

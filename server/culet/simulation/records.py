@@ -1,0 +1,56 @@
+"""What snapshots are made of: numbers in range, and a base that refuses what it does not know.
+
+Python writes the shortest decimal that reads back as the same double, so nothing is lost on the way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated, Any, TypeVar
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+
+from culet.errors import InputError
+from culet.scene.refusal import scene_error
+from culet.simulation.bodies import BodyState
+from culet.simulation.state import RigidState
+
+Number = Annotated[float, Field(strict=True, ge=-1e30, le=1e30)]
+"""No scene reaches 1e30, and the square of what 1e30 leads to is still a double."""
+Count = Annotated[int, Field(strict=True, ge=0, le=2**53)]
+Time = Annotated[float, Field(strict=True, ge=0, le=1e30)]
+"""s."""
+Numbers = tuple[Number, Number, Number]
+
+
+def _unit(q: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    if abs(sum(c * c for c in q) - 1) > 1e-9:  # stepping keeps it to 1e-15
+        raise ValueError("expected a unit quaternion")
+    return q
+
+
+Rotation = Annotated[tuple[Number, Number, Number, Number], AfterValidator(_unit)]
+"""A unit quaternion w, x, y, z, as it came: normalising it would change the last bit."""
+
+
+class Record(BaseModel):
+    """Immutable; unknown keys, NaN and infinity are errors."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+AnyRecord = TypeVar("AnyRecord", bound=Record)
+
+
+def read_record(kind: type[AnyRecord], data: Any) -> AnyRecord:  # noqa: ANN401 - whatever JSON held
+    """InputError that names the first field that cannot be used."""
+    try:
+        return kind.model_validate(data)
+    except ValidationError as error:
+        found = scene_error(error)
+        raise InputError(f"simulation snapshot: {found}", found.field) from error
+
+
+def plain(state: RigidState | BodyState) -> dict[str, Any]:
+    """As JSON's types, field by field."""
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(state).items()}
