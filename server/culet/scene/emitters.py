@@ -19,7 +19,7 @@ SUN_DEGREES = 0.2666
 
 
 class _Lamp(Model):
-    """In the sky, infinitely far away: stones see it, and it lights no floor."""
+    """In the sky, infinitely far away. Stones see it, and it lights floor and walls where none of them is before it."""
 
     direction: Vector = Field(description="Towards it; of any length but 0.")
     softness: Annotated[float, Field(ge=0.02, le=1)] = Field(
@@ -86,7 +86,10 @@ class Sun(_Lamp):
 
 
 class PointLight(Model):
-    """A point without falloff: it lights floor and walls, and stones shade them from it. Stones do not see it."""
+    """A point without falloff: a matte surface shows its albedo times `colour` times the cosine to the point, however
+    far that is. So the irradiance of what faces the point is pi times its colour, at the stones as everywhere. Stones
+    throw shadows and caustics of it, and do not see it.
+    """
 
     shape: Literal["point"] = "point"
     position: Vector

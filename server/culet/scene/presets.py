@@ -8,12 +8,11 @@ from types import MappingProxyType
 from typing import Literal
 
 from culet.errors import NotFoundError
-from culet.scene import piles, showcase
+from culet.scene import daylight, piles, showcase
 from culet.scene.camera import Camera
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import Scene
 from culet.scene.report_scenes import CLASSIC, classic, tinted
-from culet.scene.room import Plane
 
 Group = Literal["diamonds", "instruments", "coloured stones", "several stones", "the report"]
 
@@ -32,7 +31,6 @@ class Preset:
     scene: Scene
 
 
-_MATTE = LEGACY_DEFAULT.model_copy(update={"floor": Plane(kind="matte")})
 _FIG_1 = classic(position=(0, 2, 0), camera=Camera(position=(0, 1.6, 8), target=(0, 0.6, 0), fov_degrees=45))
 
 _ALL = (
@@ -45,7 +43,15 @@ _ALL = (
     Preset(
         "mirror", "Mirror floor", "A diamond that floats over a mirror, lit red and blue.", "diamonds", LEGACY_DEFAULT
     ),
-    Preset("matte", "Checkered floor", "A diamond over a checkered floor, lit by two lights.", "diamonds", _MATTE),
+    Preset("sun", "Sun", "A diamond lies in the low sun, and throws its fire about.", "diamonds", daylight.SUN),
+    Preset("window", "Window", "A diamond lies in the soft light of a tall window.", "diamonds", daylight.WINDOW),
+    Preset(
+        "matte",
+        "Checkered floor",
+        "A diamond over a checkered floor, on which two lights throw its flecks.",
+        "diamonds",
+        daylight.MATTE,
+    ),
     Preset(
         "face-up",
         "Face up",

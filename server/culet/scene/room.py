@@ -68,7 +68,8 @@ class StudioFloor(Model):
 
     Stones see its colour. The camera also sees stones softly reflected in it, and below them a contact shadow: the
     shadow under an even sky of an ellipsoid that is spread as the stone is; light that goes through the stone is left
-    out of it.
+    out of it. Points, and lamps of at most 1 degree, throw shadows and caustics of their own onto it instead: its
+    colour is what it shows where all their light and that of the sky arrives.
     """
 
     kind: Literal["studio"]

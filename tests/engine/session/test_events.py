@@ -103,6 +103,16 @@ def test_mirror_switches_floor_and_those_walls_that_are_shown() -> None:
     assert kinds(after(walled, messages.ToggleMirror())) == ("mirror", "mirror")
 
 
+def test_a_surface_that_was_a_mirror_or_away_has_its_own_albedo_and_checker_again() -> None:
+    painted = {"kind": "matte", "albedo": [0.1, 0.2, 0.3], "checker": {"cell": 2}}
+    subject = session(floor=painted, walls={**painted, "checker": "off"})
+    start = subject.scene
+    mirrored = after(subject, messages.ToggleMirror(), messages.ToggleWalls())
+    assert kinds(mirrored) == ("mirror", "none")
+    back = after(subject, messages.ToggleWalls(), messages.ToggleMirror())
+    assert (back.floor, back.walls) == (start.floor, start.walls)
+
+
 def test_walls_come_in_the_floors_kind_and_go() -> None:
     subject = session(floor={"kind": "mirror"})
     assert kinds(after(subject, messages.ToggleWalls())) == ("mirror", "mirror")

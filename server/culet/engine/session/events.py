@@ -145,8 +145,14 @@ def _with_light_moved(
 
 def _with_mirror_toggled(scene: Scene) -> Scene:
     kind: Literal["matte", "mirror"] = "matte" if scene.floor.kind == "mirror" else "mirror"
-    walls = scene.walls if scene.walls.kind == "none" else Plane(kind=kind)
-    return scene.model_copy(update={"floor": Plane(kind=kind), "walls": walls})
+    floor = scene.floor if isinstance(scene.floor, Plane) else Plane()
+    walls = scene.walls if scene.walls.kind == "none" else _of_kind(scene.walls, kind)
+    return scene.model_copy(update={"floor": _of_kind(floor, kind), "walls": walls})
+
+
+def _of_kind(surface: Plane, kind: Literal["none", "matte", "mirror"]) -> Plane:
+    """With the albedo and the checker that it has when it is matte."""
+    return surface.model_copy(update={"kind": kind})
 
 
 def _toggle_environment(session: Session) -> None:
@@ -162,9 +168,9 @@ def _toggle_environment(session: Session) -> None:
 
 def _with_walls_toggled(scene: Scene) -> Scene:
     if scene.walls.kind != "none":
-        walls = Plane(kind="none")
+        walls = _of_kind(scene.walls, "none")
     else:
-        walls = Plane(kind="mirror" if scene.floor.kind == "mirror" else "matte")
+        walls = _of_kind(scene.walls, "mirror" if scene.floor.kind == "mirror" else "matte")
     return scene.model_copy(update={"walls": walls})
 
 
