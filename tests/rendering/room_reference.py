@@ -152,9 +152,7 @@ def passes_through(
     return hits
 
 
-def lighting(
-    scene: Scene, stones: Sequence[Array], point: Array, normal: Array, which: NDArray[np.integer]
-) -> Array:
+def lighting(scene: Scene, stones: Sequence[Array], point: Array, normal: Array, which: NDArray[np.integer]) -> Array:
     """(N, 3) light on surfaces, as the radiance of white ones: the sky's, which `test_unshaded_light.py` judges, and
     each point's colour by its cosine, none of it in the shadow of any stone."""
     total = np.array(sky_light(Stage(scene, (), None))[which])

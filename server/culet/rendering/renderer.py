@@ -355,8 +355,9 @@ class Picture:
         return self._sums.error() if math.isnan(light) else math.hypot(self._sums.error(), light)
 
     def light_error(self) -> float:
-        """The light map's part of that, as on a white surface; NaN without a map."""
-        return float(np.mean(self._light_errors)) if self._light_errors else math.nan
+        """The light map's part of that, as on a white surface; NaN without a map, or before its passes tell."""
+        known = [error for error in self._light_errors if not math.isnan(error)]
+        return float(np.mean(known)) if known else math.nan
 
     def light_bound(self) -> float:
         """Of the light that meets stones the part that floor and walls may miss at most, since it was cut, not

@@ -67,6 +67,9 @@ class Lighting:
         self._pool = pool
         self._kept: dict[_Key, Illumination] = {}
         self._beams: list[Beams] = []
+        """That are at no pass."""
+        self._first: Beams | None = None
+        """Whose programs the others share."""
         self._warm: set[tuple[bool, bool, bool]] = set()
         """Kinds of stages for whose beams there is machine code."""
         self.photons = Photons(device)
@@ -110,9 +113,16 @@ class Lighting:
                     pass
                 self.photons.prepare(stage)
 
+    def forget(self) -> None:
+        """All maps; pictures that are being made of them go on."""
+        self._kept.clear()
+
     def take_beams(self) -> Beams:
         """For one pass; passes of several pictures may be under way by turns."""
-        return self._beams.pop() if self._beams else Beams(self.device)
+        if self._beams:
+            return self._beams.pop()
+        self._first = self._first or Beams(self.device)
+        return Beams(self.device, like=self._first)
 
     def give_back(self, beams: Beams) -> None:
         """For the next pass."""
@@ -183,8 +193,10 @@ class Illumination:
 
     @property
     def rmse(self) -> float:
-        """Estimated error of the map, root mean square over its finer level, as radiance of a white surface."""
-        if self.passes == 0:
+        """Estimated error of the map, root mean square over its finer level, as radiance of a white surface. A single
+        pass of photons does not tell it: NaN; one of beams tells what its cut-off makes, and not what a lamp's one
+        direction does."""
+        if self.passes == 0 or (self.maker is Maker.PHOTONS and not self._spread):
             return math.nan
         bias = self._bias / self._weight
         variance = float(np.mean(self._spread)) * self._squared / self._weight**2 if self._spread else 0.0

@@ -1,0 +1,194 @@
+"""Light maps of pictures: kept while stones and emitters stay, refined in passes, honest about what they miss."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pytest
+from numpy.typing import NDArray
+
+from culet.geometry.shape import Shape
+from culet.rendering.device import Device
+from culet.rendering.light.beams import Beams
+from culet.rendering.light.effort import Effort
+from culet.rendering.light.light_map import frame_of
+from culet.rendering.light.lighting import Illumination, Maker
+from culet.rendering.light.sources import rays_of
+from culet.rendering.renderer import Picture, Renderer
+from culet.scene import Scene
+from culet.stage import Stage
+from shared.stages import staged
+from shared.stones import ring
+
+POINT = {"shape": "point", "position": [-4, 6, 4], "colour": [1, 1, 1]}
+SUN = {"shape": "sun", "direction": [-4, 6, 4], "colour": [1, 1, 1]}
+SIZE = 48, 27
+
+
+def scene_of(**changes: object) -> Scene:
+    bare = {"floor": {"kind": "matte"}, "environment": {"kind": "constant", "radiance": [0, 0, 0]}, "emitters": [POINT]}
+    return Scene.read({**bare, **changes})
+
+
+def lit(renderer: Renderer, stage: Stage, effort: Effort, samples: int = 1) -> tuple[Picture, Illumination]:
+    picture = renderer.picture(stage, *SIZE, effort=effort)
+    picture.refine(samples)
+    found = renderer.lighting.of(stage)
+    assert found is not None
+    return picture, found
+
+
+def texels(renderer: Renderer, found: Illumination) -> NDArray[np.float32]:
+    made = np.empty(found.bound.frame.shape, np.float32)
+    cl.enqueue_copy(renderer.device.queue, made, found.bound.buffer)
+    return made
+
+
+def test_an_orbiting_camera_costs_the_map_nothing(renderer: Renderer) -> None:
+    scene = scene_of()
+    _, before = lit(renderer, Stage.of(scene), Effort.MOVING)
+    camera = scene.camera.model_copy(update={"position": (3.0, 2.0, 3.0)})
+    picture, after = lit(renderer, Stage.of(scene.model_copy(update={"camera": camera})), Effort.MOVING)
+    assert after is before
+    assert after.passes == 1
+    assert picture.light_bound() == before.figures.bound if before.figures else False
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"stones": [{"position": [0, 0.5, 0]}]},
+        {"stones": [{"material": "ruby"}]},
+        {"emitters": [{**POINT, "colour": [1, 1, 0.5]}]},
+        {"emitters": [POINT, SUN]},
+        {"walls": {"kind": "matte"}},
+        {"optics": {"bands": 8}},
+        {"optics": {"caustics": "off"}},
+    ],
+)
+def test_what_changes_the_light_needs_another_map(renderer: Renderer, changes: dict[str, Any]) -> None:
+    stages = Stage.of(scene_of(stones=[{}])), Stage.of(scene_of(**{"stones": [{}], **changes}))
+    assert renderer.lighting.of(stages[0]) is not renderer.lighting.of(stages[1])
+    assert renderer.lighting.of(stages[0]) is renderer.lighting.of(Stage.of(stages[0].scene, before=stages[0]))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene(),
+        scene_of(floor={"kind": "mirror"}),
+        scene_of(floor={"kind": "none"}),
+        scene_of(emitters=[]),
+        scene_of(stones=[]),
+    ],
+    ids=["default", "mirror", "no floor", "no emitters", "no stone"],
+)
+def test_where_nothing_would_show_it_there_is_no_map_no_code_and_no_time(renderer: Renderer, scene: Scene) -> None:
+    stage = Stage.of(scene)
+    assert renderer.lighting.of(stage) is None
+    picture = renderer.picture(stage, *SIZE)
+    picture.refine(2)
+    assert picture.light_seconds == 0
+    assert math.isnan(picture.light_error())
+    assert math.isnan(picture.light_bound())
+
+
+def test_a_moving_picture_makes_one_pass_at_the_cutoff_of_its_scene(renderer: Renderer) -> None:
+    for cutoff in (5e-3, 2e-3):
+        stage = Stage.of(scene_of(optics={"caustics_cutoff": cutoff}, stones=[{"position": [0, 0.25, 0]}]))
+        _, found = lit(renderer, stage, Effort.MOVING)
+        assert found.cutoff == cutoff, "a finer one is wanted than there is"
+    passes = found.passes
+    coarse = Stage.of(scene_of(optics={"caustics_cutoff": 0.1}, stones=[{"position": [0, 0.25, 0]}]))
+    assert lit(renderer, coarse, Effort.MOVING)[1].passes == passes, "there is a finer one than is wanted"
+
+
+@pytest.mark.parametrize("emitter", [POINT, SUN], ids=["point", "sun"])
+def test_passes_at_rest_come_as_near_as_they_say(renderer: Renderer, device: Device, emitter: dict[str, Any]) -> None:
+    """Against a map of 1e-7, of a sun of so many directions that 64 of them make no difference."""
+    stage = Stage.of(scene_of(emitters=[emitter], stones=[{"position": [0, 0.125, 0]}]))
+    renderer.lighting.of(stage)
+    picture, found = lit(renderer, stage, Effort.PATIENT)
+    assert found.good_enough
+    frame = frame_of(stage)
+    target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
+    beams, count = Beams(device), 1 if emitter is POINT else 96
+    for number in range(count):
+        beams.make(
+            stage, rays_of(stage, 1000 + number), frame, target, cutoff=1e-6 if emitter is POINT else 1e-4,
+            keep=number / (number + 1), gain=1 / (number + 1),
+        )  # fmt: skip
+    exact = np.empty(frame.shape, np.float32)
+    cl.enqueue_copy(device.queue, exact, target)
+    error = math.sqrt(float(np.mean(np.square(texels(renderer, found)[0, 0] - exact[0, 0], dtype=np.float64))))
+    print(error, found.rmse, found.passes, found.cutoff, found.seconds, picture.light_error())
+    assert error < 2 * found.rmse
+    assert found.rmse < 4 * error
+
+
+def test_an_error_at_rest_falls_and_then_nothing_is_done(renderer: Renderer) -> None:
+    stage = Stage.of(scene_of(stones=[{"position": [0, 0.375, 0]}]))
+    _, found = lit(renderer, stage, Effort.MOVING)
+    first, bound = found.rmse, found.figures.bound if found.figures else math.nan
+    _, found = lit(renderer, stage, Effort.PATIENT)
+    assert found.rmse < first / 2
+    assert found.figures is not None
+    assert found.figures.bound < bound / 2
+    passes = found.passes
+    picture, found = lit(renderer, stage, Effort.PATIENT, 4)
+    assert found.passes == passes
+    assert picture.light_error() == found.rmse
+
+
+def test_passes_of_two_pictures_may_be_under_way_by_turns(renderer: Renderer) -> None:
+    """As the painter takes turns: each gets the map that it would get alone."""
+    stages = [Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (0.0625, 0.1875)]
+    alone = [texels(renderer, lit(renderer, stage, Effort.MOVING)[1]) for stage in stages]
+    renderer.lighting.forget()
+    under_way = [renderer.picture(stage, *SIZE, effort=Effort.MOVING).refine_in_pieces(1, 1e-4) for stage in stages]
+    while under_way:
+        under_way = [each for each in under_way if next(each, None) is not None]
+    for stage, wanted in zip(stages, alone, strict=True):
+        found = renderer.lighting.of(stage)
+        assert found is not None
+        assert abs(texels(renderer, found) - wanted).max() < 1e-3
+
+
+def test_a_stone_that_is_not_convex_is_lit_by_photons(renderer: Renderer) -> None:
+    stage = staged(scene_of(stones=[{}]), ring())
+    picture, found = lit(renderer, stage, Effort.RESTING, 2)
+    assert found.maker is Maker.PHOTONS
+    assert found.figures is not None
+    assert 0 < found.figures.bound < 0.3
+    assert not picture.shows_shadows_only()
+    lit(renderer, stage, Effort.PATIENT)
+    assert 0 < found.rmse < 0.05
+
+
+def test_where_photons_would_take_too_long_a_moving_picture_says_that_it_has_shadows_only(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("culet.rendering.light.lighting.MOVING_PHOTON_SECONDS", 1e-9)
+    stage = staged(scene_of(stones=[{"position": [0, 0.2, 0]}]), ring())
+    picture, found = lit(renderer, stage, Effort.MOVING)
+    assert picture.shows_shadows_only()
+    assert picture.light_bound() == pytest.approx(1, abs=0.1)
+    assert texels(renderer, found).max() < 1e-6
+    picture, found = lit(renderer, stage, Effort.RESTING)
+    assert not picture.shows_shadows_only(), "at rest there is time"
+    assert texels(renderer, found).max() > 0.05
+
+
+def test_a_stone_of_triangles_gets_the_light_that_one_of_half_spaces_gets(renderer: Renderer, brilliant: Shape) -> None:
+    scene = scene_of(stones=[{}], optics={"caustics_cutoff": 1e-4})
+    by_beams = lit(renderer, staged(scene, brilliant), Effort.PATIENT)[1]
+    by_photons = lit(renderer, staged(scene, replace(brilliant, convex=False)), Effort.PATIENT)[1]
+    assert (by_beams.maker, by_photons.maker) == (Maker.BEAMS, Maker.PHOTONS)
+    wide = [
+        texels(renderer, found)[0, 1].reshape(64, 8, 64, 8, 3).mean(axis=(1, 3)) for found in (by_beams, by_photons)
+    ]
+    assert np.sqrt(np.mean((wide[0] - wide[1]) ** 2)) < 0.03 * np.sqrt(np.mean(wide[0] ** 2))
