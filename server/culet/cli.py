@@ -175,6 +175,9 @@ def bench(
     features: Annotated[
         bool, typer.Option("--features", help="Also what each feature of a scene costs: absent, idle, in use.")
     ] = False,
+    light: Annotated[
+        bool, typer.Option("--light", help="Also what maps of the light that stones throw cost, and frames with them.")
+    ] = False,
     out: Annotated[
         Path | None,
         typer.Option("-o", "--out", metavar="FILE", help="Append the figures and the machine's, one line of JSON."),
@@ -192,7 +195,8 @@ def bench(
     from culet.study.bench import measure_cases, measure_features
     from culet.study.bench import record as record_line
     from culet.study.cases import FEATURE_CASES
-    from culet.study.tables import case_table, feature_table, print_comparison
+    from culet.study.light_bench import measure_light
+    from culet.study.tables import case_table, feature_table, light_table, print_comparison
 
     console = report_console()
     with errors_in_one_line(), opened(out) as file:
@@ -209,6 +213,9 @@ def bench(
                     costs.append(cost)
                     advance(len(costs) / len(FEATURE_CASES))
             console.print(feature_table(costs))
+        if light:
+            with Console(stderr=True).status("measuring light"):
+                console.print(light_table(measure_light(renderer, width, height, repeats)))
         line = record_line(renderer, width, height, timings)
         if baseline is not None:
             print_comparison(console, baseline, json.loads(line))

@@ -10,7 +10,9 @@ from command_line import culet, invoke
 from study.reports import report
 
 
-@pytest.mark.parametrize("command", ["rendering", "simulation", "streaming", "diff", "headline", "compare-bench"])
+@pytest.mark.parametrize(
+    "command", ["rendering", "simulation", "streaming", "caustics", "diff", "headline", "compare-bench"]
+)
 def test_every_study_explains_itself(command: str) -> None:
     run = invoke("study", command, "--help")
     assert run.returncode == 0

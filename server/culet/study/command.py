@@ -101,6 +101,27 @@ def streaming(
 
 
 @study_app.command()
+def caustics(
+    scene: SceneFile = None,
+    out: Out = Path("report/caustics"),
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    quick: Quick = False,
+    fresh: Fresh = False,
+) -> None:
+    """Sweep the cut-off of the light that the stones throw onto a matte floor, beside photons of the same program.
+
+    The light is a point's, then a sun's; the scene's own is out. Stopped with Ctrl-C it goes on where it was.
+    """
+    with _errors(), _interruptible(out):
+        from culet.study.studies import study_caustics
+
+        _tell(
+            study_caustics(_with_stone(read_stage(scene, preset, mesh)), out, _progress, quick=quick, fresh=fresh), out
+        )
+
+
+@study_app.command()
 def gallery(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets gallery.md and its pictures.")

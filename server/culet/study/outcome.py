@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from culet.errors import InputError
 from culet.rendering.device import Device
-from culet.study import race, rendering, simulation, streaming
+from culet.study import caustics, race, rendering, simulation, streaming
 from culet.study.knobs import Knobs
 from culet.study.page import page
 from culet.study.pareto import frontier
@@ -163,6 +163,62 @@ def streaming_report(
         points=tuple(points),
         frontiers=tuple(frontiers),
     )
+
+
+def caustics_report(
+    scene: Mapping[str, object],
+    settings: dict[str, Knob],
+    facts: dict[str, str | int],
+    points: Sequence[Point],
+    notes: Sequence[str],
+) -> Report:
+    """Of `culet study caustics`."""
+    frontiers = [
+        frontier(
+            f"{lamp.capitalize()}: time against error", [p for p in points if p.knobs["lamp"] == lamp and
+            p.group != "poses"], "processor_seconds", "rmse",
+        )
+        for lamp in caustics.LAMPS
+    ]  # fmt: skip
+    races = caustics.races(points)
+    return Report(
+        study="caustics",
+        made=_now(),
+        provenance=provenance(facts),
+        settings=settings,
+        scene=dict(scene),
+        figures=caustics.FIGURES,
+        points=tuple(points),
+        frontiers=tuple(frontiers),
+        races=tuple(races),
+        headlines=tuple(_caustics_headlines(points, races)),
+        notes=tuple(notes),
+    )
+
+
+def _caustics_headlines(points: Sequence[Point], races: Sequence[Race]) -> Iterator[Headline]:
+    """Photons' time over beams', times of a map at rest, and how far estimates are from the truth."""
+    by_name = {entry.name: entry for entry in races}
+    for lamp in caustics.LAMPS:
+        ours, theirs = (by_name[f"{lamp}, {method}"] for method in ("beams", "photons"))
+        for target, seconds in ours.seconds.items():
+            other = theirs.seconds[target]
+            if seconds and other:
+                told = ", extrapolated" if target in theirs.extrapolated else ""
+                words = f"{lamp}: photons' processor time over beams', to RMSE {target}{told}"
+                yield Headline(name=words, value=other / seconds, unit="x")
+        for error in caustics.RESTING_TARGETS[lamp]:
+            reached = caustics.rested(points, lamp, error)
+            if reached is not None:
+                yield Headline(name=f"{lamp}: at rest to RMSE {error:g}", value=reached, unit="s")
+    ratios = [p.figures["estimate_ratio"] or 0.0 for p in points if p.group == "poses"]
+    if ratios:
+        yield Headline(name="estimated RMSE over true, least of all poses and cut-offs", value=min(ratios), unit="x")
+        yield Headline(name="estimated RMSE over true, most of them", value=max(ratios), unit="x")
+    bounded = [p for p in points if p.figures["bound"] and p.figures["missing"] is not None]
+    if bounded:
+        value = max((p.figures["missing"] or 0.0) / (p.figures["bound"] or 1.0) for p in bounded)
+        yield Headline(name="light that is missing over its strict bound, most of all maps", value=value, unit="")
 
 
 def write(report: Report, folder: Path) -> None:

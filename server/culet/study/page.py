@@ -16,6 +16,7 @@ TITLES = {
     "rendering": "Error against run time: the renderer",
     "simulation": "Error against run time: the simulation",
     "streaming": "Size, time and likeness: the stream",
+    "caustics": "Error against run time: the light that stones throw",
 }
 
 SHORTER = (("integrator ", ""), ("time step", "step"), ("contact step", "contact"), ("polarised yes", "polarised"))
@@ -37,7 +38,9 @@ _SIMULATION_PLOTS = (
 
 def page(report: Report, pictures: Path) -> str:
     """The whole page; `pictures` is the folder of those that were made while measuring."""
-    sections = {"rendering": _rendering, "simulation": _simulation, "streaming": _streaming}[report.study]
+    sections = {
+        "rendering": _rendering, "simulation": _simulation, "streaming": _streaming, "caustics": _caustics,
+    }[report.study]  # fmt: skip
     body = [*_opening(report), *sections(report, pictures), *_closing(report)]
     return document(TITLES[report.study], body)
 
@@ -68,16 +71,7 @@ def _rendering(report: Report, pictures: Path) -> Iterator[str]:
         yield from _frontier(report, points, frontier)
     if report.races:
         yield heading("Against others: seconds to reach an error")
-        targets = list(report.races[0].seconds)
-        rows = []
-        for race in report.races:
-            seconds = [
-                None if s is None else f"{'~' if t in race.extrapolated else ''}{s:.3g}"
-                for t, s in race.seconds.items()
-            ]
-            rows.append([race.name, *seconds, race.note])
-        yield table(["renderer", *(f"RMSE {target}" for target in targets), ""], rows)
-        yield paragraph("~ was not waited for: taken on from the last measured point along 1 / sqrt(time).")
+        yield from _race_table(report, "renderer")
         series = [
             Series(race.name, _marks(_race_points(report, race.name), "race_seconds", "race_rmse"), line=True)
             for race in report.races
@@ -111,6 +105,57 @@ def _rendering(report: Report, pictures: Path) -> Iterator[str]:
             if key not in dict(references):
                 shown.append(picture(inline(error), f"{label}: error"))
     yield '<div class="pictures">' + "".join(shown) + "</div>"
+
+
+def _race_table(report: Report, first: str) -> Iterator[str]:
+    rows = []
+    for race in report.races:
+        seconds = [
+            None if s is None else f"{'~' if t in race.extrapolated else ''}{s:.3g}" for t, s in race.seconds.items()
+        ]
+        rows.append([race.name, *seconds, race.note])
+    yield table([first, *(f"RMSE {target}" for target in report.races[0].seconds), ""], rows)
+    yield paragraph("~ was not waited for: taken on from the last measured point along 1 / sqrt(time).")
+
+
+def _caustics(report: Report, pictures: Path) -> Iterator[str]:
+    del pictures
+    yield heading("Processor seconds to reach an error")
+    yield from _race_table(report, "light, method")
+    for frontier in report.frontiers:
+        yield heading(frontier.name)
+        lamp = frontier.name.split(":", 1)[0].lower()
+        own = [point for point in report.points if point.knobs["lamp"] == lamp and point.group != "poses"]
+        series = [
+            Series(name, _marks([p for p in own if _way(p) == name], frontier.cost, frontier.error), line=True)
+            for name in dict.fromkeys(map(_way, own))
+        ]
+        chosen = [report.point(key) for key in frontier.keys]
+        yield figure(
+            log_log(
+                series, _axis(report, frontier.cost), _axis(report, frontier.error),
+                _marks(chosen, frontier.cost, frontier.error),
+            ),
+            report.figures[frontier.error].about,
+        )  # fmt: skip
+        yield _numbered(chosen, frontier.cost, frontier.error)
+    yield heading("The estimate beside the truth")
+    poses = [point for point in report.points if point.group == "poses"]
+    series = [
+        Series(lamp, _marks([p for p in poses if p.knobs["lamp"] == lamp], "rmse", "rmse_estimated"))
+        for lamp in dict.fromkeys(str(p.knobs["lamp"]) for p in poses)
+    ]
+    yield figure(
+        log_log(series, _axis(report, "rmse"), _axis(report, "rmse_estimated")),
+        "Stones turned at random: what a pass of one direction says of itself.",
+    )
+    yield from _groups(report, "map")
+
+
+def _way(point: Point) -> str:
+    """How a map was made, by the number of passes where that was chosen."""
+    passes = f", passes {point.knobs['passes']}" if point.knobs["method"] == "beams" else ""
+    return f"{point.knobs['method']}{passes}"
 
 
 def _frontier(report: Report, points: list[Point], frontier: Frontier) -> Iterator[str]:

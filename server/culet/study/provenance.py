@@ -20,6 +20,7 @@ REFERENCE_CODE = (*IMAGE_CODE, "study/shot.py", "study/knobs.py", "study/referen
 """What a kept reference depends on: not on how others are judged by it."""
 RENDERING_STUDY = (*IMAGE_CODE, "study")
 """What the points of each study depend on."""
+CAUSTICS_STUDY = RENDERING_STUDY
 SIMULATION_STUDY = ("geometry", "scene", "simulation", "stage.py", "study")
 STREAMING_STUDY = (*RENDERING_STUDY, "simulation")
 

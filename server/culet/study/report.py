@@ -1,4 +1,4 @@
-"""A study's report: one shape for all three studies, JSON in and out; docs/study.md describes it."""
+"""A study's report: one shape for all studies, JSON in and out; docs/study.md describes it."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Report(Model):
     """All of a study."""
 
     schema_version: Literal[1] = 1
-    study: Literal["rendering", "simulation", "streaming"]
+    study: Literal["rendering", "simulation", "streaming", "caustics"]
     made: str = Field(description="ISO 8601, UTC.")
     provenance: dict[str, str | int]
     settings: dict[str, Knob]

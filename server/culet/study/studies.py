@@ -1,4 +1,4 @@
-"""The three studies from beginning to end: what to measure, into the journal, out of it into the report."""
+"""The studies from beginning to end: what to measure, into the journal, out of it into the report."""
 
 from __future__ import annotations
 
@@ -12,13 +12,21 @@ from typing import NamedTuple
 from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
 from culet.stage import Stage
-from culet.study import race, rendering, simulation, streaming
+from culet.study import caustics, race, rendering, simulation, streaming
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.mitsuba import SAMPLERS, find_llvm
-from culet.study.outcome import device_facts, rendering_report, simulation_report, streaming_report, write
+from culet.study.outcome import (
+    caustics_report,
+    device_facts,
+    rendering_report,
+    simulation_report,
+    streaming_report,
+    write,
+)
 from culet.study.pictures import write_pictures
 from culet.study.provenance import (
+    CAUSTICS_STUDY,
     RENDERING_STUDY,
     SIMULATION_STUDY,
     STREAMING_STUDY,
@@ -28,7 +36,7 @@ from culet.study.provenance import (
 )
 from culet.study.reference import Reference, make_reference, reference_knobs
 from culet.study.renderers import Renderers
-from culet.study.report import Report
+from culet.study.report import Knob, Report
 from culet.study.roofline import measure_roofline
 from culet.study.shot import Shot
 
@@ -205,6 +213,24 @@ def study_streaming(
         points = list(journal.points.values())
     settings = {"width": width, "height": height, "quick": quick}
     report = streaming_report(stage.scene.model_dump(mode="json"), dict(settings), device_facts(device), points)
+    write(report, out)
+    return report
+
+
+def study_caustics(stage: Stage, out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
+    """Sweep the cut-off of the light that the stones throw, beside photons; SceneError for stones without beams."""
+    for lamp in caustics.LAMPS:
+        caustics.under(stage, lamp)
+    renderer, extent = Renderer(), caustics.QUICK if quick else caustics.FULL
+    identity = _identity("caustics", stage, quick, code_digest(CAUSTICS_STUDY), renderer.device)
+    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+        with progress("maps", caustics.steps(extent)) as advance:
+            caustics.measure_all(renderer, stage, extent, journal, advance)
+        points = list(journal.points.values())
+    notes = caustics.notes(extent)
+    settings: dict[str, Knob] = {"quick": quick}
+    facts = device_facts(renderer.device)
+    report = caustics_report(stage.scene.model_dump(mode="json"), settings, facts, points, notes)
     write(report, out)
     return report
 

@@ -11,6 +11,7 @@ from rich.table import Table
 
 from culet.study.baseline import FIGURES, Comparison, compare_benches
 from culet.study.bench import FeatureCost, Timing
+from culet.study.light_bench import LightTiming
 
 
 def case_table(timings: Sequence[Timing]) -> Table:
@@ -26,6 +27,20 @@ def case_table(timings: Sequence[Timing]) -> Table:
             f"{timing.nanoseconds_per_segment:.2f}",
             f"{timing.cut:.2g}",
             f"{timing.rmse:.2g}",
+        )
+    return table
+
+
+def light_table(timings: Sequence[LightTiming]) -> Table:
+    """A row for each map of light, and each frame with its map."""
+    table = _table("light", "median ms", "processor ms", "ratio", "beams")
+    for timing in timings:
+        table.add_row(
+            timing.name,
+            f"{1e3 * timing.seconds:.2f}",
+            f"{1e3 * timing.processor_seconds:.2f}",
+            f"{timing.ratio:.2f}",
+            "-" if timing.beams is None else f"{timing.beams:.0f}",
         )
     return table
 

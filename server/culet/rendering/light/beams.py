@@ -181,7 +181,7 @@ class Beams:
             cut=tally.cut,
             unresolved=max(tally.unresolved, 0.0),
             outside=tally.outside,
-            rmse=math.sqrt(tally.doubt / area) * _of_doubt(cutoff),
+            rmse=max(math.sqrt(tally.doubt / area) * _of_doubt(cutoff), tally.cut / area),
             seconds=seconds,
         )
 

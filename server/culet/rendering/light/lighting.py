@@ -36,7 +36,12 @@ FALL = 0.5
 LEAST_CUTOFF = 1e-6
 """R^2 of the brightest emitter's irradiance. What remains is 1 % of the light, and costs a quarter of a second."""
 RANDOM_CUTOFF = 3e-5
-"""The same, of lamps that are as many directions as there are passes: one is not worth more."""
+"""The same, of the first passes of lamps that are as many directions as there are passes: one is not worth more."""
+FEW_PASSES = 16
+"""After which, of such lamps, the cut-off falls as 1 / passes: what it takes then weighs more than the directions."""
+LASTING = 0.5
+"""Of the error that a cut-off makes in a pass, what the mean of many directions or wavelengths keeps: measured on a sun
+of 0.27 degrees (`culet study caustics`)."""
 FIRST_SECONDS = 0.05
 """s of passes before a resting picture's first sample: nobody sees a picture meanwhile."""
 COARSEST = 1.0
@@ -198,8 +203,10 @@ class Illumination:
         direction does."""
         if self.passes == 0 or (self.maker is Maker.PHOTONS and not self._spread):
             return math.nan
-        bias = self._bias / self._weight
-        variance = float(np.mean(self._spread)) * self._squared / self._weight**2 if self._spread else 0.0
+        bias, alone = self._bias / self._weight, self._squared / self._weight**2
+        if self._random:
+            bias *= math.sqrt(LASTING**2 + (1 - LASTING**2) * alone)
+        variance = float(np.mean(self._spread)) * alone if self._spread else 0.0
         return math.hypot(bias, math.sqrt(variance))
 
     @property
@@ -231,7 +238,9 @@ class Illumination:
         if effort is Effort.MOVING:
             return
         while not self.good_enough and (effort is Effort.PATIENT or self.seconds < max(FIRST_SECONDS, picture_seconds)):
-            least = RANDOM_CUTOFF if self._random else LEAST_CUTOFF
+            least = LEAST_CUTOFF
+            if self._random:
+                least = max(least, RANDOM_CUTOFF * min(1.0, FEW_PASSES / max(1, self.passes)))
             if not self._random and self.cutoff <= least:
                 return
             yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
