@@ -25,6 +25,8 @@ EYE = -0.2
 LAMP_DISTANCE = 6.0
 """R from the stone's middle, against the light."""
 LONGEST = 400
+SEED = 1_000_003
+"""Apart from run to run: Mitsuba gives each part of a run the next seed."""
 DIM = 1e-3
 """Albedo of a floor that gives nothing back."""
 
@@ -66,7 +68,7 @@ def particles(
         "stone": _glass(corners, stone.shape, eta),
     })  # fmt: skip
     found = [
-        np.array(mitsuba.render(scene, spp=samples, seed=1000 + run), np.float64)[..., 0] * math.pi / albedo
+        np.array(mitsuba.render(scene, spp=samples, seed=SEED * (run + 1)), np.float64)[..., 0] * math.pi / albedo
         for run in range(runs)
     ]
     return Particles(np.array(found))

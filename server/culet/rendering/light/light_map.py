@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,7 @@ class Surface:
         return np.array(self.normal) * self.offset + np.array(self.along) * u + np.array(self.across) * v
 
 
+@cache
 def surfaces() -> tuple[Surface, ...]:
     """Of the room, in the world: (x, z) on the floor; along the wall and y on a wall, as checkers are counted."""
     found = []
