@@ -240,7 +240,8 @@ class Illumination:
         while not self.good_enough and (effort is Effort.PATIENT or self.seconds < max(FIRST_SECONDS, picture_seconds)):
             least = LEAST_CUTOFF
             if self._random:
-                least = max(least, RANDOM_CUTOFF * min(1.0, FEW_PASSES / max(1, self.passes)))
+                falls = min(1.0, FEW_PASSES / max(1, self.passes)) if takes_only_beams(self.stage) else 1.0
+                least = max(least, RANDOM_CUTOFF * falls)
             if not self._random and self.cutoff <= least:
                 return
             yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
