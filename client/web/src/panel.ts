@@ -14,6 +14,7 @@ import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { withFirst } from "./stones";
+import { SurfacePanel } from "./surface-panel";
 import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
 import { worded } from "./wording";
 
@@ -45,6 +46,7 @@ export class Panel {
   readonly fall: FallPanel;
   private readonly stones: StonePanel;
   private readonly cut: CutPanel;
+  private readonly surfaces: SurfacePanel;
   private readonly actions: PanelActions;
   private readonly target: Choice<Target>;
   private readonly toggles: [keyof Shown, Toggle][] = [];
@@ -61,6 +63,7 @@ export class Panel {
     const move = root.section("Move");
     const cut = root.section("Cut").fold(true);
     const fall = root.section("Fall").fold(true);
+    const surfaces = root.section("Floor and walls").fold(true);
     const optics = root.section("Optics").fold(true);
     const files = root.section("Pictures and scenes");
     const page = root.section("Help and page");
@@ -72,6 +75,7 @@ export class Panel {
     this.addToggle(surroundings, "mirror", "mirror", "Mirror");
     this.addToggle(surroundings, "light", "sky", "Light sky");
     this.addToggle(surroundings, "walls", "walls", "Walls");
+    this.surfaces = new SurfacePanel(surroundings, surfaces, actions.patch, actions.clamped);
     this.target = this.addMoves(move);
     this.cut = new CutPanel(cut, actions.patch, actions.clamped);
     this.fall = new FallPanel(fall, actions.patch, actions.clamped);
@@ -98,6 +102,7 @@ export class Panel {
     this.fall.update(chosen);
     this.cut.update(chosen);
     this.choices.update(chosen);
+    this.surfaces.update(chosen);
   }
 
   addCut(cut: CutKind): void {

@@ -1,0 +1,103 @@
+/** The panel's controls of floor and walls, and of the light that stones throw onto them. */
+
+import { Colour } from "./controls/colour";
+import type { Section } from "./controls/section";
+import { type Clamped, Slider } from "./controls/slider";
+import { Toggle } from "./controls/toggle";
+import { LiveControls } from "./live-controls";
+import {
+  BARE,
+  causticsPatch,
+  isMatte,
+  PLACES,
+  type Place,
+  type Surface,
+  showsCaustics,
+  surfaceOf,
+  surfacePatch,
+  throwsCaustics,
+} from "./surfaces";
+import type { ViewState } from "./view-state";
+
+type Send = (patch: Record<string, unknown>) => void;
+
+const TITLES: Record<Place, string> = { floor: "Floor", walls: "Walls" };
+const CELL_ENDS = { least: 0.1, most: 8, step: 0.05, decimals: 2 };
+
+const HINTS = {
+  caustics:
+    "Light that stones throw onto a matte floor and matte walls: flecks, and the rainbows in them. Without it they " +
+    "throw their shadows alone",
+  none: "Neither floor nor walls are matte: there is nothing that caustics could be seen on",
+  albedo:
+    "What the surface looks like in white light: the part of each colour that it gives back. Flecks show best on a dark one",
+  checkered: "Whether every other cell has a colour of its own",
+  cell: "Side of a cell; R is the stone's radius",
+  other: "Of every other cell, in white light",
+  mirror: "Only what is matte has a colour of its own: this is not now",
+};
+
+export class SurfacePanel {
+  private readonly caustics: LiveControls<{ caustics: boolean }>;
+  private readonly toggle: Toggle;
+  private readonly surfaces: readonly OneSurface[];
+  private scene: ViewState["scene"] = null;
+
+  constructor(surroundings: Section, surfaces: Section, send: Send, clamped: Clamped) {
+    this.caustics = new LiveControls(
+      () => ({ caustics: throwsCaustics(this.scene) }),
+      (_, value) => send(causticsPatch(value)),
+    );
+    this.toggle = surroundings.add(new Toggle("Caustics"));
+    this.caustics.listen("caustics", this.toggle);
+    this.surfaces = PLACES.map((place) => new OneSurface(place, surfaces, send, clamped));
+  }
+
+  update({ scene }: Pick<ViewState, "scene">): void {
+    this.scene = scene;
+    const shown = showsCaustics(scene);
+    this.caustics.display();
+    this.toggle.enable(shown).hint(shown ? HINTS.caustics : HINTS.none);
+    for (const surface of this.surfaces) surface.update({ scene });
+  }
+}
+
+class OneSurface {
+  private readonly place: Place;
+  private readonly controls: LiveControls<Surface>;
+  private readonly albedo: Colour;
+  private readonly checkered: Toggle;
+  private readonly cell: Slider;
+  private readonly other: Colour;
+  private scene: ViewState["scene"] = null;
+  /** The last checker that there was. */
+  private checker: Pick<Surface, "cell" | "other"> = BARE;
+
+  constructor(place: Place, section: Section, send: Send, clamped: Clamped) {
+    this.place = place;
+    this.controls = new LiveControls<Surface>(
+      () => surfaceOf(this.scene, place),
+      (name, value) => send(surfacePatch(place, name, value, this.checker)),
+    );
+    const title = TITLES[place];
+    this.albedo = section.add(new Colour(title));
+    this.checkered = section.add(new Toggle(`${title}, checkered`)).hint(HINTS.checkered);
+    this.cell = section.add(new Slider(`${title}, cell, R`, CELL_ENDS, clamped)).hint(HINTS.cell);
+    this.other = section.add(new Colour(`${title}, other cells`)).hint(HINTS.other);
+    this.controls.listen("albedo", this.albedo);
+    this.controls.listen("checkered", this.checkered);
+    this.controls.listen("cell", this.cell);
+    this.controls.listen("other", this.other);
+  }
+
+  update({ scene }: Pick<ViewState, "scene">): void {
+    this.scene = scene;
+    const { checkered, cell, other } = surfaceOf(scene, this.place);
+    if (checkered) this.checker = { cell, other };
+    this.controls.display();
+    const matte = isMatte(scene, this.place);
+    this.albedo.enable(matte).hint(matte ? HINTS.albedo : HINTS.mirror);
+    this.checkered.enable(matte);
+    for (const control of [this.cell, this.other]) control.enable(matte && checkered);
+  }
+}
