@@ -259,7 +259,8 @@ class Illumination:
         ):
             least = LEAST_CUTOFF
             if self._random:
-                least = max(least, RANDOM_CUTOFF * min(1.0, FEW_PASSES / max(1, self.passes)))
+                falls = min(1.0, FEW_PASSES / max(1, self.passes)) if takes_only_beams(self.stage) else 1.0
+                least = max(least, RANDOM_CUTOFF * falls)
             if not self._random and self.cutoff <= least:
                 return
             yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
