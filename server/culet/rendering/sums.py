@@ -64,7 +64,8 @@ class Sums:
         self.samples = 0
         self._fold, self._allocate, self._real = fold, allocate, real
         self._width, self._height = width, height
-        self._earlier, self._later = allocate(self._size), None
+        self._earlier: Any = allocate(self._size)
+        self._later: Any = None
         self._errors: list[float] = []
         """Of 2, 4, 8 ... samples."""
 
