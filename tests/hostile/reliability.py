@@ -37,6 +37,8 @@ FORMS = dict.fromkeys(SHAPES, 63) | {"chunks of one byte": 1}
 """MiB of each shape. Of chunks, of which there are 175 000 in each, a connection may send 10 000 a second."""
 MEMORY = 512
 """MiB that sessions, uploads and pictures may take where that is tried."""
+HEAPS = 400
+"""MB of an engine with ten sessions of twelve stones each."""
 PROGRAMS = 700
 """MiB of the processes themselves, those that stand by among them."""
 
@@ -81,10 +83,13 @@ def trials(part: float = 1) -> tuple[Trial, ...]:
     return (
         Trial("viewers", lambda s: shares.viewers_of_one_session(s, 30, 10), Group.LOAD),
         Trial("sessions", lambda s: shares.falling_sessions(s, 20, 10, PAGE), Group.LOAD),
+        Trial("heaps", lambda s: shares.memory_of_heaps(s, 10, 12, 20, HEAPS), Group.LOAD),
         Trial("dearest scene", beside("a session that asks for everything", shares.dearest_scene, 0.4), Group.SHARES),
         Trial("dearest stills", beside("eight stills of 8192x4096", shares.dearest_stills, 0.4), Group.SHARES),
         Trial("resizes", beside("a flood of `resize`", shares.resizes, 0.8), Group.SHARES),
         Trial("orbits", beside("a flood of `orbit`", shares.orbits, 0.4), Group.SHARES),
+        Trial("questions", beside("a flood of `pick` and `outline`", shares.questions, 0.4), Group.SHARES),
+        Trial("scatters", beside("a flood of patches of 64 stones", shares.scatters, 0.4), Group.SHARES),
         Trial("half-sent", lambda s: shares.half_sent_requests(s, 1300, within=2), Group.SHARES, files=1024),
         Trial("forms", lambda s: shares.forms(s, FORMS, within=0.05), Group.SHARES),
         Trial("engine killed", lambda s: faults.killed(s, "engine", max(3, some(5)), within=3), Group.FAULTS),

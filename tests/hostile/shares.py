@@ -85,6 +85,46 @@ async def falling_sessions(serving: Serving, sessions: int, seconds: float, size
     )
 
 
+async def memory_of_heaps(serving: Serving, sessions: int, stones: int, seconds: float, most: float) -> Finding:
+    """MB of the engine while sessions of so many stones each, of which no two are cut alike, are watched and fall."""
+    opened = [serving.session(_heap(number, stones)) for number in range(sessions)]
+    resident, proportional = [], []
+    async with watching(serving, opened, (640, 360)) as watchers:
+        for session in opened:
+            serving.http.post(f"/api/sessions/{session}/events", json={"type": "toggle_fall"}).raise_for_status()
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            await asyncio.sleep(seconds / 20)
+            memory = serving.engine.memory_full_info()
+            resident.append(memory.rss / 1e6)
+            proportional.append(memory.pss / 1e6)
+        frames = min(len(watcher.seen) for watcher in watchers)
+    serving.forget(*opened)
+    return Finding(
+        Group.LOAD,
+        f"{sessions} sessions of {stones} falling stones, each of a cut of its own, watched, {seconds:g} s",
+        f"the engine takes {max(resident):.0f} MB at most ({max(proportional):.0f} of its own); "
+        f"{frames} frames of each session at least",
+        f"under {most:g} MB, and all are seen",
+        max(resident) < most and frames > 1,
+    )
+
+
+def _heap(session: int, stones: int) -> dict[str, Any]:
+    """Above each other in twos, over the matte floor."""
+    return {
+        "floor": {"kind": "matte"},
+        "stones": [
+            {
+                "position": [2.5 * (number % 2), 1 + 2.2 * (number // 2), 0.1 * (number % 3)],
+                "cut": {"crown_degrees": 32 + 0.01 * (session * stones + number)},
+                "material": ("diamond", "ruby", "sapphire")[number % 3],
+            }
+            for number in range(stones)
+        ],
+    }
+
+
 async def beside(serving: Serving, name: str, attack: Attack, keeps: float, seconds: float) -> Finding:
     """The rate of a viewer before, during and after an attack of another one."""
     session = serving.falling()
@@ -130,12 +170,16 @@ def flood_of(kind: str) -> Attack:
 
     @contextlib.asynccontextmanager
     async def flood(serving: Serving) -> AsyncIterator[str]:
-        session = serving.session()
+        session = serving.session(_heap(0, 12) if kind == "questions" else None)
         url = f"{serving.stream_url}/api/sessions/{session}/stream"
         sender = await asyncio.create_subprocess_exec(
-            "nice", sys.executable, "-m", "hostile.flood", url, kind, env=os.environ | {"PYTHONPATH": TESTS}
-        )
+            "nice", sys.executable, "-m", "hostile.flood", url, kind,
+            env=os.environ | {"PYTHONPATH": TESTS}, stdout=asyncio.subprocess.PIPE,
+        )  # fmt: skip
         try:
+            assert sender.stdout
+            async with asyncio.timeout(PATIENCE):  # or what is measured would be how Python starts
+                assert await sender.stdout.readline(), "it ended before it sent anything"
             yield ""
         finally:
             sender.terminate()
@@ -147,6 +191,8 @@ def flood_of(kind: str) -> Attack:
 
 resizes = flood_of("resize")
 orbits = flood_of("orbit")
+questions = flood_of("questions")
+scatters = flood_of("scatter")
 
 
 @contextlib.asynccontextmanager

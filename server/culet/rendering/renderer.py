@@ -39,6 +39,9 @@ DEVELOP_GROUP = 16
 """Work-items of a group. Always as many, or PoCL would make machine code anew for many a picture's size: 0.2 s each."""
 DEVELOPED = 2**19
 """Pixels that are developed at a time: some 7 ms. With more than 65535 work-items PoCL would make machine code anew."""
+KEPT = 2**24
+"""Bytes that are kept beyond what pictures had at most at a time: frames that change their sizes would else leave some
+of each size. Less would free, and have cleared by the system anew, what the next frame needs."""
 TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3, "neutral": 4}
 
 
@@ -60,6 +63,8 @@ class Renderer:
         self.programs = Programs(self.device)
         self.background_compile = background_compile
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
+        self._most = 0
+        """Bytes that pictures had at most at a time, since what was kept was given back last."""
         self.fold = Fold(self.device, self.variant)
         self.lighting = Lighting(self.device, self.pool)
         self._paces: dict[tuple[Any, int], Pace] = {}
@@ -98,6 +103,16 @@ class Renderer:
     def release(self) -> None:
         """Give back the memory of pictures that are gone, which is kept for the next ones."""
         self.pool.free_held()
+        self._most = self.pool.active_bytes
+
+    def allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
+        """A buffer of so many bytes, by preference one of a picture that is gone. Those that are kept are given back
+        when there are KEPT more than pictures had at most at a time since the last were given back."""
+        if self.pool.managed_bytes > self._most + KEPT:
+            self.release()
+        buffer = self.pool.allocate(size)
+        self._most = max(self._most, self.pool.active_bytes)
+        return buffer
 
     def _warm_up(self) -> None:
         """Have machine code made of what every picture needs, before any picture waits for it."""
@@ -196,8 +211,8 @@ class Picture:
         """Of the map, as each sample saw it."""
         tile = tile_of(features)
         self._tiles = math.ceil(width / tile), math.ceil(height / tile)
-        size = width * height * 4 * np.dtype(real).itemsize
-        self._sums = Sums(renderer.fold, (self._allocate(size), self._allocate(size)), width, height, real)
+        # Not by this picture's `_allocate`: with sums that hold their picture, both stay until garbage is collected.
+        self._sums = Sums(renderer.fold, renderer.allocate, width, height, real)
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
         self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
@@ -253,7 +268,7 @@ class Picture:
         """Yields the part of the tiles that were begun, between launches, and at last 1."""
         device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
         x, y = jitter(self.samples, self.scene.sampling.filter)
-        target, accumulate = self._sums.next
+        target, accumulate = self._sums.target()
         progress = np.zeros(progress_size(device.units), np.uint32)
         of_items = progress[OF_ITEMS:].reshape(device.units, 2)
         buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * self._kernel.kept_bytes)
@@ -373,4 +388,4 @@ class Picture:
         return self._light is not None and self._light.maker is Maker.NOTHING
 
     def _allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
-        return self._renderer.pool.allocate(size)
+        return self._renderer.allocate(size)

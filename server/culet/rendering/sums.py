@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -59,10 +59,13 @@ class Sums:
     the odd ones are worse spread than all of them, and said up to 2.7 times too much.)
     """
 
-    def __init__(self, fold: Fold, buffers: tuple[Any, Any], width: int, height: int, real: Real) -> None:
+    def __init__(self, fold: Fold, allocate: Callable[[int], Any], width: int, height: int, real: Real) -> None:
+        """`allocate` makes a buffer of so many bytes on the device: one now, another if there is a second sample."""
         self.samples = 0
-        self._fold, self._buffers, self._real = fold, buffers, real
+        self._fold, self._allocate, self._real = fold, allocate, real
         self._width, self._height = width, height
+        self._earlier: Any = allocate(self._size)
+        self._later: Any = None
         self._errors: list[float] = []
         """Of 2, 4, 8 ... samples."""
 
@@ -78,20 +81,22 @@ class Sums:
 
     @property
     def buffers(self) -> tuple[Any, Any]:
-        """On the device: sums of the earlier run, and of the later; what is there means nothing without a sample."""
-        return self._buffers
+        """On the device: sums of the earlier run, and of the later; what is there means nothing without a sample, and
+        before the second one both are the same."""
+        return self._earlier, self._earlier if self._later is None else self._later
 
-    @property
-    def next(self) -> tuple[Any, bool]:
+    def target(self) -> tuple[Any, bool]:
         """Where the next sample goes, and whether it is added to what is there."""
-        return self._buffers[min(1, self.samples)], self.later > 0
+        if self.samples > 0 and self._later is None:
+            self._later = self._allocate(self._size)
+        return self.buffers[min(1, self.samples)], self.later > 0
 
     def added(self) -> Iterator[None]:
         """The sample is there, in all pixels. To be run to its end; yields between pieces of work."""
         self.samples += 1
         if self.samples > 1 and self.samples == self.earlier:
             pixels, squared = self._width * self._height, 0.0
-            for piece in self._fold.pieces(*self._buffers, pixels):
+            for piece in self._fold.pieces(*self.buffers, pixels):
                 squared += piece
                 yield
             self._errors.append(math.sqrt(squared / (3 * pixels)) / self.samples)
@@ -99,7 +104,7 @@ class Sums:
     def mean(self) -> NDArray[np.floating[Any]]:
         """(height, width, 4) of all samples; zeros without any."""
         runs = [
-            self._read(buffer) for buffer, count in zip(self._buffers, (self.samples, self.later), strict=True) if count
+            self._read(buffer) for buffer, count in zip(self.buffers, (self.samples, self.later), strict=True) if count
         ]
         return sum(runs, np.zeros((self._height, self._width, 4), self._real)) / self._real(max(1, self.samples))
 
@@ -111,6 +116,11 @@ class Sums:
         counts = [2 ** (number + 1) for number in range(len(self._errors))]
         taken_on = [error * (count / self.samples) ** RATE for count, error in zip(counts, self._errors, strict=True)]
         return float(np.sqrt(np.mean(np.square(taken_on[-LEVELS:]))))
+
+    @property
+    def _size(self) -> int:
+        """Bytes of a run."""
+        return self._width * self._height * 4 * np.dtype(self._real).itemsize
 
     def _read(self, buffer: Any) -> NDArray[np.floating[Any]]:  # noqa: ANN401
         sums = np.empty((self._height, self._width, 4), self._real)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import math
 import threading
+import weakref
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -64,6 +66,8 @@ class World:
         self.drawn: list[Drawn] = []
         self.samples = 0
         """Of the picture that got some last."""
+        self.pictures = weakref.WeakSet[TimedPicture]()
+        """That somebody holds."""
         scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
         self.session = Session("0" * 32, Stage.of(scene))
         self.events: list[float] = []
@@ -80,7 +84,14 @@ class World:
             )
 
     def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
-        return TimedPicture(self, stage.scene, (width, height))
+        picture = TimedPicture(self, stage.scene, (width, height))
+        self.pictures.add(picture)
+        return picture
+
+    def alive(self) -> int:
+        """Pictures that somebody holds; work that was given up is garbage in a circle."""
+        gc.collect()
+        return len(self.pictures)
 
     def is_ready(self, stage: Stage) -> bool:
         return True
@@ -301,6 +312,24 @@ async def test_a_stone_that_fell_asleep_is_drawn_in_full_once_and_refined(
     drawn = len(world.drawn)
     await play(world, 3, rate=rate)
     assert len(world.drawn) == drawn
+
+
+async def test_only_a_picture_that_can_be_refined_is_held(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    assert world.samples >= REST_SAMPLES
+    assert world.alive() == 0, "it is final"
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    while not (world.drawn and not world.drawn[-1].full and not math.isnan(world.drawn[-1].ended)):
+        await play(world, IDLE)
+    assert world.alive() == 0, "it is a reduced one, which is drawn anew"
+
+    def drawn_in_full() -> bool:
+        return world.drawn[-1].full and world.samples == 1
+
+    while not drawn_in_full():
+        await play(world, IDLE)
+    assert world.alive() == 1
 
 
 async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(

@@ -10,7 +10,7 @@ from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_sender import FrameSender
 from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, proceed
-from culet.engine.painting.live_picture import NEVER, REST_SAMPLES, LivePicture, Preparing
+from culet.engine.painting.live_picture import NEVER, REST_SAMPLES, LivePicture, Preparing, State
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
 from culet.engine.painting.renderer import ALONE_SECONDS, Renderer
@@ -89,7 +89,7 @@ class LivePainter:
         session.remember(shown)
         simulated = session.motion.take_spent()
         self._shares.charge(account, simulated, now)
-        if not live.current or live.picture is None or settled:  # or the motion has not gone on
+        if not live.current or live.state is State.BLANK or settled:  # or the motion has not gone on
             try:
                 live.making = self._planned(live, shown, account, now, simulated)
             except Exception as error:  # one session's failure must not end the others'

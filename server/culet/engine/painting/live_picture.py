@@ -83,7 +83,7 @@ class LivePicture:
     size: tuple[int, int] = LIVE_SIZE
     state: State = State.BLANK
     picture: Picture | None = None
-    """That can be refined."""
+    """That can be refined: none of a reduced one, which is drawn anew."""
     painted: Shown | None = None
     """What the picture drawn last shows, or what was refused."""
     painted_size: tuple[int, int] = (0, 0)
@@ -189,12 +189,11 @@ class LivePicture:
         self.making = None
         self.quality.drew(work)
         self.painted, self.painted_size, self.render_seconds = work.shown, work.wanted, work.render_seconds
-        self.picture = work.picture
         match work.kind:
             case Kind.PLANNED:
-                self.state, self.settles_at = State.REDUCED, now + SETTLE_SECONDS
+                self.state, self.picture, self.settles_at = State.REDUCED, None, now + SETTLE_SECONDS
             case Kind.FULL | Kind.REFINED:
-                self.state = State.FULL
+                self.state, self.picture = State.FULL, work.picture
             case _:
                 assert_never(work.kind)
         if work.final:

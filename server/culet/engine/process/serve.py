@@ -15,6 +15,7 @@ import zmq.asyncio
 
 from culet.engine.painting.renderer import Picture, Renderer
 from culet.engine.process.engine import Engine
+from culet.engine.process.heap import return_large_blocks
 from culet.engine.process.limits import Limits
 from culet.errors import CuletError
 
@@ -27,6 +28,7 @@ def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, st
     With `stand_by` it gets everything ready but its sockets, and then waits for a line on the standard input.
     DeviceError without a working device, InputError for a bad endpoint.
     """
+    return_large_blocks()
     start = asyncio.Event()
     asyncio.run(_run(control, frames, limits or Limits(), start, stand_by=stand_by))
     _end_beside_compilers()
