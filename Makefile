@@ -17,7 +17,7 @@ export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 # Kernels compiled for tests are kept here, apart from the user's own.
 test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak reliability bench study compose-test opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak reliability bench study compose-test compilers opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(DONE)/solver $(WEB_BUILD)
@@ -31,7 +31,7 @@ wheel: $(DONE)/base $(DONE)/solver $(WEB_BUILD)
 	$(BIN)/pip wheel --quiet --no-deps --wheel-dir dist .
 	@ls -1 dist/culet-*.whl
 
-test: $(DONE)/dev opencl $(DONE)/solver browser $(WEB_BUILD)
+test: $(DONE)/dev opencl $(DONE)/solver compilers browser $(WEB_BUILD)
 	.ci/test $(ARGS)
 
 # Each in its own target, so that `make -k check` finds all there is to find.
@@ -60,7 +60,7 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 	cd $(WEB) && npm run format
 
 # pytest ends with 5 if it has found no test.
-validate: $(DONE)/validation opencl $(DONE)/solver
+validate: $(DONE)/validation opencl $(DONE)/solver compilers
 	$(BIN)/pytest -m "validation and not soak" $(ARGS) || [ $$? -eq 5 ]
 
 # What is long by nature, and bounded: load, chaos, whole searches. Not part of .ci/run.
@@ -116,6 +116,10 @@ $(DONE)/solver: $(wildcard $(SOLVER)/*.c $(SOLVER)/*.h) $(SOLVER)/build.py | $(D
 	@.ci/need compiler
 	$(BIN)/python $(SOLVER)/build.py
 	@touch $@
+
+# Tests compile the solver by both of them.
+compilers:
+	@.ci/need gcc clang || echo "make: what is shown of a compiler that is missing is skipped" >&2
 
 opencl: $(DONE)/base
 	@.ci/need opencl

@@ -130,7 +130,7 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
       const radianceL seen =
           gather(world, &ray, splat(1), BY_CAMERA, has_backdrop ? &behind : 0, &heading, &glossy, &cut, all_channels());
       EACH (k, 3) radiance.channel[k] += seen.channel[k];
-      if (GEOMETRY != EMPTY && any_lane(glossy))
+      if (GEOMETRY != EMPTY && world.scene->stones > 0 && any_lane(glossy))
         mirrored_in_floor(world, &ray, glossy, jitter_x, jitter_y, &met, &radiance);
       open = heading;
     }

@@ -31,7 +31,8 @@
 
 // Whether 16 numbers of single precision have the processor's own instructions for masks and for packing: OpenCL has none
 // for packing, and PoCL's any() is many.
-#if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_compresssf512_mask)
+#if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_compresssi512_mask) && \
+    __has_builtin(__builtin_ia32_permvarsf512) && __has_builtin(__builtin_ia32_permvarsi512)
 #define AVX512 1
 #else
 #define AVX512 0
@@ -81,11 +82,14 @@ static inline int any_lane(maskL mask) { return __builtin_ia32_cvtd2mask512(mask
 #else
 static inline int any_lane(maskL mask) { return any(mask); }
 #endif
-static inline realL load_lanes(const real *from) { return JOIN(vload, LANES)(0, from); }
-static inline intL load_ints(const int *from) { return JOIN(vload, LANES)(0, from); }
-static inline void store_lanes(realL value, real *to) { JOIN(vstore, LANES)(value, 0, to); }
-static inline void store_ints(intL value, int *to) { JOIN(vstore, LANES)(value, 0, to); }
-static inline void store_mask(maskL mask, int *to) { JOIN(vstore, LANES)(JOIN(convert_int, LANES)(mask), 0, to); }
+// A packet at any address, in one piece: PoCL makes several of vload and vstore.
+typedef realL anywhereL __attribute__((aligned(sizeof(real)), may_alias));
+typedef intL ints_anywhereL __attribute__((aligned(sizeof(int)), may_alias));
+static inline realL load_lanes(const real *from) { return *(const anywhereL *)from; }
+static inline intL load_ints(const int *from) { return *(const ints_anywhereL *)from; }
+static inline void store_lanes(realL value, real *to) { *(anywhereL *)to = value; }
+static inline void store_ints(intL value, int *to) { *(ints_anywhereL *)to = value; }
+static inline void store_mask(maskL mask, int *to) { store_ints(JOIN(convert_int, LANES)(mask), to); }
 static inline intL count_mask(maskL mask) { return -JOIN(convert_int, LANES)(mask); }
 static inline maskL widen(intL mask) { return JOIN(JOIN(convert_, MASK), LANES)(mask); }
 static inline intL blend_ints(intL mask, intL yes, intL no) { return select(no, yes, mask); }
@@ -115,19 +119,19 @@ static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL
 // The lanes that a mask names, in order and without gaps (stream compaction). A whole packet is written, of which `count` lanes are meant.
 #if LANES == 16 && AVX512
 typedef struct {
-  ushort lanes;
+  intL from;
   int count;
 } packing_t;
-static inline packing_t packing_of(maskL mask) {
+static inline packing_t packing_of(maskL mask) { // a permutation takes a fifth of a compression's time
   const ushort lanes = __builtin_ia32_cvtd2mask512(mask);
-  const packing_t packing = {lanes, popcount((uint)lanes)};
+  const packing_t packing = {__builtin_ia32_compresssi512_mask(LANE_INDEX, LANE_INDEX, lanes), popcount((uint)lanes)};
   return packing;
 }
 static inline void pack_lanes(packing_t packing, realL value, real *to) {
-  store_lanes(__builtin_ia32_compresssf512_mask(value, value, packing.lanes), to);
+  store_lanes(__builtin_ia32_permvarsf512(value, packing.from), to);
 }
 static inline void pack_ints(packing_t packing, intL value, int *to) {
-  store_ints(__builtin_ia32_compresssi512_mask(value, value, packing.lanes), to);
+  store_ints(__builtin_ia32_permvarsi512(value, packing.from), to);
 }
 #else
 typedef struct {

@@ -117,6 +117,8 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.ToggleWalls(),
     messages.PatchScene(patch={"camera": {"fov_degrees": 30}}),
     messages.SetScene(scene={}),
+    messages.Undo(),
+    messages.Redo(),
     messages.Balance(exactness=0.75, pinned=True),
     messages.Pick(number=3, x=0.25, y=-0.125),
     messages.Outline(stone="stone", step=42),

@@ -139,6 +139,19 @@ class SetScene(Message):
     scene: dict[str, Any]
 
 
+class Undo(Message):
+    """Take the last edit of the scene back, whoever made it; edits of the same fields within a second of each other are
+    one. Moves of the camera are no edits, nor are falls and pushes of the stones."""
+
+    type: Literal["undo"] = "undo"
+
+
+class Redo(Message):
+    """Make the edit again that was taken back last, unless there was another edit since."""
+
+    type: Literal["redo"] = "redo"
+
+
 class Balance(Message):
     """How fast or exact frames are to be while things move; a picture at rest is always refined to the end.
 
@@ -200,7 +213,7 @@ class Ping(Message):
 
 SessionEvent = (
     Orbit | Translate | Dolly | ResetCamera | LookAtStone | ToggleFall | ResetStone | Push | ToggleMirror
-    | ToggleEnvironment | ToggleWalls | PatchScene | SetScene | Balance
+    | ToggleEnvironment | ToggleWalls | PatchScene | SetScene | Undo | Redo | Balance
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 
@@ -225,12 +238,15 @@ class Hello(Message):
 
 
 class Fall(Message):
-    """Whether time goes on for a session's stones, whether all of them sleep for good, and the session's balance."""
+    """Whether time goes on for a session's stones, whether all of them sleep for good, the session's balance, and
+    whether there are edits to undo and to make again."""
 
     falling: bool
     asleep: bool = False
     exactness: Exactness = BALANCED
     pinned: bool = False
+    can_undo: bool = False
+    can_redo: bool = False
 
 
 class Condition(Fall):
@@ -241,8 +257,9 @@ class Condition(Fall):
 
 class State(Condition):
     """The session's scene as it is now (with the live camera), whether time goes on for its stones (`falling`), whether
-    all of them sleep for good (`asleep`), what each does by its id (`motions`: "paused", "falling" or "asleep"), and
-    the session's balance: to a viewer that joins, and whenever it could not follow by a Change."""
+    all of them sleep for good (`asleep`), what each does by its id (`motions`: "paused", "falling" or "asleep"), the
+    session's balance, and whether an Undo and a Redo have something to do: to a viewer that joins, and whenever it
+    could not follow by a Change."""
 
     type: Literal["state"] = "state"
     revision: Revision

@@ -134,6 +134,19 @@ export interface SetScene {
 }
 
 /**
+ * Take the last edit of the scene back, whoever made it; edits of the same fields within a second of each other are
+ * one. Moves of the camera are no edits, nor are falls and pushes of the stones.
+ */
+export interface Undo {
+  type: "undo";
+}
+
+/** Make the edit again that was taken back last, unless there was another edit since. */
+export interface Redo {
+  type: "redo";
+}
+
+/**
  * How fast or exact frames are to be while things move; a picture at rest is always refined to the end.
  *
  * `exactness` goes from 0, many frames, to 1, few, of the quality that this rate leaves time for. `pinned`, it chooses
@@ -210,6 +223,8 @@ export type ControlEvent =
   | ToggleWalls
   | PatchScene
   | SetScene
+  | Undo
+  | Redo
   | Balance
   | Pick
   | Outline
@@ -229,8 +244,9 @@ export interface Hello {
 
 /**
  * The session's scene as it is now (with the live camera), whether time goes on for its stones (`falling`), whether
- * all of them sleep for good (`asleep`), what each does by its id (`motions`: "paused", "falling" or "asleep"), and
- * the session's balance: to a viewer that joins, and whenever it could not follow by a Change.
+ * all of them sleep for good (`asleep`), what each does by its id (`motions`: "paused", "falling" or "asleep"), the
+ * session's balance, and whether an Undo and a Redo have something to do: to a viewer that joins, and whenever it
+ * could not follow by a Change.
  */
 export interface State {
   falling: boolean;
@@ -238,6 +254,8 @@ export interface State {
   /** 0 to 1 */
   exactness?: number;
   pinned?: boolean;
+  can_undo?: boolean;
+  can_redo?: boolean;
   motions?: JsonObject;
   type: "state";
   /** integer, 0 to 9.00719925474099e+15 */
@@ -257,6 +275,8 @@ export interface Change {
   /** 0 to 1 */
   exactness?: number;
   pinned?: boolean;
+  can_undo?: boolean;
+  can_redo?: boolean;
   type: "change";
   /** integer, 0 to 9.00719925474099e+15 */
   revision: number;
@@ -331,6 +351,8 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
     asleep: ["boolean", "absent"],
     exactness: ["number", "absent"],
     pinned: ["boolean", "absent"],
+    can_undo: ["boolean", "absent"],
+    can_redo: ["boolean", "absent"],
     motions: ["object", "absent"],
     revision: ["integer"],
     scene: ["object"],
@@ -340,6 +362,8 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
     asleep: ["boolean", "absent"],
     exactness: ["number", "absent"],
     pinned: ["boolean", "absent"],
+    can_undo: ["boolean", "absent"],
+    can_redo: ["boolean", "absent"],
     revision: ["integer"],
     since: ["integer"],
     parts: ["object"],

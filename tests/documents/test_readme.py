@@ -45,7 +45,8 @@ def test_the_default_cut_is_written_out_in_full() -> None:
 
 def test_the_table_of_keys_names_the_keys_of_the_page_and_no_others() -> None:
     table = re.findall(r"^\| (.*?) \|", README.split("\n## Keys\n")[1].split("\n## ")[0], re.MULTILINE)
-    written = {PRINTED.get(key, key.lower()) for row in table for key in re.findall(r"`(.)`", row)}
+    keys = {key for row in table for key in re.findall(r"`([^`]+)`", row)}
+    written = {PRINTED.get(key, key.lower()) for key in keys if len(key) == 1}
     actions = (ROOT / "client/web/src/actions.ts").read_text(encoding="utf-8")
     page = {key.lower() for key in re.findall(r'(?:letter|plain)\("\w+", "(\w)"', actions)}
     page |= {key.lower() for key in re.findall(r'move\("\w+", "(\w+)"', actions)}
@@ -53,6 +54,8 @@ def test_the_table_of_keys_names_the_keys_of_the_page_and_no_others() -> None:
     page |= set(re.findall(r'key: "(\W)"', actions))
     assert len(page) == 20
     assert written == page
+    chords = {key.lower().replace(" ", "+") for key in keys if key.startswith("Ctrl")}
+    assert chords == set(re.findall(r'edit\("\w+", "(.+?)"', actions))
 
 
 def test_every_command_is_one_that_exists() -> None:

@@ -21,7 +21,7 @@ from culet.rendering.features import ESTIMATOR, Features, features_of, geometry_
 from culet.rendering.light.unshaded import sky_light
 from culet.rendering.placed_stone import placed_stones, rotation_matrix
 from culet.rendering.renderer import Renderer
-from culet.rendering.studio import LEAST_SHADE, contact_form
+from culet.rendering.studio import LEAST_SHADE, contact_forms
 from culet.scene import PRESETS, Scene
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from optics.closed_forms import fresnel
@@ -323,7 +323,7 @@ def test_the_contact_shadow_of_a_brilliant_at_rest_is_near_that_of_an_even_sky(
 
 def form(scene: Scene, shape: Shape) -> Array:
     (stone,) = placed_stones(staged(scene, shape))
-    return contact_form(stone)
+    return np.asarray(contact_forms([stone])[0])
 
 
 def test_the_shadows_ellipsoid_has_the_stones_moments(brilliant: Shape) -> None:

@@ -9,7 +9,7 @@ import pytest
 from culet.errors import SceneError
 from culet.scene import Scene
 from culet.scene.emitters import MOST_LAMPS, lamps
-from culet.scene.patch import merge_patch, patched, read_patched
+from culet.scene.patch import merge_patch, patched, read_patched, sharing
 
 # RFC 7396, appendix A: every example.
 EXAMPLES = [
@@ -178,3 +178,14 @@ def test_a_sky_that_stays_of_its_kind_keeps_its_lamps(patch: dict[str, Any]) -> 
     brighter = sky(sunny.model_dump(mode="json"), environment=patch)
     assert brighter.environment != sunny.environment
     assert brighter.emitters == sunny.emitters
+
+
+def test_what_a_patch_leaves_as_it_was_is_kept_once() -> None:
+    before = Scene.read({"stones": [{"id": "ruby"}, {"id": "glass", "position": [5, 0, 0]}]})
+    patch = {"stones": {"ruby": {"scale": 2}}, "simulation": {"gravity": 1}}
+    after = read_patched(before.model_dump(mode="json"), patch)
+    shared = sharing(after, before)
+    assert shared == after
+    assert shared.stones[1] is before.stones[1]
+    assert [name for name, value in shared if value is not getattr(before, name)] == ["stones", "simulation"]
+    assert sharing(read_patched(before.model_dump(mode="json"), {}), before).stones is before.stones

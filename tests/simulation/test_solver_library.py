@@ -65,13 +65,9 @@ def test_another_source_is_another_library(tmp_path: Path, monkeypatch: pytest.M
     assert library_name() != before
 
 
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_the_sources_compile_without_a_warning(compiler: str) -> None:
-    found = next((each for each in compilers() if Path(each).name.startswith(compiler)), None)
-    if found is None:
-        pytest.skip(f"what {compiler} warns of in the solver's sources: there is no {compiler}")
     strict = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wpedantic", "-Werror", "-fsyntax-only")
-    command = [found, *strict, *map(str, build.SOURCES.glob("*.c"))]
+    command = [compiler, *strict, *map(str, build.SOURCES.glob("*.c"))]
     assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.stats import t as student
 from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
-from shared.stages import staged
+from culet.stage import Stage
 from validation.mitsuba_reference import Array, Reference
 
 SIGNIFICANCE = 0.01
@@ -33,16 +34,16 @@ class Seen:
     path_variance: Array
     """(height, width, 3) of a single random path's radiance: what culet says of the other's noise."""
     on_stone: NDArray[np.bool_]
-    """(height, width) pixels that the stone is seen in, and their neighbours."""
+    """(height, width) pixels that stones are seen in, and their neighbours."""
     samples: int
 
 
 def seen(
-    renderer: Renderer, scene: Scene, stone: Shape | None, panorama: Array, size: tuple[int, int], samples: int
+    renderer: Renderer, scene: Scene, shapes: Sequence[Shape], panorama: Array, size: tuple[int, int], samples: int
 ) -> Seen:
-    """The scene under a grey panorama (h, 2h), each sample read by itself."""
+    """The scene's stones, of these shapes, under a grey panorama (h, 2h), each sample read by itself."""
     sky = np.repeat(panorama[..., None], 3, axis=-1).astype(np.float32)
-    picture = renderer.picture(staged(scene, stone, sky), *size)
+    picture = renderer.picture(Stage(scene, tuple(shapes), sky), *size)
     total = np.zeros((size[1], size[0], 3))
     squares = np.zeros_like(total)
     for number in range(samples):
@@ -52,7 +53,7 @@ def seen(
         total = sum_so_far
     mean = total / samples
     variance = np.maximum(squares / samples - mean**2, 0) / (samples - 1)
-    squared = renderer.picture(staged(scene, stone, sky**2), *size)
+    squared = renderer.picture(Stage(scene, tuple(shapes), sky**2), *size)
     squared.refine(samples // 4)
     path_variance = np.maximum(squared.linear() - mean**2, 0)
     on_stone = binary_dilation(picture.cut_map() > 0, np.ones((3, 3)))
@@ -68,7 +69,7 @@ class Verdict:
     limit: float
     """Below which that calls them different: Sidak's correction for the number of pixels."""
     beyond_two_sigma: float
-    """Part of the pixels of the stone; 0.046 in a normal distribution."""
+    """Part of the pixels of the stones; 0.046 in a normal distribution."""
     mean: float
     """Mean difference, radiance."""
     sigma: float

@@ -1,4 +1,4 @@
-"""Pictures of a dielectric stone alone under a panorama, by Mitsuba 3: another program, another method.
+"""Pictures of dielectric stones alone under a panorama, by Mitsuba 3: another program, another method.
 
 Mitsuba's path tracer follows one random path at a time, where culet follows all parts of the light; it meets triangles
 with another intersector, and its polarised variants carry full Mueller matrices. Its dielectric has one index. The
@@ -7,6 +7,7 @@ panorama is given to it with twice as many rows, so that both programs' bilinear
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,9 +15,10 @@ import numpy as np
 import pytest
 import trimesh
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from culet.geometry.shape import Shape
-from culet.scene import Scene
+from culet.scene import Scene, StoneSettings
 
 Array = NDArray[np.float64]
 
@@ -61,8 +63,8 @@ def twice_as_high(panorama: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def reference(
     scene: Scene,
-    stone: Shape | None,
-    eta: float,
+    shapes: Sequence[Shape],
+    etas: Sequence[float],
     panorama: NDArray[np.float32],
     size: tuple[int, int],
     samples: int,
@@ -70,7 +72,7 @@ def reference(
     *,
     polarised: bool = False,
 ) -> Reference:
-    """The scene's camera looking at the stone, which lies at the origin unturned, under a grey panorama (h, 2h)."""
+    """The scene's camera looking at its stones, of these shapes and indices, under a grey panorama (h, 2h)."""
     mitsuba.set_variant(VARIANTS[polarised])
     camera = scene.camera
     view = mitsuba.ScalarTransform4f().look_at(origin=camera.position, target=camera.target, up=camera.up)
@@ -84,23 +86,29 @@ def reference(
         },
         "sky": {"type": "envmap", "bitmap": mitsuba.Bitmap(twice_as_high(panorama))},
     }  # fmt: skip
-    if stone is not None:
-        described["stone"] = _mesh(stone, eta)
+    for number, (stone, shape, eta) in enumerate(zip(scene.stones, shapes, etas, strict=True)):
+        described[f"stone {number}"] = _mesh(_placed(stone, shape), eta)
     moments = np.array(mitsuba.render(mitsuba.load_dict(described), spp=samples, seed=seed), np.float64)
     mean = moments[..., LUMINANCE]
     spread = np.maximum(moments[..., SQUARED_LUMINANCE] - mean**2, 0)
     return Reference(mean, spread / (samples - 1), samples)
 
 
-def _mesh(stone: Shape, eta: float) -> Any:  # noqa: ANN401 - Mitsuba is not typed
+def _placed(stone: StoneSettings, shape: Shape) -> trimesh.Trimesh:
+    """Where, how turned and how large the scene has it. By scipy's rotation, whose quaternion begins with x."""
+    w, x, y, z = stone.orientation
+    vertices = Rotation.from_quat((x, y, z, w)).apply(stone.scale * shape.vertices) + stone.position
+    return trimesh.Trimesh(vertices, shape.triangles, process=False)
+
+
+def _mesh(stone: trimesh.Trimesh, eta: float) -> Any:  # noqa: ANN401 - Mitsuba is not typed
     """Flat triangles of glass."""
     properties = mitsuba.Properties()
     properties["glass"] = mitsuba.load_dict({"type": "dielectric", "int_ior": eta, "ext_ior": 1.0})
     properties["face_normals"] = True
-    flat = trimesh.Trimesh(stone.vertices, stone.triangles, process=False)
-    mesh = mitsuba.Mesh(stone.name, len(flat.vertices), len(flat.faces), props=properties)
+    mesh = mitsuba.Mesh("stone", len(stone.vertices), len(stone.faces), props=properties)
     parameters = mitsuba.traverse(mesh)
-    parameters["vertex_positions"] = flat.vertices.ravel().astype(np.float32)
-    parameters["faces"] = flat.faces.ravel().astype(np.uint32)
+    parameters["vertex_positions"] = stone.vertices.ravel().astype(np.float32)
+    parameters["faces"] = stone.faces.ravel().astype(np.uint32)
     parameters.update()
     return mesh

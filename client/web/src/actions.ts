@@ -43,8 +43,21 @@ function plain(name: string, key: string, label: Action["label"], type: Plain): 
   return letter(name, key, label, { kind: "send", event: () => ({ type }) });
 }
 
+/** By a key with Ctrl, which `keys.ts` knows: no key has such a name or place. */
+function edit(type: "undo" | "redo", key: string, label: string): Action {
+  return { name: type, label, key, code: key, repeats: false, effect: { kind: "send", event: () => ({ type }) } };
+}
+
 /** The events that say all by their type. */
-type Plain = "reset_camera" | "toggle_fall" | "reset_stone" | "toggle_mirror" | "toggle_environment" | "toggle_walls";
+type Plain =
+  | "reset_camera"
+  | "toggle_fall"
+  | "reset_stone"
+  | "toggle_mirror"
+  | "toggle_environment"
+  | "toggle_walls"
+  | "undo"
+  | "redo";
 
 function dolly(forward: number): Effect {
   return { kind: "send", event: (target) => ({ type: "dolly", target, forward }) };
@@ -77,6 +90,8 @@ export const ACTIONS: readonly Action[] = [
     effect: { kind: "stones", command: "remove" },
   },
   letter("put_back_stone", "U", "Take a removal back", { kind: "stones", command: "putBack" }),
+  edit("undo", "ctrl+z", "Undo"),
+  edit("redo", "ctrl+shift+z", "Redo"),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
   {
     name: "keys",
@@ -96,6 +111,8 @@ const KEY_NAMES: Record<string, string> = {
   arrowup: "\u2191",
   arrowdown: "\u2193",
   delete: "Del",
+  "ctrl+z": "Ctrl Z",
+  "ctrl+shift+z": "Ctrl Shift Z",
 };
 
 /** A key as it is printed. */

@@ -3,8 +3,8 @@ import { ACTIONS } from "./actions";
 import { actionOf, type KeyPress, keepsKey } from "./keys";
 
 function press(code: string, key: string, more: Partial<KeyPress> = {}): string | undefined {
-  const plain = { repeat: false, ctrlKey: false, metaKey: false, altKey: false, isComposing: false };
-  return actionOf({ code, key, ...plain, ...more })?.name;
+  const plain = { repeat: false, ctrlKey: false, metaKey: false, altKey: false, shiftKey: false };
+  return actionOf({ code, key, isComposing: false, ...plain, ...more })?.name;
 }
 
 describe("a key press", () => {
@@ -28,6 +28,17 @@ describe("a key press", () => {
     ["KeyS", "s", "download"],
   ])("%s means what the report says", (code, key, name) => {
     expect(press(code, key)).toBe(name);
+  });
+
+  it("with Ctrl or Cmd undoes and redoes, by the printed letter alone", () => {
+    const ctrl = { ctrlKey: true };
+    expect(press("KeyZ", "z", ctrl)).toBe("undo");
+    expect(press("KeyY", "z", { metaKey: true })).toBe("undo");
+    expect(press("KeyZ", "Z", { ...ctrl, shiftKey: true })).toBe("redo");
+    expect(press("KeyY", "y", ctrl)).toBe("redo");
+    expect(press("KeyS", "s", ctrl)).toBeUndefined();
+    expect(press("KeyZ", "z", { ...ctrl, altKey: true })).toBeUndefined();
+    expect(press("KeyZ", "z")).toBeUndefined();
   });
 
   it("on AZERTY counts by the printed letter, and by position where that prints nothing of ours", () => {

@@ -1,10 +1,10 @@
 /** Which action a key press means. */
 
-import { ACTIONS, type Action } from "./actions";
+import { ACTIONS, type Action, actionNamed } from "./actions";
 
 export type KeyPress = Pick<
   KeyboardEvent,
-  "code" | "key" | "repeat" | "ctrlKey" | "metaKey" | "altKey" | "isComposing"
+  "code" | "key" | "repeat" | "ctrlKey" | "metaKey" | "altKey" | "shiftKey" | "isComposing"
 >;
 
 const BY_KEY = new Map(ACTIONS.map((action) => [action.key, action]));
@@ -15,9 +15,22 @@ const BY_CODE = new Map(ACTIONS.map((action) => [action.code, action]));
  * nothing of ours counts by its position, so that other layouts and scripts work as well.
  */
 export function actionOf(press: KeyPress): Action | null {
-  if (press.ctrlKey || press.metaKey || press.altKey || press.isComposing) return null;
+  if (press.altKey || press.isComposing) return null;
+  if (press.ctrlKey || press.metaKey) return editOf(press);
   const action = BY_KEY.get(press.key.toLowerCase()) ?? BY_CODE.get(press.code);
   return action && (action.repeats || !press.repeat) ? action : null;
+}
+
+/** Ctrl Z and its kin, by the printed letter alone: on some layouts Z and Y have changed places. */
+function editOf({ key, shiftKey }: KeyPress): Action | null {
+  switch (key.toLowerCase()) {
+    case "z":
+      return actionNamed(shiftKey ? "redo" : "undo");
+    case "y":
+      return shiftKey ? null : actionNamed("redo");
+    default:
+      return null;
+  }
 }
 
 const NOT_TEXT = new Set(["button", "checkbox", "color", "file", "image", "radio", "reset", "submit"]);

@@ -16,6 +16,7 @@ import {
 import { Bareness } from "./bareness";
 import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
+import type { SessionEvent } from "./events";
 import { FallButton } from "./fall-button";
 import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { Findings } from "./findings";
@@ -40,7 +41,7 @@ import { StoneCommands } from "./stone-commands";
 import { idsOf, stonePatch, stonesOf } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
-import { describeChange, INITIAL, type ViewState } from "./view-state";
+import { describeChange, INITIAL, inVain, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
 import { Welcome } from "./welcome";
 import { LOOK, Whereabouts } from "./whereabouts";
@@ -139,7 +140,13 @@ function perform({ effect }: Action): void {
   else if (!viewer) problem("There is no session yet.");
   else if (effect.kind === "stones") stones[effect.command]();
   else if (effect.kind === "select") viewer.select(effect.target);
-  else viewer.send(effect.event(viewer.state.target));
+  else send(viewer, effect.event(viewer.state.target));
+}
+
+function send(to: Viewer, event: SessionEvent): void {
+  const vain = to.untold ? null : inVain(to.state, event);
+  if (vain) toasts.note(vain);
+  else to.send(event);
 }
 
 /** What changes the page alone. */

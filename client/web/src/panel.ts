@@ -10,6 +10,7 @@ import { Hints } from "./controls/hints";
 import { Section } from "./controls/section";
 import { Toggle } from "./controls/toggle";
 import { CutPanel } from "./cut-panel";
+import { EditButtons } from "./edit-buttons";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
 import { type StoneActions, StonePanel } from "./stone-panel";
@@ -44,6 +45,7 @@ type Shown = Pick<ViewState, "falling" | "mirror" | "light" | "walls">;
 export class Panel {
   readonly choices: ChoicePanel;
   readonly fall: FallPanel;
+  private readonly edits: EditButtons;
   private readonly stones: StonePanel;
   private readonly cut: CutPanel;
   private readonly surfaces: SurfacePanel;
@@ -58,6 +60,7 @@ export class Panel {
   constructor(container: HTMLElement, actions: PanelActions) {
     this.actions = actions;
     const root = new Section("culet", 1);
+    this.edits = root.add(new EditButtons(actions.perform));
     const stone = root.section(STONE.one);
     const surroundings = root.section("Surroundings");
     const move = root.section("Move");
@@ -93,6 +96,7 @@ export class Panel {
   update(state: ViewState): void {
     this.state = state;
     const shown = { ...state, falling: state.falling && !state.asleep };
+    this.edits.update(state);
     this.target.value = state.target;
     for (const [name, toggle] of this.toggles) toggle.value = shown[name];
     for (const [button, action] of this.counted) button.label(labelWithKey(action, state.scene));

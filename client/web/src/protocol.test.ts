@@ -81,6 +81,8 @@ test("every control event has a TypeScript type", () => {
     { type: "toggle_walls" },
     { type: "patch_scene", patch: { camera: { fov_degrees: 30 } } },
     { type: "set_scene", scene: {} },
+    { type: "undo" },
+    { type: "redo" },
     { type: "balance", exactness: 0.75, pinned: true },
     { type: "pick", number: 3, x: 0.25, y: -0.125 },
     { type: "outline", stone: "stone", step: 42 },

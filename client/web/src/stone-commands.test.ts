@@ -55,6 +55,17 @@ it("removes the chosen stone, and takes removals back one by one", () => {
   expect(told).toEqual([NOTHING_REMOVED]);
 });
 
+it("takes no removal back that came back by itself, as by an undo", () => {
+  state = { ...state, stone: "ruby" };
+  commands.remove();
+  expect(commands.removals).toBe(0); // not yet: the stone is there until the server has heard
+  scene(GLASS);
+  expect(commands.removals).toBe(1);
+  scene(RUBY, GLASS);
+  commands.putBack();
+  expect(told).toEqual([NOTHING_REMOVED]);
+});
+
 it("removes no stone by guess, but the only one", () => {
   commands.remove();
   expect([told, sent]).toEqual([[CHOOSE_FIRST], []]);

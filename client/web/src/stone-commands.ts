@@ -31,7 +31,7 @@ export class StoneCommands {
 
   /** How many stones can be put back. */
   get removals(): number {
-    return this.removed.length;
+    return this.away().length;
   }
 
   choose(id: string | null): void {
@@ -72,11 +72,11 @@ export class StoneCommands {
 
   /** The stone that was removed last. */
   putBack(): void {
-    const stone = this.removed.at(-1);
+    const stone = this.away().at(-1);
     if (!stone) {
       this.world.tell(NOTHING_REMOVED);
     } else if (this.hasRoom()) {
-      this.removed.pop();
+      this.removed.splice(this.removed.lastIndexOf(stone), 1);
       this.bring(additionOf(this.world.state().scene, stone));
     }
   }
@@ -95,6 +95,12 @@ export class StoneCommands {
   /** Another scene was opened: what was removed from the one before is not its. */
   forget(): void {
     this.removed.length = 0;
+  }
+
+  /** Those removed that did not come back otherwise, as by an undo. */
+  private away(): JsonObject[] {
+    const there = new Set(stonesOf(this.world.state().scene).map((stone) => JSON.stringify(stone)));
+    return this.removed.filter((stone) => !there.has(JSON.stringify(stone)));
   }
 
   private hasRoom(): boolean {

@@ -1,6 +1,6 @@
 import type { Notice } from "@culet/protocol/messages";
-import { describe, expect, it } from "vitest";
-import { describeChange, INITIAL, isAmiss, withNotice } from "./view-state";
+import { describe, expect, it, test } from "vitest";
+import { describeChange, INITIAL, inVain, isAmiss, withNotice } from "./view-state";
 
 function shown(scene: Record<string, unknown>, falling = false): Notice {
   return { type: "state", revision: 1, scene, falling };
@@ -33,6 +33,19 @@ describe("the state after a notice", () => {
       withNotice(INITIAL, { type: "state", revision: 1, scene: DEFAULT, falling: false, ...balance }),
     ).toMatchObject(balance);
     expect(withNotice(INITIAL, shown(DEFAULT))).toMatchObject({ exactness: 0.5, pinned: false });
+  });
+
+  it("knows whether there is something to undo and to redo, which older servers do not say", () => {
+    const told = {
+      type: "state",
+      revision: 1,
+      scene: DEFAULT,
+      falling: false,
+      can_undo: true,
+      can_redo: true,
+    } as const;
+    expect(withNotice(INITIAL, told)).toMatchObject({ canUndo: true, canRedo: true });
+    expect(withNotice(withNotice(INITIAL, told), shown(DEFAULT))).toMatchObject({ canUndo: false, canRedo: false });
   });
 
   it("follows by what has changed", () => {
@@ -104,4 +117,14 @@ describe("a change in words", () => {
     expect(describeChange(before, { ...before, viewers: 2 })).toBe("2 viewers");
     expect(describeChange({ ...before, viewers: 2 }, before)).toBe("1 viewer");
   });
+});
+
+test("an undo or redo is in vain if there is nothing for it, and nothing else is", () => {
+  const can = { ...INITIAL, canUndo: true, canRedo: true };
+  for (const type of ["undo", "redo"] as const) {
+    expect(inVain(can, { type })).toBeNull();
+    expect(inVain(INITIAL, { type })).toMatch(`nothing to ${type}`);
+  }
+  expect(inVain({ ...can, canRedo: false }, { type: "undo" })).toBeNull();
+  expect(inVain(INITIAL, { type: "toggle_fall" })).toBeNull();
 });

@@ -1,7 +1,7 @@
 /** What the page knows of its session: an immutable value, changed by notices. */
 
 import { BALANCED, type Change, type JsonObject, type Notice, type State } from "@culet/protocol/messages";
-import type { Target } from "./events";
+import type { SessionEvent, Target } from "./events";
 import { part, text } from "./json";
 import { withParts } from "./scene-parts";
 import { type Wording, worded } from "./wording";
@@ -23,6 +23,9 @@ export interface ViewState {
   exactness: number;
   /** Exactness fixes their quality instead. */
   pinned: boolean;
+  /** There is an edit to undo, by whomever of the session. */
+  canUndo: boolean;
+  canRedo: boolean;
   viewers: number;
   engine: "down" | "up";
 }
@@ -39,6 +42,8 @@ export const INITIAL: ViewState = {
   walls: false,
   exactness: BALANCED,
   pinned: false,
+  canUndo: false,
+  canRedo: false,
   viewers: 1,
   engine: "up",
 };
@@ -73,12 +78,21 @@ function withScene(state: ViewState, told: State | Change, scene: JsonObject): V
     walls: walls !== "none",
     exactness: told.exactness ?? BALANCED,
     pinned: told.pinned ?? false,
+    canUndo: told.can_undo ?? false,
+    canRedo: told.can_redo ?? false,
   };
 }
 
 /** Whether a notice tells of changes since another state than this one: then something of the stream was lost. */
 export function isAmiss(state: ViewState, notice: Notice): boolean {
   return notice.type === "change" && notice.since !== state.revision;
+}
+
+/** Why an event would be of no use, for the user; null if it may be of some. */
+export function inVain({ canUndo, canRedo }: ViewState, event: SessionEvent): string | null {
+  if (event.type === "undo" && !canUndo) return "There is nothing to undo.";
+  if (event.type === "redo" && !canRedo) return "There is nothing to redo.";
+  return null;
 }
 
 export const TARGET_NAMES: Record<Target, string> = { camera: "camera", light_1: "red light", light_2: "blue light" };

@@ -56,6 +56,18 @@ describe("a viewer", () => {
     expect(sent("visibility").map((event) => (event as { visible: boolean }).visible)).toEqual([true, false, true]);
   });
 
+  it("knows whether the session was heard of since something was sent", () => {
+    FakeSocket.last.accept();
+    expect(viewer.untold).toBe(false);
+    const state = { type: "state", scene: {}, falling: false } as const;
+    FakeSocket.last.say(JSON.stringify({ ...state, revision: 1 }));
+    expect(viewer.untold).toBe(false);
+    viewer.send({ type: "toggle_mirror" });
+    expect(viewer.untold).toBe(true);
+    FakeSocket.last.say(JSON.stringify({ ...state, revision: 2 }));
+    expect(viewer.untold).toBe(false);
+  });
+
   it("shows a frame, acknowledges it, and keeps its header", async () => {
     FakeSocket.last.accept();
     FakeSocket.last.say(bytes("jpeg.bin"));

@@ -35,6 +35,8 @@ export class Viewer {
   state: ViewState = INITIAL;
   private readonly listener: ViewerListener;
   private decodeMs = 0;
+  /** The revision of the state when something was sent last. */
+  private spoken: number | null = null;
 
   constructor(url: string, listener: ViewerListener) {
     this.listener = listener;
@@ -58,7 +60,13 @@ export class Viewer {
   }
 
   send(event: ControlEvent): void {
+    this.spoken = this.state.revision;
     if (!this.stream.send(event)) this.listener.problem("Not connected: nothing was sent.");
+  }
+
+  /** Something was sent, and nothing was heard of the session since: the state may not be what it leads to. */
+  get untold(): boolean {
+    return this.spoken !== null && this.spoken === this.state.revision;
   }
 
   resize(size: Size): void {

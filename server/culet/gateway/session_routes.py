@@ -68,6 +68,8 @@ class SessionAnswer(Model):
     motions: Annotated[dict[str, StoneMotion], Field(description="What each stone does, by its id.")]
     exactness: Annotated[float, Field(description="While things move: 0 is many frames, 1 few and good ones.")]
     pinned: Annotated[bool, Field(description="Whether `exactness` fixes the quality of moving frames instead.")]
+    can_undo: Annotated[bool, Field(description="Whether there is an edit that the event `undo` takes back.")]
+    can_redo: Annotated[bool, Field(description="Whether there is an undone edit that `redo` makes again.")]
     findings: Annotated[
         tuple[str, ...],
         Field(description="What was found in uploaded meshes, and which stones overlap, a sentence each."),

@@ -35,7 +35,7 @@ def absorption(scene: Scene, stone: StoneSettings) -> tuple[float, float, float]
 
 def is_coloured(scene: Scene) -> bool:
     """Whether light is absorbed in a stone."""
-    return any(any(absorption(scene, stone)) for stone in scene.stones)
+    return any(any(absorption(scene, stone)) for stone in chains_of_stones(scene)[1])
 
 
 def chains_of_stones(scene: Scene) -> tuple[list[int], list[StoneSettings]]:
@@ -44,8 +44,8 @@ def chains_of_stones(scene: Scene) -> tuple[list[int], list[StoneSettings]]:
     kinds: dict[object, int] = {}
     sets: list[StoneSettings] = []
     numbers = []
-    for stone in scene.stones:
-        kind = repr(stone.material), absorption(scene, stone), stone.scale
+    for stone in scene.stones:  # the scene's measure of millimetres is the same for all
+        kind = stone.material, stone.absorption, stone.scale
         if kind not in kinds:
             kinds[kind] = len(sets)
             sets.append(stone)

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_spectral
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
+from culet.rendering.footprint import out_of_sight
 from culet.rendering.light.light_map import BoundMap
 from culet.rendering.lit_room import set_light_map
 from culet.rendering.parameters import parameters
-from culet.rendering.placed_stone import origin_of, placed_stones
+from culet.rendering.placed_stone import placed_stones
+from culet.rendering.projection import project
 from culet.rendering.stone_table import StoneTable, grouped
 from culet.scene.model import Scene
 from culet.scene.sky import ImageEnvironment
@@ -35,16 +37,19 @@ class Inputs:
         light_map: BoundMap | None = None,
     ) -> None:
         scene, stones = stage.scene, grouped(placed_stones(stage))
+        projection = project(scene, stones, width, height)
+        # Stones that are left out still decide where the frame's origin is, so that all else keeps its bits.
+        shown = [] if out_of_sight(scene, stones, projection, features, width, height) else stones
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
         self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
         self._sample = -1
-        self._struct = parameters(stage, stones, width, height, real)
+        self._struct = parameters(stage, stones, projection, width, height, real)
         self._light_map = light_map
         if light_map is not None:
-            set_light_map(self._struct, light_map.frame, stage, origin_of(scene, stones))
-        self._table = StoneTable.of(scene, stones, width, height, features, real)
-        self._struct["stones"], self._struct["groups"] = len(stones), len(self._table.groups)
+            set_light_map(self._struct, light_map.frame, stage, projection.origin)
+        self._table = StoneTable.of(scene, shown, projection, width, height, features, real)
+        self._struct["stones"], self._struct["groups"] = len(shown), len(self._table.groups) if shown else 0
         tree = self._table.tree
         rows: dict[str, NDArray[Any]] = {}
         if tree is not None:

@@ -11,22 +11,24 @@ from culet.rendering.device import Real
 from culet.rendering.features import END, FRESNEL, SKY, SURFACE
 from culet.rendering.layout import struct
 from culet.rendering.lit_room import set_room_light
-from culet.rendering.placed_stone import PlacedStone, camera_stone, origin_of
-from culet.rendering.projection import project
+from culet.rendering.placed_stone import PlacedStone, by_shape, camera_stone, centres_of
+from culet.rendering.projection import Projection
 from culet.rendering.sky_colours import sky_colours
 from culet.rendering.studio import least_shade, set_studio
 from culet.rendering.surfaces import room_surfaces, shown_surfaces
+from culet.scene.model import Scene
 from culet.stage import Stage
 
 
-def parameters(stage: Stage, stones: Sequence[PlacedStone], width: int, height: int, real: Real) -> NDArray[np.void]:
+def parameters(
+    stage: Stage, stones: Sequence[PlacedStone], projection: Projection, width: int, height: int, real: Real
+) -> NDArray[np.void]:
     """One struct; every position is relative to the stones' middle, subtracted in double precision.
 
     What depends on other buffers (the table of stones, chains, panorama) is left zero.
     """
     p, scene = np.zeros((), struct("parameters_t", real)), stage.scene
-    origin = origin_of(scene, stones)
-    projection = project(scene, stones, width, height)
+    origin = projection.origin
     p["foot"], p["foot_column"], p["foot_row"] = projection.foot
     p["direction"], p["direction_column"], p["direction_row"] = projection.direction
     p["reach"] = projection.reach
@@ -50,12 +52,22 @@ def parameters(stage: Stage, stones: Sequence[PlacedStone], width: int, height: 
     p["least_shade"] = least_shade(len(stones))
     host = camera_stone(scene, stones)
     p["camera_inside"], p["camera_stone"] = host is not None, host or 0
-    p["pierces"] = any(_pierces(shown_surfaces(scene, stone.centre), stone) for stone in stones)
+    p["pierces"] = _pierce(scene, stones)
     return p
 
 
-def _pierces(surfaces: NDArray[np.float64], stone: PlacedStone) -> bool:
-    """Whether a stone reaches through one of the surfaces, which are relative to its centre."""
-    if (surfaces[:, 3] < -stone.scale).all():
+def _pierce(scene: Scene, stones: Sequence[PlacedStone]) -> bool:
+    """Whether a stone reaches through one of the surfaces that are shown."""
+    surfaces = shown_surfaces(scene, np.zeros(3))
+    gaps = centres_of(stones) @ surfaces[:, :3].T - surfaces[:, 3]
+    near = gaps < np.array([stone.scale for stone in stones]).reshape(-1, 1)
+    if not near.any():
         return False
-    return bool((stone.scale * stone.vertices @ surfaces[:, :3].T < surfaces[:, 3]).any())
+    for shape, numbers in by_shape([stones[number] for number in np.flatnonzero(near.any(axis=1)).tolist()]).items():
+        members = [stones[number] for number in numbers]
+        rotations = np.array([stone.rotation for stone in members])
+        lowest = (shape.vertices @ (surfaces[:, :3] @ rotations).reshape(-1, 3).T).min(axis=0)
+        depths = np.array([stone.scale for stone in members])[:, None] * lowest.reshape(len(members), -1)
+        if (centres_of(members) @ surfaces[:, :3].T + depths < surfaces[:, 3]).any():
+            return True
+    return False

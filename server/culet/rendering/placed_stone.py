@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
+from weakref import ReferenceType, ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +52,9 @@ class PlacedStone:
     def depth(self, point: Iterable[float]) -> float:
         """How far inside the stone a point of the world is, in its radii; not positive outside. Of a stone that is not
         convex all points inside are as deep as can be."""
+        point = tuple(point)
+        if math.dist(self.settings.position, point) >= self.scale:
+            return 0.0
         own = self.own(point) @ self.rotation
         if own @ own >= 1:
             return 0.0
@@ -59,31 +65,74 @@ class PlacedStone:
 
 def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
     """(3, 3), the stone's axes in the world as columns, from a unit quaternion w, x, y, z."""
-    w, x, y, z = orientation
+    return np.asarray(_rotations(np.array([orientation]))[0])
+
+
+def _rotations(orientations: Array) -> Array:
+    """(N, 3, 3) of N quaternions."""
+    w, x, y, z = orientations.T
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
             [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
         ]
-    )
+    ).transpose(2, 0, 1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """The stones of the stage that was asked for last: a picture's features, parameters and table ask for the same."""
+
+    stage: ReferenceType[Stage]
+    stones: tuple[PlacedStone, ...]
+
+
+_latest: list[_Placed] = []
 
 
 def placed_stones(stage: Stage) -> tuple[PlacedStone, ...]:
     """The stage's stones, ordered by place: how the scene orders them changes nothing, to the bit."""
-    stones = [
-        PlacedStone(
-            settings, shape, number, np.array(settings.position), rotation_matrix(settings.orientation),
-            settings.scale,
+    for latest in _latest:
+        if latest.stage() is stage:
+            return latest.stones
+    settings = stage.scene.stones
+    if not settings:
+        return ()
+    centres = np.array([stone.position for stone in settings], dtype=float)
+    rotations = _rotations(np.array([stone.orientation for stone in settings], dtype=float))
+    stones = tuple(
+        PlacedStone(settings[number], stage.shapes[number], number, centres[number], rotations[number], place.scale)
+        for place, number in sorted(_places(stage), key=lambda each: each[0])
+    )
+    _latest[:] = [_Placed(ref(stage), stones)]
+    return stones
+
+
+class _Place(NamedTuple):
+    """By which stones are ordered."""
+
+    position: tuple[float, ...]
+    scale: float
+    orientation: tuple[float, ...]
+    facets: int
+    material: str
+    """Of stones that share their position; which takes longer to tell than all else."""
+
+
+def _places(stage: Stage) -> list[tuple[_Place, int]]:
+    stones = stage.scene.stones
+    shared = {position for position, count in Counter(stone.position for stone in stones).items() if count > 1}
+    return [
+        (
+            _Place(
+                stone.position, stone.scale, stone.orientation, len(shape.planes),
+                repr(stone.material) if stone.position in shared else "",
+            ),
+            number,
         )
-        for number, (settings, shape) in enumerate(zip(stage.scene.stones, stage.shapes, strict=True))
+        for number, (stone, shape) in enumerate(zip(stones, stage.shapes, strict=True))
     ]  # fmt: skip
-    return tuple(sorted(stones, key=_place))
-
-
-def _place(stone: PlacedStone) -> tuple[tuple[float, ...], float, tuple[float, ...], int, str]:
-    settings = stone.settings
-    return settings.position, stone.scale, settings.orientation, len(stone.shape.planes), repr(settings.material)
 
 
 def origin_of(scene: Scene, stones: Sequence[PlacedStone]) -> Array:
@@ -92,19 +141,31 @@ def origin_of(scene: Scene, stones: Sequence[PlacedStone]) -> Array:
     there is none."""
     if not stones:
         return np.zeros(3)
-    away = [float(np.linalg.norm(stone.centre - scene.camera.target)) for stone in stones]
-    weights = [(stone.scale / (stone.scale + distance)) ** 4 for stone, distance in zip(stones, away, strict=True)]
     if len(stones) == 1:
         return stones[0].centre
-    total = math.fsum(weights)
-    return np.array(
-        [math.fsum(w * stone.centre[k] for w, stone in zip(weights, stones, strict=True)) / total for k in range(3)]
-    )
+    centres, scales = centres_of(stones), np.array([stone.scale for stone in stones])
+    weights = (scales / (scales + np.linalg.norm(centres - scene.camera.target, axis=1))) ** 4
+    total = math.fsum(weights.tolist())
+    return np.array([math.fsum(column) / total for column in (weights[:, None] * centres).T.tolist()])
+
+
+def centres_of(stones: Sequence[PlacedStone]) -> Array:
+    """(N, 3), in the world, R."""
+    return np.array([stone.centre for stone in stones]).reshape(-1, 3)
+
+
+def by_shape(stones: Sequence[PlacedStone]) -> dict[Shape, list[int]]:
+    """The stones' numbers: what is made of a shape is made once."""
+    numbers: dict[Shape, list[int]] = {}
+    for number, stone in enumerate(stones):
+        numbers.setdefault(stone.shape, []).append(number)
+    return numbers
 
 
 def extent_of(stones: Sequence[PlacedStone], origin: Array) -> float:
     """R from a place within which all stones are."""
-    return max((float(np.linalg.norm(stone.centre - origin)) + stone.scale for stone in stones), default=0.0)
+    away = np.linalg.norm(centres_of(stones) - origin, axis=1) + [stone.scale for stone in stones]
+    return float(away.max(initial=0))
 
 
 def camera_stone(scene: Scene, stones: Sequence[PlacedStone]) -> int | None:

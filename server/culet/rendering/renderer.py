@@ -213,6 +213,10 @@ class Picture:
         """Of each pixel, so far."""
         return self._sums.samples
 
+    def prepare(self) -> None:
+        """Have on the device what the next sample needs, which `refine` does by itself."""
+        self._inputs.of_sample(self.samples)
+
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
         for _ in self.refine_in_pieces(samples, math.inf):

@@ -14,12 +14,13 @@ from culet.geometry.shape import Shape
 from culet.rendering.chains import absorption, chains_of_stones
 from culet.rendering.device import Real
 from culet.rendering.features import Features, Geometry, Stones, by_half_spaces
+from culet.rendering.footprint import footprints, reach_of
 from culet.rendering.layout import struct
 from culet.rendering.mirrors import makes_finite_group
-from culet.rendering.placed_stone import PlacedStone, origin_of
-from culet.rendering.projection import Projection, project
+from culet.rendering.placed_stone import PlacedStone, by_shape, centres_of
+from culet.rendering.projection import Projection
 from culet.rendering.shadows import shadow_planes
-from culet.rendering.studio import contact_form, shade_reach
+from culet.rendering.studio import contact_forms, shade_reach
 from culet.rendering.surfaces import shown_surfaces
 from culet.rendering.tree import WIDTH, Tree, tree_of
 from culet.scene.model import Scene
@@ -29,14 +30,6 @@ Array = NDArray[np.float64]
 
 GROUP = 8
 """Stones of a group, at most."""
-REACH = 1.00005
-"""A stone's radius to what rays are tested against, besides ROUNDING: half the 1e-4 that kernels allow one stone."""
-ROUNDING = 4e-6
-"""Of a position in single precision, in parts of its distance from the frame's origin: some times 6e-8 at each step."""
-MARGIN = 3
-"""Pixels about the rectangle where a stone is seen: filters reach one pixel further."""
-FAR = 2**30
-"""A pixel beyond all pictures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +51,7 @@ class StoneTable:
         cls,
         scene: Scene,
         stones: Sequence[PlacedStone],
+        projection: Projection,
         width: int,
         height: int,
         features: Features,
@@ -66,48 +60,42 @@ class StoneTable:
         """For a picture of that size. The stones must be in groups: see `grouped`."""
         rows = np.zeros(max(1, len(stones)), struct("stone_t", real))
         rows["radius"] = rows["inverse_radius"] = 1
-        origin = origin_of(scene, stones)
-        sets, kinds = chains_of_stones(scene)
-        absorbed = [stone.scale * np.array(absorption(scene, stone)) for stone in kinds]
+        if stones:
+            _place(rows, scene, stones, projection.origin)
         facets, blocks, shadows, trees = [np.zeros((1, 4))], [np.zeros((0, 4, WIDTH))], [np.zeros((1, 4))], []
         first_facet, first_block, first_plane, root, leaves = 1, 0, 1, 0, 0
-        for row, stone in zip(rows, stones, strict=False):
-            centre = stone.centre - origin
-            row["centre"], row["radius"], row["inverse_radius"] = centre, stone.scale, 1 / stone.scale
-            row["reach"] = REACH * stone.scale + ROUNDING * float(np.linalg.norm(centre))
-            row["axes"] = stone.rotation
-            row["absorption"] = absorbed[sets[stone.number]]
-            row["convex"] = stone.shape.convex
-            row["few_mirrors"] = makes_finite_group(stone.shape)
-            row["first_chain"] = sets[stone.number]
-            if isinstance(scene.floor, StudioFloor) and stone.centre[1] > FLOOR_Y:
-                row["contact"], row["contact_shadow"] = contact_form(stone), scene.floor.shadow
-                row["shade_reach"] = stone.scale * shade_reach(stone, len(stones))
+        for shape, numbers in by_shape(stones).items():
             by_triangles = features.geometry == Geometry.MESH and (
-                not by_half_spaces(stone.shape) or features.stones == Stones.ONE
+                not by_half_spaces(shape) or features.stones == Stones.ONE
             )
-            row["by_triangles"] = by_triangles
-            row["first_facet"], row["facets"] = first_facet, len(stone.shape.planes)
+            rows["by_triangles"][numbers] = by_triangles
+            rows["facets"][numbers] = len(shape.planes)
             if by_triangles:
-                tree = tree_of(stone.shape)
+                tree = tree_of(shape)
                 trees.append(tree.moved(root, leaves))
-                row["root"] = root
+                rows["root"][numbers] = root
                 root, leaves = root + len(tree.links), leaves + len(tree.corners)
                 continue
-            planes = stone.planes
-            facets.append(planes)
-            blocks.append(_abreast(planes))
-            row["first_block"], row["blocks"] = first_block, len(blocks[-1])
-            first_facet, first_block = first_facet + len(planes), first_block + len(blocks[-1])
-            if features.lights != 0:
-                volumes = _shadow_volumes(scene, stone, planes)
+            rotations = np.array([stones[number].rotation for number in numbers])
+            planes = np.empty((len(numbers), len(shape.planes), 4))
+            planes[..., :3] = shape.planes[:, :3] @ rotations.transpose(0, 2, 1)
+            planes[..., 3] = shape.planes[:, 3]
+            count, own = np.arange(len(numbers)), _abreast(planes)
+            rows["first_facet"][numbers] = first_facet + count * planes.shape[1]
+            rows["first_block"][numbers] = first_block + count * own.shape[1]
+            rows["blocks"][numbers] = own.shape[1]
+            facets.append(planes.reshape(-1, 4))
+            blocks.append(own.reshape(-1, 4, WIDTH))
+            first_facet, first_block = first_facet + len(facets[-1]), first_block + len(blocks[-1])
+            for number, planes_of_one in zip(numbers, planes if features.lights != 0 else (), strict=False):
+                volumes = _shadow_volumes(scene, stones[number], planes_of_one)
                 starts = first_plane + np.cumsum([0, *map(len, volumes)])
-                row["shadow_start"][: len(starts)] = starts
+                rows["shadow_start"][number, : len(starts)] = starts
                 shadows += volumes
                 first_plane = int(starts[-1])
         if features.stones == Stones.MANY and stones:
             centres, reach = rows["centre"].astype(float), rows["reach"].astype(float)
-            rows["columns"], rows["rows"] = _seen(project(scene, stones, width, height), centres, reach, width, height)
+            rows["columns"], rows["rows"] = footprints(projection, centres, reach, width, height)
         # One stone has its facets from the first on: kernels need not ask where they begin.
         one = features.stones == Stones.ONE and len(facets) > 1
         rows["first_facet"] -= one
@@ -119,6 +107,25 @@ class StoneTable:
             np.vstack(shadows),
             Tree.joined(trees) if trees else None,
         )
+
+
+def _place(rows: NDArray[np.void], scene: Scene, stones: Sequence[PlacedStone], origin: Array) -> None:
+    """Fill in what does not depend on how stones are traced."""
+    scales, centres = np.array([stone.scale for stone in stones]), centres_of(stones) - origin
+    sets, kinds = chains_of_stones(scene)
+    chains = [sets[stone.number] for stone in stones]
+    rows["centre"], rows["radius"], rows["inverse_radius"] = centres, scales, 1 / scales
+    rows["reach"] = reach_of(scales, centres)
+    rows["axes"] = [stone.rotation for stone in stones]
+    rows["absorption"] = np.array([stone.scale * np.array(absorption(scene, stone)) for stone in kinds])[chains]
+    rows["convex"] = [stone.shape.convex for stone in stones]
+    rows["few_mirrors"] = [makes_finite_group(stone.shape) for stone in stones]
+    rows["first_chain"] = chains
+    if isinstance(scene.floor, StudioFloor):
+        standing = [number for number, stone in enumerate(stones) if stone.centre[1] > FLOOR_Y]
+        rows["contact"][standing] = contact_forms([stones[number] for number in standing])
+        rows["contact_shadow"][standing] = scene.floor.shadow
+        rows["shade_reach"][standing] = (scales * shade_reach(stones))[standing]
 
 
 def grouped(stones: Sequence[PlacedStone]) -> list[PlacedStone]:
@@ -137,25 +144,27 @@ def _groups(rows: NDArray[np.void], real: Real) -> NDArray[np.void]:
     """GROUP stones each, in their order, in a common sphere."""
     count = -(-len(rows) // GROUP)
     groups = np.zeros(max(1, count), struct("group_t", real))
-    for number in range(count):
-        members = rows[number * GROUP : (number + 1) * GROUP]
-        centres = members["centre"].astype(float)
-        centre = centres.mean(axis=0)
-        group = groups[number]
-        group["centre"] = centre
-        group["reach"] = (1 + 1e-6) * (np.linalg.norm(centres - centre, axis=1) + members["reach"]).max()
-        group["shade_reach"] = (np.linalg.norm(centres - centre, axis=1) + members["shade_reach"]).max()
-        group["first"], group["last"] = number * GROUP, number * GROUP + len(members)
+    if not count:
+        return groups
+    first = GROUP * np.arange(count)
+    last = np.minimum(first + GROUP, len(rows))
+    members = np.minimum(first[:, None] + np.arange(GROUP), last[:, None] - 1)  # the last of a group may be named again
+    centres = rows["centre"].astype(float)
+    groups["centre"] = np.add.reduceat(centres, first) / (last - first)[:, None]
+    apart = np.linalg.norm(centres[members] - groups["centre"][:, None].astype(float), axis=2)
+    groups["reach"] = (1 + 1e-6) * (apart + rows["reach"][members]).max(axis=1)
+    groups["shade_reach"] = (apart + rows["shade_reach"][members]).max(axis=1)
+    groups["first"], groups["last"] = first, last
     return groups
 
 
 def _abreast(planes: Array) -> Array:
-    """(B, 4, WIDTH), filled up with planes that nothing meets."""
-    count = -(-len(planes) // WIDTH)
-    rows = np.zeros((count * WIDTH, 4))
-    rows[:, 3] = 1
-    rows[: len(planes)] = planes
-    return rows.reshape(count, WIDTH, 4).transpose(0, 2, 1)
+    """(N, B, 4, WIDTH) of (N, F, 4), filled up with planes that nothing meets."""
+    stones, count, _ = planes.shape
+    rows = np.zeros((stones, -(-count // WIDTH) * WIDTH, 4))
+    rows[..., 3] = 1
+    rows[:, :count] = planes
+    return rows.reshape(stones, -1, WIDTH, 4).transpose(0, 1, 3, 2)
 
 
 def _shadow_volumes(scene: Scene, stone: PlacedStone, planes: Array) -> list[Array]:
@@ -175,38 +184,3 @@ def _edges_of(shape: Shape) -> NDArray[np.int32]:
     if edges is None:
         edges = _EDGES[shape] = edges_of_facets(shape)
     return edges
-
-
-def _seen(projection: Projection, centres: Array, reach: Array, width: int, height: int) -> tuple[Array, Array]:
-    """(N, 2) first and last column, and row, of the pixels whose rays may meet each of N spheres. None: the last is
-    before the first.
-
-    By column a pinhole's rays are those of a plane angle, in which the sphere is a disc.
-    """
-    corner, column, row = projection.direction
-    forward = corner + column * (width / 2) + row * (height / 2)
-    eye = projection.foot[0] - projection.reach * corner
-    ranges = []
-    for number, size in ((1, width), (2, height)):
-        step = projection.direction[number]
-        if not step.any():  # parallel rays
-            pitch = float(np.linalg.norm(projection.foot[number]))
-            middle = (centres - projection.foot[0]) @ projection.foot[number] / pitch**2
-            ranges.append(_pixels(middle - reach / pitch, middle + reach / pitch))
-            continue
-        pitch = float(np.linalg.norm(step))
-        x, z = (centres - eye) @ step / pitch, (centres - eye) @ forward
-        distance = np.hypot(x, z)
-        angle, half = np.arctan2(x, z), np.arcsin(np.minimum(reach / np.maximum(distance, 1e-300), 1))
-        low, high = angle - half, angle + half
-        first = np.where(low > -np.pi / 2, np.tan(low) / pitch + size / 2, -FAR)
-        last = np.where(high < np.pi / 2, np.tan(high) / pitch + size / 2, FAR)
-        behind = (low >= np.pi / 2) | (high <= -np.pi / 2)
-        first, last = np.where(behind, FAR, first), np.where(behind, -FAR, last)
-        within = distance <= reach
-        ranges.append(_pixels(np.where(within, -FAR, first), np.where(within, FAR, last)))
-    return ranges[0], ranges[1]
-
-
-def _pixels(first: Array, last: Array) -> Array:
-    return np.column_stack([np.clip(first, -FAR, FAR) - MARGIN, np.clip(last, -FAR, FAR) + MARGIN]).astype(np.int64)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from weakref import WeakKeyDictionary
 
@@ -38,6 +39,7 @@ def set_studio(p: NDArray[np.void], scene: Scene, origin: Array, width: int, hei
         _set_floor(p, scene.floor)
 
 
+@lru_cache(maxsize=256)
 def disc_edge(half_angle_degrees: float, softness: float) -> tuple[float, float]:
     """Rim and slope: a disc's share is smoothstep(rim - slope (squared distance of unit vectors)).
 
@@ -105,10 +107,12 @@ def _set_floor(p: NDArray[np.void], floor: StudioFloor) -> None:
     p["floor_roughness"] = floor.roughness
 
 
-def contact_form(stone: PlacedStone) -> Array:
-    """(3, 3) det S S^-1 in the stone's own measure: x' S^-1 x = 1 is the ellipsoid of even density that has the stone's
-    second moments, which are S / 5."""
-    return np.asarray(stone.rotation @ _form_of(stone.shape)[0] @ stone.rotation.T)
+def contact_forms(stones: Sequence[PlacedStone]) -> Array:
+    """(N, 3, 3) of each stone det S S^-1 in its own measure: x' S^-1 x = 1 is the ellipsoid of even density that has
+    the stone's second moments, which are S / 5."""
+    rotations = np.array([stone.rotation for stone in stones]).reshape(-1, 3, 3)
+    forms = np.array([_form_of(stone.shape)[0] for stone in stones]).reshape(-1, 3, 3)
+    return np.asarray(rotations @ forms @ rotations.transpose(0, 2, 1))
 
 
 _FORMS: WeakKeyDictionary[Shape, tuple[Array, float]] = WeakKeyDictionary()
@@ -135,13 +139,14 @@ def least_shade(stones: int) -> float:
     return LEAST_SHADE if stones > 1 else 0.0
 
 
-def shade_reach(stone: PlacedStone, stones: int) -> float:
-    """Radii of a stone within which its contact shadow takes more: it falls at least as height sqrt(s) / distance^3,
-    where s is the largest axis of the contact form."""
-    if stones < 2:
-        return FAR_REACH
-    height = (float(stone.centre[1]) - FLOOR_Y) / stone.scale
-    return float(np.cbrt(height * np.sqrt(_form_of(stone.shape)[1]) / LEAST_SHADE))
+def shade_reach(stones: Sequence[PlacedStone]) -> Array:
+    """(N,) radii of each stone within which its contact shadow takes more: it falls at least as height sqrt(s) /
+    distance^3, where s is the largest axis of the contact form."""
+    if len(stones) < 2:
+        return np.full(len(stones), FAR_REACH)
+    heights = np.array([(stone.settings.position[1] - FLOOR_Y) / stone.scale for stone in stones])
+    axes = np.array([_form_of(stone.shape)[1] for stone in stones])
+    return np.asarray(np.cbrt(np.maximum(heights, 0) * np.sqrt(axes) / LEAST_SHADE))
 
 
 FAR_REACH = 1e9

@@ -211,11 +211,15 @@ class World:
         spin: Triple | None = None,
     ) -> None:  # fmt: skip
         """Put a stone there, with that motion or, where it is None, the one that it has. It wakes."""
+        now = self.state.bodies[self.number(name)]
+        turned = normalised(orientation)
+        self.put(name, BodyState(position, turned, velocity or now.velocity, spin or now.spin, held=now.held))
+
+    def put(self, name: str, state: BodyState) -> None:
+        """A stone is in that state from now on, elsewhere maybe. Of several, one that slept is awake."""
         number = self.number(name)
-        now = self.state.bodies[number]
-        state = BodyState(position, normalised(orientation), velocity or now.velocity, spin or now.spin, held=now.held)
         self._set(number, state)
-        before = self.previous.bodies[number].at(position, state.orientation)  # no picture between the two places
+        before = self.previous.bodies[number].at(state.position, state.orientation)  # no picture between the two places
         self.previous = replace(self.previous, bodies=_with(self.previous.bodies, number, before))
         self._changed()
 

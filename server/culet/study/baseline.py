@@ -13,13 +13,13 @@ from typing import Any, NamedTuple
 from culet.errors import InputError
 from culet.study.ratio import ratio, shown
 
-FIGURES = ("seconds", "processor_seconds", "segments", "cut", "rmse")
+FIGURES = ("seconds", "processor_seconds", "preparation_seconds", "segments", "cut", "rmse")
 """That are compared; all better if less."""
 WORKED = 0.75
 """Part of a device's units that work at least while a frame is rendered on an idle machine."""
 Cases = dict[str, dict[str, Any]]
 """By name: a scene's figures."""
-TIMES = frozenset({"seconds", "processor_seconds"})
+TIMES = frozenset({"seconds", "processor_seconds", "preparation_seconds"})
 CONDITIONS = ("processor", "device", "units", "width", "height")
 """What must be the same for times to be compared as they are."""
 

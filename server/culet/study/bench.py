@@ -9,7 +9,7 @@ import platform
 import statistics
 import time
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +37,9 @@ class Timing:
     """s."""
     processor_seconds: float
     """Median of all cores' time together, which other work on the machine does not lengthen much."""
+    preparation_seconds: float
+    """Median of the same before the first launch, of a picture of a stage that was not seen before: what a frame costs
+    besides, while stones move."""
     ratio: float
     """Median over that of the first scene."""
     segments: int
@@ -67,13 +70,17 @@ def measure_cases(renderer: Renderer, width: int, height: int, repeats: int) -> 
     firsts = {name: first_sample(renderer, scene, width, height) for name, scene in CASES.items()}
     pictures = {name: _picture(renderer, scene, width, height) for name, scene in CASES.items()}
     turns = _take_turns(list(pictures.values()), repeats)
+    preparations = _prepare_in_turns(renderer, width, height, repeats)
     medians = [_median(each) for each in turns]
     return [
         Timing(
             name, median, min(turn.seconds for turn in each), statistics.median(turn.processor for turn in each),
-            median / medians[0], first.segments, 1e9 * median / max(1, first.segments), first.cut, first.rmse,
+            statistics.median(preparation), median / medians[0], first.segments,
+            1e9 * median / max(1, first.segments), first.cut, first.rmse,
         )
-        for (name, first), each, median in zip(firsts.items(), turns, medians, strict=True)
+        for (name, first), each, preparation, median in zip(
+            firsts.items(), turns, preparations, medians, strict=True
+        )
     ]  # fmt: skip
 
 
@@ -154,6 +161,19 @@ def _take_turns(pictures: list[Picture], repeats: int) -> list[list[_Turn]]:
             before = time.process_time()
             picture.refine()
             own.append(_Turn(picture.seconds, time.process_time() - before))
+    return turns
+
+
+def _prepare_in_turns(renderer: Renderer, width: int, height: int, repeats: int) -> list[list[float]]:
+    """s of all cores together."""
+    stages = [stage_of(scene) for scene in CASES.values()]
+    turns: list[list[float]] = [[] for _ in stages]
+    for _ in range(repeats):
+        for stage, own in zip(stages, turns, strict=True):
+            moved = replace(stage)
+            before = time.process_time()
+            renderer.picture(moved, width, height).prepare()
+            own.append(time.process_time() - before)
     return turns
 
 

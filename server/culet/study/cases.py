@@ -12,9 +12,9 @@ from culet.scene.camera import Camera
 from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, LEGACY_POINTS
 from culet.scene.model import Scene
 from culet.scene.optics import Optics
-from culet.scene.room import Plane
+from culet.scene.room import FLOOR_Y, Plane
 from culet.scene.sky import GradientEnvironment
-from culet.scene.stone import IndexMaterial, StoneSettings
+from culet.scene.stone import MOST_STONES, IndexMaterial, StoneSettings
 from culet.stage import NOTHING, Library, Stage
 
 _STONE = StoneSettings(
@@ -36,6 +36,45 @@ CHECKER = LEGACY_DEFAULT.model_copy(
 RING = "ring"
 """In place of the id of an upload."""
 
+_DEFAULT = Scene().stones[0]
+_SCALE = 12**-0.5
+
+TWELVE = Scene().model_copy(
+    update={
+        "stones": tuple(
+            _DEFAULT.model_copy(
+                update={
+                    "id": f"stone-{4 * row + column}",
+                    "scale": _SCALE,
+                    "position": (
+                        _SCALE * (2 * column - 3),
+                        FLOOR_Y + _SCALE * (_DEFAULT.position[1] - FLOOR_Y),
+                        _SCALE * (2 * row - 2),
+                    ),
+                }
+            )
+            for row in range(3)
+            for column in range(4)
+        )
+    }
+)
+"""Twelve brilliants that stand side by side on the floor, and together cover what the default one covers."""
+
+OUT_OF_VIEW = Scene().model_copy(
+    update={
+        "stones": tuple(
+            _DEFAULT.model_copy(
+                update={
+                    "id": f"stone-{number}",
+                    "position": (3 * (number % 8) - 10, _DEFAULT.position[1], 30 + 3 * (number // 8)),
+                }
+            )
+            for number in range(MOST_STONES)
+        )
+    }
+)
+"""As many as there can be, behind the camera."""
+
 CASES: dict[str, Scene] = {
     "checker": CHECKER,
     "checker, 256 bounces": CHECKER.model_copy(update={"optics": Optics()}),
@@ -48,6 +87,9 @@ CASES: dict[str, Scene] = {
     "legacy default, mesh of 5 000 triangles": LEGACY_DEFAULT.model_copy(
         update={"stones": (LEGACY_DEFAULT.stones[0].model_copy(update={"mesh": RING}),)}
     ),
+    "default, twelve stones": TWELVE,
+    "default, 64 stones out of view": OUT_OF_VIEW,
+    "default, without stones": Scene().model_copy(update={"stones": ()}),
 }
 """Name -> scene; the first is what the others are compared with."""
 
@@ -61,7 +103,7 @@ def ring() -> Shape:
 
 def stage_of(scene: Scene) -> Stage:
     """The stage of one of these scenes."""
-    return Stage.of(scene, Library({RING: ring()}) if scene.stones[0].mesh == RING else NOTHING)
+    return Stage.of(scene, Library({RING: ring()}) if any(stone.mesh == RING for stone in scene.stones) else NOTHING)
 
 
 BARE = CHECKER.model_copy(

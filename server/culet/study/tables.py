@@ -16,12 +16,13 @@ from culet.study.light_bench import LightTiming
 
 def case_table(timings: Sequence[Timing]) -> Table:
     """A row for each scene: one sample of every pixel."""
-    table = _table("scene", "median ms", "fastest ms", "ratio", "segments", "ns / segment", "cut", "rmse")
+    table = _table("scene", "median ms", "fastest ms", "prepare ms", "ratio", "segments", "ns / segment", "cut", "rmse")
     for timing in timings:
         table.add_row(
             timing.name,
             f"{1e3 * timing.seconds:.2f}",
             f"{1e3 * timing.fastest:.2f}",
+            f"{1e3 * timing.preparation_seconds:.2f}",
             f"{timing.ratio:.2f}",
             str(timing.segments),
             f"{timing.nanoseconds_per_segment:.2f}",

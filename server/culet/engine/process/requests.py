@@ -26,7 +26,9 @@ from culet.optics.sky_files.picture import SkyPicture
 from culet.stage import Library
 from culet_protocol import engine as protocol
 
-LONG_EVENTS = frozenset({"patch_scene", "set_scene", "toggle_fall", "reset_stone", "toggle_walls", "push"})
+LONG_EVENTS = frozenset(
+    {"patch_scene", "set_scene", "toggle_fall", "reset_stone", "toggle_walls", "push", "undo", "redo"}
+)
 """They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
 
 Answer = tuple[dict[str, Any], bytes | None]

@@ -7,13 +7,14 @@ from typing import Any, Literal, assert_never
 from pydantic import ValidationError
 
 from culet.engine.session import viewpoint
+from culet.engine.session.edits import Edit, Moment, paths_of
 from culet.engine.session.history import Past
 from culet.engine.session.picking import placed
 from culet.engine.session.session import Session
 from culet.errors import InputError, NotFoundError, SceneError
 from culet.scene import Camera, Plane, Scene
 from culet.scene.emitters import PointLight
-from culet.scene.patch import read_patched
+from culet.scene.patch import read_patched, sharing
 from culet.scene.sky import DarkEnvironment, LightEnvironment
 from culet.scene.sky_seen import Surroundings, back_under, under
 from culet.simulation.lying import put_down
@@ -25,7 +26,33 @@ LIGHT = Sky(LightEnvironment(kind="light"))
 
 
 def apply(session: Session, event: SessionEvent, library: Library) -> None:
-    """Apply an event; a stone is made (which may take a while) only if its shape changes."""
+    """Apply an event; a stone is made (which may take a while) only if its shape changes. Edits may be undone."""
+    before = session.moment
+    _apply(session, event, library)
+    what = _edited_by(event)
+    if what is not None:
+        session.edits.note(what, before, session.moment)
+
+
+def _edited_by(event: SessionEvent) -> str | None:
+    """What an event edits: the same for events that count as one edit while they follow each other soon, empty for one
+    that is always an edit by itself; None if it is none."""
+    match event:
+        case messages.Orbit() | messages.Translate() | messages.Dolly():
+            return None if event.target == "camera" else event.target
+        case messages.PatchScene():
+            return None if event.patch.keys() == {"camera"} else paths_of(event.patch)
+        case messages.ToggleMirror() | messages.ToggleEnvironment() | messages.ToggleWalls() | messages.SetScene():
+            return ""
+        case messages.ResetCamera() | messages.LookAtStone() | messages.Balance() | messages.Undo() | messages.Redo():
+            return None
+        case messages.ToggleFall() | messages.ResetStone() | messages.Push():
+            return None
+        case _:
+            assert_never(event)
+
+
+def _apply(session: Session, event: SessionEvent, library: Library) -> None:
     match event:
         case messages.Orbit() | messages.Translate() | messages.Dolly():
             _move(session, event)
@@ -52,6 +79,14 @@ def apply(session: Session, event: SessionEvent, library: Library) -> None:
         case messages.SetScene():
             stage = Stage.of(Scene.read(event.scene), library, before=known_to(session))
             session.replace(stage, home=stage.scene.camera, sky=own_sky(stage.sky))
+        case messages.Undo():
+            edit, left = session.edits.to_undo(), session.moment
+            _go(session, edit, edit.after, edit.before, library)
+            session.edits.undone(left, session.moment)
+        case messages.Redo():
+            edit, left = session.edits.to_redo(), session.moment
+            _go(session, edit, edit.before, edit.after, library)
+            session.edits.redone(left, session.moment)
         case _:
             assert_never(event)
 
@@ -73,6 +108,24 @@ def past_stage(past: Past, before: Stage, library: Library) -> Stage:
 def own_sky(sky: Sky) -> Sky:
     """The sky that a switch from the light sky goes to: the scene's own sky, or the dark if that is the light."""
     return Sky(DarkEnvironment(kind="dark")) if sky.environment.kind == "light" else sky
+
+
+def _go(session: Session, edit: Edit, here: Moment, there: Moment, library: Library) -> None:
+    """From one of an edit's two moments to the other: only what the edit changed changes.
+
+    The view stays unless the edit moved the camera, stones go on unless the edit moved them, and time goes on, or not,
+    as it does now unless the edit has stopped it.
+    """
+    camera, home = (there.scene.camera, there.home) if edit.moved_camera else (session.scene.camera, session.home)
+    falling = session.motion.falling if here.falling == there.falling else there.falling
+    try:
+        own = session.sky if there.own == session.sky.environment else library.sky(there.own)
+        scene = there.scene.model_copy(update={"camera": camera})
+        stage = Stage.of(scene, library, before=known_to(session))
+    except SceneError as error:
+        raise InputError(f"a file that the scene had then is not kept any more: {error}", error.field) from error
+    sky = own._replace(surroundings=there.surroundings)
+    session.change(stage, home=home, sky=sky, states=there.states, falling=falling)
 
 
 def _move(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> None:
@@ -183,6 +236,6 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
     if "camera" in patch:
         at_home = document | {"camera": home.model_dump(mode="json")}
         home = read_patched(at_home, patch).camera
-    stage = Stage.of(after, library, before=known_to(session))
+    stage = put_down(Stage.of(after, library, before=known_to(session)), session.stage)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
-    session.change(put_down(stage, session.stage), home=home, sky=sky)
+    session.change(stage.showing(sharing(stage.scene, before)), home=home, sky=sky)

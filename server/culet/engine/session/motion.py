@@ -202,23 +202,22 @@ class Motion:
     def follow(self, stage: Stage, states: Mapping[str, BodyState] | None = None) -> None:
         """Go on by another stage: stones come and go, or are put elsewhere, and the others move on as they did.
 
-        A stone that comes begins as `states` has it by its id, or else at its start.
-
-        A stone is put to its start that has another one, or another shape or scale. If no stone goes on with the shape
-        that it had, all begin anew. InputError, and nothing changed, if the stones cannot be so.
+        A stone that `states` names by its id goes on from there. Of the others, one is put to its start that comes, or
+        has another start, shape or scale. If no stone goes on with the shape that it had, all of them begin anew.
+        InputError, and nothing changed, if the stones cannot be so.
         """
-        if _moved_by(stage) == _moved_by(self._stage):
+        if not states and _moved_by(stage) == _moved_by(self._stage):
             self._stage = stage
             return
         bodies = {body.name: body for body in bodies_of(stage)}
+        given = {name: state for name, state in (states or {}).items() if name in bodies}
         if any(body.name in bodies and _same_form(body, bodies[body.name]) for body in self.world.bodies):
-            self._adapt(stage, bodies, states or {})
+            self._adapt(stage, bodies, given)
         else:
             self.replace(stage)
-            for name, state in (states or {}).items():
-                if name in bodies:
-                    self.world.remove(name)
-                    self.world.add(bodies[name], state)
+            for name, state in given.items():
+                self.world.remove(name)
+                self.world.add(bodies[name], state)
         self._stage = stage
         time_step = stage.scene.simulation.time_step
         if time_step != self.clock.time_step:
@@ -367,7 +366,8 @@ class Motion:
     def _adapt(self, stage: Stage, wanted: Mapping[str, Body], states: Mapping[str, BodyState]) -> None:
         world, saved = self.world, self.world.snapshot()
         bodies, surfaces, law = world.bodies, world.surfaces, world.law
-        anew = [body.name for body in bodies if body.name in wanted and _begins_anew(body, wanted[body.name])]
+        kept = [body for body in bodies if body.name in wanted and body.name not in states]
+        anew = [body.name for body in kept if _begins_anew(body, wanted[body.name])]
         try:
             world.adjust(stage.scene.simulation)
             world.surround(surfaces_of(stage.scene))
@@ -389,12 +389,15 @@ class Motion:
             raise
 
     def _fit(self, body: Body, state: BodyState | None) -> None:
-        """Make a stone of the world what it is to be, or add it in that state."""
+        """Make a stone of the world what it is to be, or add it; in that state, if one is given."""
         old = next((each for each in self.world.bodies if each.name == body.name), None)
         if old is None:
             self.world.add(body, state)
-        elif not old.like(body) or _begins_anew(old, body):
+            return
+        if not old.like(body) or _begins_anew(old, body):
             self.world.change(body)
+        if state is not None:
+            self.world.put(body.name, state)
 
     def _toggle_one(self, name: str) -> None:
         world = self.world

@@ -7,11 +7,12 @@ what is shown a new step number whenever it differs from before.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from time import thread_time
 from typing import Any
 
+from culet.engine.session.edits import Edits, Moment
 from culet.engine.session.history import History, Past
 from culet.engine.session.motion import Motion, Seen
 from culet.engine.session.news import News
@@ -21,6 +22,7 @@ from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
 from culet.scene import Camera, Scene
+from culet.simulation.bodies import BodyState
 from culet.stage import Sky, Stage
 from culet_protocol.engine import SessionChange, SessionMotion
 from culet_protocol.messages import BALANCED, Balance, Condition
@@ -71,6 +73,8 @@ class Session:
         self.history = History(history)
         self.removals = Removals()
         """Stones that may come back."""
+        self.edits = Edits()
+        """Which may be undone."""
         self.motion = Motion(stage, timer=timer)
         self.news = News(name, stage.scene, self.condition())
         self.stage = stage
@@ -106,19 +110,42 @@ class Session:
         """That of the stage."""
         return self.stage.scene
 
-    def change(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
+    @property
+    def moment(self) -> Moment:
+        """What an edit can change."""
+        return Moment(
+            scene=self.scene,
+            home=self.home,
+            own=self.sky.environment,
+            surroundings=self.sky.surroundings,
+            states=self.motion.states(),
+            falling=self.motion.falling,
+        )
+
+    def change(
+        self,
+        stage: Stage,
+        *,
+        home: Camera | None = None,
+        sky: Sky | None = None,
+        states: Mapping[str, BodyState] | None = None,
+        falling: bool | None = None,
+    ) -> None:
         """Show this stage by its camera; `home` is where a reset takes the camera, by default where it was.
 
-        The stones go on as `Motion.follow` has it. A stone that was removed, and comes again with the settings that it
-        had, goes on from where and as it was. `sky` is that of a stage with an environment of its own. InputError, and
-        nothing changed, if the stones cannot be so.
+        The stones go on as `Motion.follow` has it, those that `states` names from there. A stone that was removed, and
+        comes again with the settings that it had, goes on from where and as it was. `sky` is that of a stage with an
+        environment of its own. Time goes on for the stones as `falling` says, by default as those were that come again
+        to a scene without any. InputError, and nothing changed, if the stones cannot be so.
         """
-        before, states, falling = self.scene, self.motion.states(), self.motion.falling
+        before, were, fell = self.scene, self.motion.states(), self.motion.falling
         returning = self.removals.returning(before, stage.scene)
-        self.motion.follow(stage, {name: stone.state for name, stone in returning.items()})
-        self.removals.changed(before, stage.scene, states, falling=falling)
-        if not before.stones and any(stone.falling for stone in returning.values()):
-            self.motion.set_falling(True)
+        self.motion.follow(stage, {name: stone.state for name, stone in returning.items()} | dict(states or {}))
+        self.removals.changed(before, stage.scene, were, falling=fell)
+        if falling is None and not before.stones and any(stone.falling for stone in returning.values()):
+            falling = True
+        if falling is not None and stage.scene.stones and falling != self.motion.falling:
+            self.motion.set_falling(falling)
         self._take(stage, home, sky)
 
     def replace(self, stage: Stage, *, home: Camera | None = None, sky: Sky | None = None) -> None:
@@ -203,6 +230,8 @@ class Session:
             motions=self.motion.motions(),
             exactness=self.balance.exactness,
             pinned=self.balance.pinned,
+            can_undo=self.edits.can_undo,
+            can_redo=self.edits.can_redo,
         )
 
     def described(self) -> dict[str, Any]:

@@ -13,4 +13,4 @@ class Effort(Enum):
     RESTING = auto()
     """Some passes at first, and then more, in step with the picture's samples."""
     PATIENT = auto()
-    """All that it needs before the picture's first sample."""
+    """All that it needs before the picture's first sample, within passes whose number depends on the scene alone."""

@@ -31,6 +31,13 @@ TARGET = 2e-3
 """Estimated root mean square error at which a map is good enough, in parts of the brightest emitter's irradiance over
 pi: a quarter of a step of 8 bits in the middle of the scale."""
 MOST_PASSES = 256
+PATIENT_SHADOWS = 8192
+"""Of stones on surfaces by rays, in all passes of a still: a lamp past one stone on a floor is done by then; twelve
+stones among six lamps and four surfaces would take minutes to the target, and take seconds so."""
+PATIENT_PHOTON_PASSES = 8
+"""Of a still: four million photons, some seconds."""
+FEWEST_PASSES = 4
+"""Of a still: two of them tell the error."""
 FALL = 0.5
 """Cut-off of a pass over that of the one before."""
 LEAST_CUTOFF = 1e-6
@@ -218,6 +225,14 @@ class Illumination:
         return self.passes >= MOST_PASSES or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
 
     @property
+    def _patience(self) -> int:
+        """Passes of a still at most. A count, and not a time: the same scene gives the same still."""
+        if not takes_only_beams(self.stage):
+            return PATIENT_PHOTON_PASSES
+        shadows = len(rays_of(self.stage, 0)) * len(self.stage.scene.stones) * len(self.bound.frame.matte)
+        return min(max(FEWEST_PASSES, PATIENT_SHADOWS // max(1, shadows)), MOST_PASSES)
+
+    @property
     def _random(self) -> bool:
         """Whether passes differ in more than their cut-offs."""
         scene = self.stage.scene
@@ -237,10 +252,15 @@ class Illumination:
             yield from self._pass(cutoff, effort, seconds)
         if effort is Effort.MOVING:
             return
-        while not self.good_enough and (effort is Effort.PATIENT or self.seconds < max(FIRST_SECONDS, picture_seconds)):
+        while not self.good_enough and (
+            self.passes < self._patience
+            if effort is Effort.PATIENT
+            else self.seconds < max(FIRST_SECONDS, picture_seconds)
+        ):
             least = LEAST_CUTOFF
             if self._random:
-                least = max(least, RANDOM_CUTOFF * min(1.0, FEW_PASSES / max(1, self.passes)))
+                falls = min(1.0, FEW_PASSES / max(1, self.passes)) if takes_only_beams(self.stage) else 1.0
+                least = max(least, RANDOM_CUTOFF * falls)
             if not self._random and self.cutoff <= least:
                 return
             yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)

@@ -23,13 +23,14 @@ from culet.rendering import kernel_cache
 from culet.rendering.build import Variant, build
 from culet.rendering.device import Device
 from culet.rendering.features import END, Features, features_of
+from culet.rendering.footprint import REACH
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import buffers, constants, struct
 from culet.rendering.light.light_map import LEVELS, SIZE, Figures, MapFrame, surfaces
 from culet.rendering.light.ray import Ray
 from culet.rendering.making import alone
 from culet.rendering.placed_stone import PlacedStone, origin_of, placed_stones
-from culet.rendering.stone_table import REACH, grouped
+from culet.rendering.stone_table import grouped
 from culet.scene.model import Scene
 from culet.stage import Stage
 

@@ -6,6 +6,7 @@ Of ambient skies nothing does: a clear stone gives an even sky back what it take
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import assert_never
 
 import numpy as np
@@ -85,6 +86,7 @@ class Source:
         ]  # fmt: skip
 
 
+@lru_cache(maxsize=4096)
 def _towards(lamp: Lamp, surfaces: tuple[int, ...], number: int) -> Triple:
     """A direction of a lamp's open part: its middle, then a sequence that is spread as its light is."""
     middle = np.array(lamp.direction) / np.linalg.norm(lamp.direction)
