@@ -29,7 +29,7 @@ def violations(view: View) -> list[str]:
 @pytest.mark.parametrize("scheme", ["dark", "light"])
 def test_the_page_with_all_that_it_can_show_breaks_no_rule(view_of: ViewOf, scheme: str) -> None:
     view = view_of(viewport={"width": 1280, "height": 720}, color_scheme=scheme).open("?preset=trio")
-    for name in ("Cut", "Fall", "Optics", "Speed and exactness"):
+    for name in ("Cut", "Fall", "Floor and walls", "Optics", "Speed and exactness"):
         view.page.get_by_role("button", name=name, exact=True).click()
     view.page.get_by_label("Bands").focus()
     view.page.locator("#panel .hint").wait_for()
