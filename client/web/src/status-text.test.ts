@@ -48,8 +48,9 @@ test("what floor and walls lack of the stones' light is said where they show any
   const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
   const dark = { ...frame, flags: Flag.SHADOWS_ONLY, lightCut: 1 };
   expect(statusText({ ...status, frame: dark })).toContain(" \u00b7 shadows without caustics \u00b7 ");
-  const none = statusText({ ...status, frame: { ...frame, lightCut: Number.NaN } });
-  expect(none).not.toContain("caustics");
+  for (const lightCut of [Number.NaN, 0]) {
+    expect(statusText({ ...status, frame: { ...frame, lightCut } })).not.toContain("caustics");
+  }
 });
 
 test.each([

@@ -57,7 +57,7 @@ export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Sta
   if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
   if (frame) {
     if (!Number.isNaN(frame.error)) parts.push(`${errorName(frame)} ${significant(frame.error)}`);
-    if (!Number.isNaN(frame.lightCut)) parts.push(lightText(frame));
+    if (frame.lightCut > 0 || frame.flags & Flag.SHADOWS_ONLY) parts.push(lightText(frame)); // NaN without a map
     parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
   }
   parts.push(viewersText(viewers));
