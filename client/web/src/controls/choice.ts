@@ -19,12 +19,14 @@ export class Choice<T extends string | number> extends Control<T> {
   private options: readonly Option<T>[] = [];
   private now: T;
   private always = "";
+  private readonly foreign = document.createElement("option");
 
   constructor(label: string, options: readonly Option<T>[], value: T) {
     super(label, "choice");
     this.now = value;
     this.list.id = freshId();
     this.text.htmlFor = this.list.id;
+    this.foreign.disabled = true;
     this.element.append(this.list);
     this.offer(options);
     this.list.onchange = () => {
@@ -41,10 +43,16 @@ export class Choice<T extends string | number> extends Control<T> {
     return this.now;
   }
 
-  /** A value that is not offered is shown as nothing. */
+  /** A value that is not offered, such as a sky of a preset's own, is shown by its name, and cannot be chosen again. */
   override set value(value: T) {
     this.now = value;
-    this.list.selectedIndex = this.options.findIndex((option) => option.value === value);
+    this.foreign.remove();
+    const chosen = this.options.findIndex((option) => option.value === value);
+    if (chosen < 0 && value !== "") {
+      this.foreign.textContent = this.foreign.value = String(value);
+      this.list.append(this.foreign);
+      this.list.selectedIndex = this.options.length;
+    } else this.list.selectedIndex = chosen;
     this.explain();
   }
 
