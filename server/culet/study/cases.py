@@ -9,6 +9,7 @@ import trimesh
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene.camera import Camera
+from culet.scene.emitters import Sun
 from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, LEGACY_POINTS
 from culet.scene.model import Scene
 from culet.scene.optics import Optics
@@ -115,15 +116,23 @@ BARE = CHECKER.model_copy(
 )
 """A stone under a sky, with nothing that could be left out."""
 
+
+def _lit_by_a_sun(height: float) -> Scene:
+    """Over a matte floor; a sun below the floor lights nothing."""
+    sun = Sun(shape="sun", direction=(1, height, 1), colour=(1, 1, 1))
+    return BARE.model_copy(update={"floor": Plane(kind="matte"), "emitters": (sun,)})
+
+
 UNDER_THE_SKY = BARE.model_copy(update={"environment": LEGACY_DEFAULT.environment})
 
 FEATURE_CASES: dict[str, tuple[Scene, Scene]] = {
     "floor": (BARE, BARE.model_copy(update={"floor": Plane(kind="matte")})),
     "walls": (BARE, BARE.model_copy(update={"walls": Plane(kind="matte")})),
     "lights": (
-        BARE.model_copy(update={"floor": Plane(kind="matte")}),
-        BARE.model_copy(update={"floor": Plane(kind="matte"), "emitters": LEGACY_POINTS}),
+        BARE.model_copy(update={"floor": Plane(kind="mirror")}),
+        BARE.model_copy(update={"floor": Plane(kind="mirror"), "emitters": LEGACY_POINTS}),
     ),
+    "light_map": (_lit_by_a_sun(-1), _lit_by_a_sun(1)),
     "sky": (BARE, UNDER_THE_SKY),
     "lamps": (UNDER_THE_SKY, UNDER_THE_SKY.model_copy(update={"emitters": LEGACY_LAMPS})),
     "dispersion": (BARE, BARE.model_copy(update={"stones": CHECKER.stones})),
