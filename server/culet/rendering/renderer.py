@@ -205,7 +205,8 @@ class Picture:
             self._light = renderer.lighting.of(stage)
         bound = self._light.bound if self._light else light_map
         self._inputs = Inputs(renderer.device, stage, width, height, features, real, bound)
-        self._spent = 0.0
+        self._lit_by = 0
+        """Version of the map that its samples saw."""
         self._light_errors: list[float] = []
         self._light_bounds: list[float] = []
         """Of the map, as each sample saw it."""
@@ -244,22 +245,30 @@ class Picture:
         picture is the same to the last bit as one that is made at once.
         """
         self.seconds = self.light_seconds = 0.0
-        for sample in range(samples):
+        before = self.samples
+        while self.samples < before + samples:
             for _ in self._lit(seconds):
-                yield sample / samples
+                yield max(0, self.samples - before) / samples
             for part in self._one_sample(seconds):
-                yield (sample + part) / samples
+                yield max(0.0, self.samples - before + part) / samples
 
     def _lit(self, seconds: float) -> Iterator[None]:
-        """See to the light map before the next sample; yields between launches."""
+        """See to the light map before the next sample; yields between launches. If the map becomes another, so do all
+        samples."""
         if self._light is None:
             return
-        started = time.perf_counter()
-        for _ in self._light.pieces(self.scene.optics.caustics_cutoff, self._effort, seconds, self._spent):
+        started, first = time.perf_counter(), self.samples == 0
+        for _ in self._light.pieces(self.scene.optics.caustics_cutoff, self._effort, seconds, first=first):
             self.light_seconds += time.perf_counter() - started
             yield
             started = time.perf_counter()
         self.light_seconds += time.perf_counter() - started
+        if self._light.version != self._lit_by and self.samples > 0:
+            self._sums.restart()
+            self._shown_samples = 0
+            self._light_errors.clear()
+            self._light_bounds.clear()
+        self._lit_by = self._light.version
         figures = self._light.figures
         self._light_errors.append(self._light.rmse)
         self._light_bounds.append(math.nan if figures is None else figures.bound)
@@ -295,7 +304,6 @@ class Picture:
             cl.enqueue_copy(device.queue, progress, buffer)
             taken = time.perf_counter() - start
             self.seconds += taken
-            self._spent += taken
             under_way, steps = of_items.T
             self._pace.made(int(steps.max()), taken)
             part = min(int(progress[TILES_DEALT]) / count, ALMOST)

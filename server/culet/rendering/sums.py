@@ -85,6 +85,11 @@ class Sums:
         before the second one both are the same."""
         return self._earlier, self._earlier if self._later is None else self._later
 
+    def restart(self) -> None:
+        """Without samples, as at first."""
+        self.samples = 0
+        self._errors.clear()
+
     def target(self) -> tuple[Any, bool]:
         """Where the next sample goes, and whether it is added to what is there."""
         if self.samples > 0 and self._later is None:

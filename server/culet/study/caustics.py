@@ -298,7 +298,7 @@ def _at_rest(bench: Bench, judge: Converged) -> list[Point]:
     found = lighting.of(bench.stage)
     assert found is not None  # noqa: S101 - the floor is matte
     optics = bench.stage.scene.optics
-    pieces = found.pieces(optics.caustics_cutoff, Effort.PATIENT, 0.02, math.inf)
+    pieces = found.pieces(optics.caustics_cutoff, Effort.PATIENT, 0.02)
     clock, points, passes = _Clock(), list[Point](), 0
     while True:
         with clock:

@@ -158,6 +158,22 @@ def test_passes_of_two_pictures_may_be_under_way_by_turns(renderer: Renderer) ->
         assert abs(texels(renderer, found) - wanted).max() < 1e-3
 
 
+@pytest.mark.parametrize("emitter", [POINT, SUN], ids=["point", "sun"])
+def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Renderer, emitter: dict[str, Any]) -> None:
+    stage = Stage.of(scene_of(emitters=[emitter]))
+    coarse = stage.scene.optics.model_copy(update={"caustics_cutoff": 0.05})
+    renderer.lighting.forget()
+    fresh, _ = lit(renderer, stage, Effort.RESTING, 3)
+    again, _ = lit(renderer, stage, Effort.RESTING, 3)
+    renderer.lighting.forget()
+    moving, _ = lit(renderer, Stage.of(stage.scene.model_copy(update={"optics": coarse})), Effort.MOVING)
+    after, _ = lit(renderer, stage, Effort.RESTING, 3)
+    assert fresh.samples == again.samples == after.samples == 3
+    assert (again.linear() == fresh.linear()).all(), "by a map that is there already"
+    assert (after.linear() == fresh.linear()).all(), "by one that was made for a moving picture"
+    assert (moving.linear() != fresh.linear()).any()
+
+
 def test_a_stone_that_is_not_convex_is_lit_by_photons(renderer: Renderer) -> None:
     stage = staged(scene_of(stones=[{}]), ring())
     picture, found = lit(renderer, stage, Effort.RESTING, 2)

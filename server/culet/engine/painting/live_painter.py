@@ -115,7 +115,7 @@ class LivePainter:
         picture, shown = live.picture, live.painted
         assert picture is not None  # noqa: S101 - of a picture that wants to be refined
         assert shown is not None  # noqa: S101 - of such a picture too
-        samples = min(picture.samples, REST_SAMPLES - picture.samples)
+        samples = max(1, min(picture.samples, REST_SAMPLES - picture.samples))  # none are left if they were begun anew
         work = FrameWork(
             Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, samples=samples,
             final=picture.samples + samples >= REST_SAMPLES, render_seconds=live.render_seconds,

@@ -36,6 +36,8 @@ PATIENT_SHADOWS = 8192
 stones among six lamps and four surfaces would take minutes to the target, and take seconds so."""
 PATIENT_PHOTON_PASSES = 8
 """Of a still: four million photons, some seconds."""
+RESTING_PART = 4
+"""Of the passes that a still may take, a picture that somebody watches takes one in so many."""
 FEWEST_PASSES = 4
 """Of a still: two of them tell the error."""
 FALL = 0.5
@@ -49,8 +51,6 @@ FEW_PASSES = 16
 LASTING = 0.5
 """Of the error that a cut-off makes in a pass, what the mean of many directions or wavelengths keeps: measured on a sun
 of 0.27 degrees (`culet study caustics`)."""
-FIRST_SECONDS = 0.05
-"""s of passes before a resting picture's first sample: nobody sees a picture meanwhile."""
 COARSEST = 1.0
 """A cut-off at which hardly anything is followed."""
 PHOTONS = 30.0
@@ -184,6 +184,8 @@ class Illumination:
     def __init__(self, of: Lighting, stage: Stage, bound: BoundMap) -> None:
         self.stage, self.bound = stage, bound
         self.passes = 0
+        self.version = 0
+        """Passes ever made: another number is another map."""
         self.seconds = 0.0
         """Spent on all passes."""
         self.maker = Maker.NOTHING
@@ -192,6 +194,10 @@ class Illumination:
         self.figures: Figures | None = None
         """Of the finest pass, but for the error, which is the mean's."""
         self._of = of
+        self._start = math.nan
+        """Cut-off of the first pass."""
+        self._provisional = False
+        """Made for a moving picture, in a hurry."""
         self._begun = 0
         self._weight = 0.0
         self._squared = 0.0
@@ -224,13 +230,14 @@ class Illumination:
         settled = self.passes > 0 and (not self._random or len(self._spread) > 1)
         return self.passes >= MOST_PASSES or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
 
-    @property
-    def _patience(self) -> int:
-        """Passes of a still at most. A count, and not a time: the same scene gives the same still."""
-        if not takes_only_beams(self.stage):
-            return PATIENT_PHOTON_PASSES
-        shadows = len(rays_of(self.stage, 0)) * len(self.stage.scene.stones) * len(self.bound.frame.matte)
-        return min(max(FEWEST_PASSES, PATIENT_SHADOWS // max(1, shadows)), MOST_PASSES)
+    def _patience(self, effort: Effort) -> int:
+        """Passes at most. A count, and not a time: the same scene gives the same picture."""
+        if takes_only_beams(self.stage):
+            shadows = len(rays_of(self.stage, 0)) * len(self.stage.scene.stones) * len(self.bound.frame.matte)
+            passes = min(PATIENT_SHADOWS // max(1, shadows), MOST_PASSES)
+        else:
+            passes = PATIENT_PHOTON_PASSES
+        return max(FEWEST_PASSES, passes if effort is Effort.PATIENT else passes // RESTING_PART)
 
     @property
     def _random(self) -> bool:
@@ -242,21 +249,24 @@ class Illumination:
             or any(ray.position is None for ray in rays_of(self.stage, 0))
         )
 
-    def pieces(self, cutoff: float, effort: Effort, seconds: float, picture_seconds: float) -> Iterator[object]:
+    def pieces(self, cutoff: float, effort: Effort, seconds: float, *, first: bool = False) -> Iterator[object]:
         """Make the map as good as is fitting, in launches of about so many seconds; yields between them.
 
-        A map that is as fine as the cut-off asks serves a moving picture as it is. A resting one has put
-        `picture_seconds` into its samples so far, which is what its map may take too.
+        A map that is as fine as the cut-off asks serves a moving picture as it is. A map that was made for one is made
+        anew for other pictures, which depend on their scene alone. Before the `first` sample of a resting picture it
+        takes one pass, so that there is something to see.
         """
-        if self.passes == 0 or (effort is Effort.MOVING and self.cutoff > cutoff):
-            yield from self._pass(cutoff, effort, seconds)
         if effort is Effort.MOVING:
+            if self.passes == 0 or (self._provisional and self.cutoff > cutoff):
+                self._begin(cutoff, provisional=True)
+                yield from self._pass(cutoff, effort, seconds)
             return
-        while not self.good_enough and (
-            self.passes < self._patience
-            if effort is Effort.PATIENT
-            else self.seconds < max(FIRST_SECONDS, picture_seconds)
-        ):
+        if self.passes == 0 or self._provisional or self._start != cutoff:
+            self._begin(cutoff, provisional=False)
+            yield from self._pass(cutoff, effort, seconds)
+        if effort is Effort.RESTING and first:
+            return
+        while not self.good_enough and self.passes < self._patience(effort):
             least = LEAST_CUTOFF
             if self._random:
                 falls = min(1.0, FEW_PASSES / max(1, self.passes)) if takes_only_beams(self.stage) else 1.0
@@ -264,6 +274,14 @@ class Illumination:
             if not self._random and self.cutoff <= least:
                 return
             yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
+
+    def _begin(self, cutoff: float, *, provisional: bool) -> None:
+        """Anew, as if there were no pass; what is in the map stays there until the first one is done."""
+        self._start, self._provisional = cutoff, provisional
+        self.passes = self._begun = 0
+        self.cutoff, self.maker = math.inf, Maker.NOTHING
+        self._weight = self._squared = self._bias = 0.0
+        self._spread.clear()
 
     def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
         """One pass more."""
@@ -298,7 +316,7 @@ class Illumination:
             assert self._photons.figures is not None  # noqa: S101 - of the pass that is done
             figures = self._photons.figures
         self._count(weight, bias, gain, before, anew=keep == 0)
-        self.maker, self.passes = maker, self.passes + 1
+        self.maker, self.passes, self.version = maker, self.passes + 1, self.version + 1
         self.seconds += time.perf_counter() - started
         self.cutoff = min(self.cutoff, cutoff)
         self.figures = replace(figures, rmse=self.rmse, seconds=self.seconds)
