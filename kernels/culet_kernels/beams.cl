@@ -697,8 +697,7 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
       __global const real *planes, __global const real *vertices, __global const int *start,                           \
       __global const int *corners, __global const int *across, __global const int4 *entries,                           \
       __global const chain_t *chains, __global float4 *light_maps, __global float *shade_maps,                         \
-      __global uint *lit_rows, __global uint *shaded_rows, __global float4 *seeping, __global int *next,               \
-      __global tally_t *tallies
+      __global uint *lit_rows, __global uint *shaded_rows, __global float4 *seeping, __global tally_t *tallies
 #define GEOMETRY_OF                                                                                                    \
   {                                                                                                                    \
     planes, vertices, start, corners, across                                                                           \
@@ -723,6 +722,13 @@ static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
   enter(job, tally, facet, part, count);
 }
 
+// Jobs are dealt out by their numbers, and not to who is free first: so sums are rounded in the same order every time. Turns
+// change from one entry to the next, lest a work-item have one band of all.
+static inline int is_mine(__constant const throwing_t *room, int number) {
+  const int turn = number + number / max(1, room->lights * room->bands);
+  return turn % (int)get_global_size(0) == (int)get_global_id(0);
+}
+
 // Jobs are numbered: of each entry the lights, of each light the bands.
 static inline job_t job_number(__constant const throwing_t *room, int number, __constant const light_t *lights,
                                __constant const solid_t *solids, facets_t facets, __global const int4 *entries,
@@ -732,14 +738,12 @@ static inline job_t job_number(__constant const throwing_t *room, int number, __
   return job_of(room, lights + rest / room->bands, solids, entry->x, facets, chains + rest % room->bands, canvas);
 }
 
-// `next` counts the jobs that are dealt out; a launch deals out those before `end`.
-__kernel void throw_light(GEOMETRY_BUFFERS, int end) {
+__kernel void throw_light(GEOMETRY_BUFFERS, int begin, int end) {
   tally_t tally = tallies[get_global_id(0)];
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
-  for (;;) {
-    const int number = atomic_inc(next);
-    if (number >= end) break;
+  for (int number = begin; number < end; number++) {
+    if (!is_mine(room, number)) continue;
     if (!lights[number % (room->lights * room->bands) / room->bands].follows) continue;
     int4 entry;
     job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
@@ -750,12 +754,11 @@ __kernel void throw_light(GEOMETRY_BUFFERS, int end) {
 
 // Follows lamps that make no flecks, coarsely, to find what part of their light goes through the stones into their shadows.
 // `band`: 1 more than the number of the band that stands for all channels; 0: each stands for its own.
-__kernel void gauge_light(GEOMETRY_BUFFERS, int end, int band) {
+__kernel void gauge_light(GEOMETRY_BUFFERS, int begin, int end, int band) {
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
-  for (;;) {
-    const int number = atomic_inc(next);
-    if (number >= end) break;
+  for (int number = begin; number < end; number++) {
+    if (!is_mine(room, number)) continue;
     if (!lights[number % (room->lights * room->bands) / room->bands].gauges) continue;
     if (band > 0 && number % room->bands != band - 1) continue;
     int4 entry;
@@ -784,12 +787,11 @@ static inline float4 seeping_part(__constant const throwing_t *room, __constant 
 }
 
 // Shadows are numbered: of each stone the lights.
-__kernel void cast_shadows(GEOMETRY_BUFFERS, int end) {
+__kernel void cast_shadows(GEOMETRY_BUFFERS, int begin, int end) {
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
-  for (;;) {
-    const int number = atomic_inc(next);
-    if (number >= end) break;
+  for (int number = begin; number < end; number++) {
+    if (!is_mine(room, number)) continue;
     job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
     if (job.light->inside >= 0) continue; // everything is in shadow
     job.colour *= 1 - seeping_part(room, job.light, seeping);

@@ -137,7 +137,7 @@ class Beams:
         solid_buffer = self._upload(solids.solids)
         tally_type = struct("tally_t", self.real, "light_beam.cl")
         tallies = np.zeros(self.items, tally_type)
-        tally_buffer, next_buffer = self._upload(tallies), self._upload(np.zeros(1, np.int32))
+        tally_buffer = self._upload(tallies)
         brightest = _brightness(rays)
         point_lights = self._upload(_lights(points, brightest, gauged, stones, frame, self.real))
         self._clean = False
@@ -150,7 +150,7 @@ class Beams:
             )
             program = self._program(diverging, solids.most_facets, len(stones) > 1, stage.scene.optics.polarised)
             buffers = (
-                self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, seeping, next_buffer, tally_buffer,
+                self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, seeping, tally_buffer,
             )  # fmt: skip
             if gauged and not diverging:
                 band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
@@ -206,8 +206,7 @@ class Beams:
         return [f"-DREAL={'double' if self.real is np.float64 else 'float'}"]
 
     def _launch(self, kernel: Any, buffers: Sequence[Any], begin: int, end: int, *more: int) -> None:  # noqa: ANN401
-        cl.enqueue_fill_buffer(self.device.queue, buffers[-2], np.array(begin, np.int32), 0, 4)
-        kernel(self.device.queue, (self.items,), (1,), *buffers, np.int32(end), *map(np.int32, more))
+        kernel(self.device.queue, (self.items,), (1,), *buffers, *map(np.int32, (begin, end, *more)))
 
     def _sum(self, room: Any, points: Any, scratch: tuple[Any, ...], target: Any, keep: float, gain: float) -> None:  # noqa: ANN401
         if (-1,) not in self._programs:
