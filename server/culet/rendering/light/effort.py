@@ -11,6 +11,6 @@ class Effort(Enum):
     MOVING = auto()
     """One pass at the scene's cut-off: the next frame needs another map."""
     RESTING = auto()
-    """One pass before the picture's first sample; then a part of what a patient one takes, and the sample anew."""
+    """One pass before the picture's first sample; then all that it needs, and the sample anew."""
     PATIENT = auto()
-    """All that it needs before the picture's first sample, within passes whose number depends on the scene alone."""
+    """All that it needs, within passes whose number depends on the scene alone, before the first sample."""

@@ -30,16 +30,15 @@ KEPT = 4
 TARGET = 2e-3
 """Estimated root mean square error at which a map is good enough, in parts of the brightest emitter's irradiance over
 pi: a quarter of a step of 8 bits in the middle of the scale."""
-MOST_PASSES = 256
-PATIENT_SHADOWS = 8192
-"""Of stones on surfaces by rays, in all passes of a still: a lamp past one stone on a floor is done by then; twelve
-stones among six lamps and four surfaces would take minutes to the target, and take seconds so."""
-PATIENT_PHOTON_PASSES = 8
-"""Of a still: four million photons, some seconds."""
-RESTING_PART = 4
-"""Of the passes that a still may take, a picture that somebody watches takes one in so many."""
+MOST_PASSES = 64
+"""Two seconds of a sun, whose error is then a fifth of a percent of its light."""
+SHADOWS = 2048
+"""Of stones on surfaces by rays, in all passes of a picture: 340 directions of each of six lamps past one stone on a
+floor. Of twelve stones, six lamps and four surfaces a single pass has twice as many."""
+PHOTON_PASSES = 8
+"""Four million photons, some seconds."""
 FEWEST_PASSES = 4
-"""Of a still: two of them tell the error."""
+"""Two of them tell the error."""
 FALL = 0.5
 """Cut-off of a pass over that of the one before."""
 LEAST_CUTOFF = 1e-6
@@ -228,16 +227,15 @@ class Illumination:
         if self.maker is Maker.NOTHING and self.passes and not self._random:
             return True
         settled = self.passes > 0 and (not self._random or len(self._spread) > 1)
-        return self.passes >= MOST_PASSES or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
+        return self.passes >= self._most_passes or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
 
-    def _patience(self, effort: Effort) -> int:
-        """Passes at most. A count, and not a time: the same scene gives the same picture."""
-        if takes_only_beams(self.stage):
-            shadows = len(rays_of(self.stage, 0)) * len(self.stage.scene.stones) * len(self.bound.frame.matte)
-            passes = min(PATIENT_SHADOWS // max(1, shadows), MOST_PASSES)
-        else:
-            passes = PATIENT_PHOTON_PASSES
-        return max(FEWEST_PASSES, passes if effort is Effort.PATIENT else passes // RESTING_PART)
+    @property
+    def _most_passes(self) -> int:
+        """A count, and not a time: the same scene gives the same picture."""
+        if not takes_only_beams(self.stage):
+            return PHOTON_PASSES
+        shadows = len(rays_of(self.stage, 0)) * len(self.stage.scene.stones) * len(self.bound.frame.matte)
+        return min(max(FEWEST_PASSES, SHADOWS // max(1, shadows)), MOST_PASSES)
 
     @property
     def _random(self) -> bool:
@@ -266,7 +264,7 @@ class Illumination:
             yield from self._pass(cutoff, effort, seconds)
         if effort is Effort.RESTING and first:
             return
-        while not self.good_enough and self.passes < self._patience(effort):
+        while not self.good_enough:
             least = LEAST_CUTOFF
             if self._random:
                 falls = min(1.0, FEW_PASSES / max(1, self.passes)) if takes_only_beams(self.stage) else 1.0
