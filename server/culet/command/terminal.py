@@ -16,7 +16,7 @@ from culet_client.errors import ClientError
 if TYPE_CHECKING:
     from rich.console import Console
 
-REPORT_COLUMNS = 132
+REPORT_COLUMNS = 150
 
 
 @contextlib.contextmanager
