@@ -576,9 +576,9 @@ static inline int halve(const job_t *job, corner_t *part, int *count, corner_t *
 // Of a part of a facet: its rays inside, and mirrored outside, and the directions in the middle. Returns its flux.
 static inline real begin_beam(const job_t *job, const real *normal, const corner_t *part, int count, beam_t *beam,
                               corner_t *mirrored, real *d) {
-  const real eta = job->eta;
   beam->count = count;
 #if DIVERGING
+  const real eta = job->eta;
   int k, u, v;
   axes_of(normal, &k, &u, &v);
   real per_area = 0;
