@@ -249,8 +249,9 @@ class Picture:
         while self.samples < before + samples:
             for _ in self._lit(seconds):
                 yield max(0, self.samples - before) / samples
+            done = self.samples - before
             for part in self._one_sample(seconds):
-                yield max(0.0, self.samples - before + part) / samples
+                yield max(0.0, done + part) / samples
 
     def _lit(self, seconds: float) -> Iterator[None]:
         """See to the light map before the next sample; yields between launches. If the map becomes another, so do all
