@@ -140,7 +140,7 @@ def _spread(values: Array) -> Array:
 
 
 def _radiance(renderer: Renderer, scene: Scene, size: tuple[int, int]) -> Array:
-    picture = renderer.picture(Stage.of(scene), *size)
+    picture = renderer.picture(Stage.of(scene), *size, effort=None)  # light maps are of single precision in all
     picture.refine()
     return picture.linear().astype(np.float64)
 
