@@ -168,7 +168,14 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     renderer.lighting.forget()
     moving, _ = lit(renderer, Stage.of(stage.scene.model_copy(update={"optics": coarse})), Effort.MOVING)
     after, _ = lit(renderer, stage, Effort.RESTING, 3)
-    assert fresh.samples == again.samples == after.samples == 3
+    renderer.lighting.forget()
+    given_up = renderer.picture(stage, *SIZE, effort=Effort.RESTING).refine_in_pieces(3, 1e-4)
+    for _ in range(30):
+        next(given_up)
+    del given_up
+    resumed, _ = lit(renderer, stage, Effort.RESTING, 3)
+    assert fresh.samples == again.samples == after.samples == resumed.samples == 3
+    assert (resumed.linear() == fresh.linear()).all(), "by one that was begun for a picture that was given up"
     assert (again.linear() == fresh.linear()).all(), "by a map that is there already"
     assert (after.linear() == fresh.linear()).all(), "by one that was made for a moving picture"
     assert (moving.linear() != fresh.linear()).any()

@@ -197,7 +197,8 @@ class Illumination:
         """Cut-off of the first pass."""
         self._provisional = False
         """Made for a moving picture, in a hurry."""
-        self._begun = 0
+        self._running: Iterator[object] | None = None
+        """The pass under way. A picture that is given up leaves it to the next one: none is left out or made twice."""
         self._weight = 0.0
         self._squared = 0.0
         self._bias = 0.0
@@ -257,11 +258,12 @@ class Illumination:
         if effort is Effort.MOVING:
             if self.passes == 0 or (self._provisional and self.cutoff > cutoff):
                 self._begin(cutoff, provisional=True)
-                yield from self._pass(cutoff, effort, seconds)
+                yield from self._advance(cutoff, effort, seconds)
             return
         if self.passes == 0 or self._provisional or self._start != cutoff:
-            self._begin(cutoff, provisional=False)
-            yield from self._pass(cutoff, effort, seconds)
+            if self._provisional or self._start != cutoff:
+                self._begin(cutoff, provisional=False)
+            yield from self._advance(cutoff, effort, seconds)
         if effort is Effort.RESTING and first:
             return
         while not self.good_enough:
@@ -271,20 +273,27 @@ class Illumination:
                 least = max(least, RANDOM_CUTOFF * falls)
             if not self._random and self.cutoff <= least:
                 return
-            yield from self._pass(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
+            yield from self._advance(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
 
     def _begin(self, cutoff: float, *, provisional: bool) -> None:
         """Anew, as if there were no pass; what is in the map stays there until the first one is done."""
-        self._start, self._provisional = cutoff, provisional
-        self.passes = self._begun = 0
+        self._start, self._provisional, self._running = cutoff, provisional, None
+        self.passes = 0
         self.cutoff, self.maker = math.inf, Maker.NOTHING
         self._weight = self._squared = self._bias = 0.0
         self._spread.clear()
 
+    def _advance(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
+        """Go on with the pass under way, or else with a new one."""
+        running = self._running = self._running or self._pass(cutoff, effort, seconds)
+        for piece in running:  # not `yield from`, which would end it with the picture that it is made for
+            yield piece
+        if self._running is running:
+            self._running = None
+
     def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
         """One pass more."""
-        number, self._begun = self._begun, self._begun + 1
-        started, scene = time.perf_counter(), self.stage.scene
+        number, started, scene = self.passes, time.perf_counter(), self.stage.scene
         rays = rays_of(self.stage, number)
         follows = scene.optics.caustics == "on"
         if takes_only_beams(self.stage):
