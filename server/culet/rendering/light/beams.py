@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -152,22 +152,15 @@ class Beams:
             buffers = (
                 self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, seeping, tally_buffer,
             )  # fmt: skip
+            entries = int(room["entries"]) * len(group) * bands
             if gauged and not diverging:
                 band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
-                self._launch(program.gauge_light, buffers, 0, int(room["entries"]) * len(group) * bands, band)
-            self._launch(program.cast_shadows, buffers, 0, len(group) * len(stones))
-            followed = any(ray.follows for ray in group)
-            jobs = int(room["entries"]) * len(group) * bands if followed else 0
-            done, chunk = 0, FIRST_JOBS if math.isfinite(seconds) else jobs
-            while done < jobs:
-                end, start = min(done + chunk, jobs), time.perf_counter()
-                self._launch(program.throw_light, buffers, done, end)
-                if math.isfinite(seconds):
-                    queue.finish()
-                    pace = max(time.perf_counter() - start, 1e-6) / (end - done)
-                    chunk = max(1, min(2 * chunk, int(seconds / pace)))
-                    yield ALMOST * end / jobs
-                done = end
+                for _ in self._launches(program.gauge_light, buffers, entries, seconds, band):
+                    yield 0.0
+            for _ in self._launches(program.cast_shadows, buffers, len(group) * len(stones), seconds):
+                yield 0.0
+            if any(ray.follows for ray in group):
+                yield from self._launches(program.throw_light, buffers, entries, seconds)
         self._sum(self._upload(room), point_lights, scratch, target, keep, gain)
         cl.enqueue_copy(queue, tallies, tally_buffer)
         self._clean = True
@@ -204,6 +197,26 @@ class Beams:
     @property
     def _options(self) -> list[str]:
         return [f"-DREAL={'double' if self.real is np.float64 else 'float'}"]
+
+    def _launches(
+        self,
+        kernel: Any,  # noqa: ANN401
+        buffers: Sequence[Any],
+        jobs: int,
+        seconds: float,
+        *more: int,
+    ) -> Iterator[float]:
+        """All jobs, in launches of about so many seconds; yields the part that is done, between them."""
+        done, chunk = 0, FIRST_JOBS if math.isfinite(seconds) else jobs
+        while done < jobs:
+            end, start = min(done + chunk, jobs), time.perf_counter()
+            self._launch(kernel, buffers, done, end, *more)
+            if math.isfinite(seconds):
+                self.device.queue.finish()
+                pace = max(time.perf_counter() - start, 1e-6) / (end - done)
+                chunk = max(1, min(2 * chunk, int(seconds / pace)))
+                yield ALMOST * end / jobs
+            done = end
 
     def _launch(self, kernel: Any, buffers: Sequence[Any], begin: int, end: int, *more: int) -> None:  # noqa: ANN401
         kernel(self.device.queue, (self.items,), (1,), *buffers, *map(np.int32, (begin, end, *more)))
