@@ -135,7 +135,7 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
       open = heading;
     }
     const int first = first_pixel(x, y);
-    EACH (k, 3) store_lanes(radiance.channel[k], tile->radiance[k] + first);
+    EACH (k, 3) begin_sums(radiance.channel[k], tile->radiance[k] + first);
     store_lanes(3 * cut, tile->cut + first);
     const intL tag = first + LANE_INDEX + (groups_of(x, y, world.scene->sample) << PIXEL_BITS);
     if (any_lane(met.hit)) note(hits, met.hit, met.point, ray, met.normal, met.stone, tag);
@@ -163,7 +163,7 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
       vec3L normal;
       const packetL packet = hits_at(hits, work->hit, &normal);
       if (camera_inside)
-        push_inside(&pools->inside, mask, &packet);
+        push_inside(world, &pools->inside, mask, &packet);
       else
         enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
               DECIDED(GLARE, world.scene->glare));

@@ -146,7 +146,7 @@ static inline bool advance_classic_tile(world_t world, classic_work_t *work, int
       if (!advance_path(world, &work->path, work->channel, DECIDED(BACKDROP, scene->has_backdrop) ? &behind : 0,
                         &tile->segments, steps))
         return false;
-      store_lanes(work->path.radiance, tile->radiance[work->channel] + first);
+      begin_sums(work->path.radiance, tile->radiance[work->channel] + first);
     }
     store_lanes(splat(0), tile->cut + first);
   }

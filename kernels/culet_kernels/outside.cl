@@ -67,9 +67,9 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   inner.polarisation = parts.transmitted;
   scale_weights(&inner, (real)1 - parts.kept);
   inner.tag = packet->tag & (ONE_BOUNCE - 1);
-  const maskL goes_on = settle(world, tile, task, &inner, mask, mask & !mask);
+  const maskL goes_on = settle(world, tile, task, &inner, 0, mask, mask & !mask);
   if (has_room_inside(&pools->inside))
-    push_inside(&pools->inside, goes_on, &inner);
+    push_inside(world, &pools->inside, goes_on, &inner);
   else
     lose(tile, goes_on, &inner, over_channels(task, &inner));
 }
@@ -106,7 +106,7 @@ static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task
   if (any_lane(misses)) push(&pools->away, misses, &packet);
   // Between stones that overlap light could be reflected for ever; so only what is worth it meets another one.
   maskL hits = taken & meets;
-  if (STONES == MANY) hits = settle(world, tile, task, &packet, hits, misses & !misses);
+  if (STONES == MANY) hits = settle(world, tile, task, &packet, 0, hits, misses & !misses);
   if (any_lane(hits)) {
     const vec3L point = along(packet.origin, met.t, packet.direction);
     packet.origin = met.point;
