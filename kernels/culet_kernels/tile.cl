@@ -6,7 +6,7 @@
 
 // Pixels on each side: a multiple of a packet's sides, at most 64, for the bits of a ray's tag. Rays of each of several stones
 // gather to packets of their own, which takes more of them.
-#define TILE_OF_ONE 32
+#define TILE_OF_ONE 48
 #define TILE_OF_MANY 64
 #define TILE (STONES == MANY ? TILE_OF_MANY : TILE_OF_ONE)
 #define TILE_PIXELS (TILE * TILE)

@@ -53,7 +53,9 @@ def from_file() -> Shape:
     """A turned brilliant as a file in single precision has it."""
     shape = turned(brilliant(), 4)
     surface = trimesh.Trimesh(shape.vertices, shape.triangles, process=False)
-    return shape_from_mesh(bytes(surface.export(file_type="stl")), "stl", name="brilliant")
+    file = surface.export(file_type="stl")
+    assert isinstance(file, bytes)
+    return shape_from_mesh(file, "stl", name="brilliant")
 
 
 SHAPES: dict[str, Callable[[], Shape]] = {
