@@ -1,24 +1,33 @@
 // Where light inside a convex stone leaves, by the symmetry of its facets.
 //
-// Light inside is followed in axes of the stone in which most facets are images of each other by sign: four are (+-x, y, +-z),
-// two are (x, y, z) and (-x, y, -z), or (+-x, y, z). How fast a ray nears each of them, and how far away each is, are sums of the
-// same products with other signs, and signs alone tell which of them it reaches first. A row stands for four facets, for two
-// or for one (rendering/facet_rows.py).
+// Light inside is followed in axes of the stone in which most facets are images of each other: eight are (+-x, y, +-z) and
+// (+-z, y, +-x), four are (+-x, y, +-z), two are (x, y, z) and (-x, y, -z), or (+-x, y, z). Of two of them, signs tell which a
+// ray reaches first, and so of all. A row stands for eight facets, for four, two or one (rendering/facet_rows.py).
 #ifndef CULET_FACET_ROWS
 #define CULET_FACET_ROWS
 #include "hull.cl"
 
-// Kinds of row, in their order: of four facets, two rows each of the same y and offset; of four; of two by a half turn about y;
-// of two by a mirror across x; of one. Those of two facets or four are even in number.
-#define TIERS 0
+// Kinds of row, in their order: of eight facets, where z may be 0; of four; of two by a half turn about y; of two by a mirror
+// across x; of one. In the first two x and z are not negative, and x is not the smaller in the first. Rows of two facets are
+// even in number.
+#define EIGHTS 0
 #define FOURS 1
 #define TURNED_TWOS 2
 #define MIRRORED_TWOS 3
 #define ONES 4
 #define COLUMN_ROWS 32 // rows up to which a stone's are in columns too
 
+// Steps of a number next to 1, R, by which offsets are too large where a ray looks for its facet: so the gap to the facet that it
+// has just left is positive, however it was rounded.
+#define HAIR 3
+#if IS_DOUBLE
+#define HAIR_LENGTH (HAIR * DBL_EPSILON)
+#else
+#define HAIR_LENGTH (HAIR * FLT_EPSILON)
+#endif
+
 typedef struct {
-  __global const real4 *farther; // normals and offsets: the latter are a hair too large, so that no gap is negative,
+  __global const real4 *farther; // normals and offsets: the latter are a HAIR too large,
   __global const real4 *exact;   // and as they are;
   __global const real *columns;  // the same by number: all x, all y, all z, all offsets
   __constant const int *end;     // of each kind
@@ -86,11 +95,11 @@ static inline reachL reached_of_two(reachL first, realL y, realL v, realL p, rea
   return reached(first, y + flip(p, sign), v - flip(r, sign), row);
 }
 
-// Of four facets of normals (s x, y, t z), where s and t are signs and x and z positive, at a ray o + l d: the speed is
-// Y + s x d.x + t z d.z and the gap is V - s x o.x - t z o.z. Of two that differ in s the one with s = 1 is reached first where
-// A - t z C is positive, of two that differ in t the one with t = 1 where B + s x C is:
-//   Y = y d.y, V = offset - y o.y, A = d.x V + o.x Y, B = d.z V + o.z Y, C = d.x o.z - d.z o.x.
-// So where |A| > z |C| s is the sign of A; elsewhere |B| > x |C|, since one of the four is the first: t is the sign of B.
+// Of facets of normals (s x, y, t z), where s and t are signs, at a ray o + l d: the speed is Y + s x d.x + t z d.z and the gap
+// is V - s x o.x - t z o.z, where Y = y d.y and V = offset - y o.y. With
+//   A = d.x V + o.x Y, B = d.z V + o.z Y, C = d.x o.z - d.z o.x
+// of two that differ in s the one with s = 1 is reached first where A - t z C is positive; of two that differ in t the one with
+// t = 1 where B + s x C is; and (s z, y, t x) before (s x, y, t z), if x > z, where t B - s A + s t (x + z) C is.
 typedef struct {
   realL y, v, a, b;
 } tierL;
@@ -108,17 +117,36 @@ typedef struct {
   realL x, z;
 } signsL;
 
-static inline signsL signs_of_four(tierL tier, realL c, realL normal_x, realL normal_z) {
-  const maskL x_first = fabs(tier.a) > normal_z * fabs(c);
-  const signsL signs = {blend(x_first, tier.a, opposite(tier.b, c)),
-                        blend(x_first, fma(flip(c, tier.a), normal_x, tier.b), tier.b)};
+// The signs s and t of the facet of four that is reached first: of A - t z C and of B + s x C, each of which names the other.
+// But where the sign of B differs from t, |B| < x |C|, t is that of s C, and s is the sign of A - s z |C|, which then is that of
+// A - sign(B) z C too, since s C and B differ in sign; and likewise for A. Of eight, the facets beside an axis have the same x,
+// or that for their z: the larger takes the place of both.
+static inline signsL first_signs(tierL tier, realL c, realL normal_x, realL normal_z) {
+  const signsL signs = {fma(-flip(c, tier.b), normal_z, tier.a), fma(flip(c, tier.a), normal_x, tier.b)};
   return signs;
 }
 
-static inline reachL reached_of_four(reachL first, vec3L o, vec3L d, tierL tier, realL c, real4 facet, realL row) {
-  const signsL signs = signs_of_four(tier, c, splat(facet.x), splat(facet.z));
-  return reached(first, tier.y + flip(d.x * facet.x, signs.x) + flip(d.z * facet.z, signs.z),
-                 tier.v - flip(o.x * facet.x, signs.x) - flip(o.z * facet.z, signs.z), row);
+// Whether of eight facets one with x and z exchanged is the first.
+static inline maskL exchanged(tierL tier, realL c, signsL signs, realL sum) {
+  return fma(flip(flip(c, signs.x), signs.z), sum, flip(tier.b, signs.z) - flip(tier.a, signs.x)) > 0;
+}
+
+static inline reachL reached_of_tier(reachL first, vec3L o, vec3L d, tierL tier, realL x, realL z, realL row) {
+  return reached(first, fma(d.x, x, fma(d.z, z, tier.y)), fma(-o.x, x, fma(-o.z, z, tier.v)), row);
+}
+
+static inline reachL reached_of_four(reachL first, vec3L o, vec3L d, realL c, real4 facet, realL row) {
+  const tierL tier = tier_of(o, d, splat(facet.y), splat(facet.w));
+  const signsL signs = first_signs(tier, c, splat(facet.x), splat(facet.z));
+  return reached_of_tier(first, o, d, tier, flip(splat(facet.x), signs.x), flip(splat(facet.z), signs.z), row);
+}
+
+static inline reachL reached_of_eight(reachL first, vec3L o, vec3L d, realL c, real4 facet, realL row) {
+  const tierL tier = tier_of(o, d, splat(facet.y), splat(facet.w));
+  const signsL signs = first_signs(tier, c, splat(facet.x), splat(facet.x));
+  const maskL other = exchanged(tier, c, signs, splat(facet.x + facet.z));
+  const realL x = blend(other, splat(facet.z), splat(facet.x)), z = blend(other, splat(facet.x), splat(facet.z));
+  return reached_of_tier(first, o, d, tier, flip(x, signs.x), flip(z, signs.z), row);
 }
 
 static inline reachL reached_of_one(reachL first, vec3L o, vec3L d, real4 facet, realL row) {
@@ -139,15 +167,8 @@ __attribute__((always_inline)) static inline crossingL rows_exit(rows_t rows, ve
   const realL c = fma(d.x, o.z, -(d.z * o.x));
   realL row = splat(0);
   int i = 0;
-  for (; i < rows.end[TIERS]; i += 2, row += 2) {
-    const tierL tier = tier_of(o, d, splat(rows.farther[i].y), splat(rows.farther[i].w));
-    EACH (k, 2) first[k] = reached_of_four(first[k], o, d, tier, c, rows.farther[i + k], row + k);
-  }
-  for (; i < rows.end[FOURS]; i += 2, row += 2)
-    EACH (k, 2) {
-      const real4 facet = rows.farther[i + k];
-      first[k] = reached_of_four(first[k], o, d, tier_of(o, d, splat(facet.y), splat(facet.w)), c, facet, row + k);
-    }
+  for (; i < rows.end[EIGHTS]; i++, row += 1) first[0] = reached_of_eight(first[0], o, d, c, rows.farther[i], row);
+  for (; i < rows.end[FOURS]; i++, row += 1) first[1] = reached_of_four(first[1], o, d, c, rows.farther[i], row);
   for (; i < rows.end[TURNED_TWOS]; i += 2, row += 2)
     EACH (k, 2) {
       const real4 f = rows.farther[i + k];
@@ -168,25 +189,34 @@ __attribute__((always_inline)) static inline crossingL rows_exit(rows_t rows, ve
   first[2] = reached(first[2], first[3].speed, first[3].gap, first[3].row);
   first[0] = reached(first[0], first[2].speed, first[2].gap, first[2].row);
 
-  // The same again for that row alone, exactly.
+  // The facet again, as it was found; then exactly where it is.
   const realL number = first[0].row;
   const rowL found = row_at(rows, number);
   vec3L normal = found.normal;
   if (rows.end[MIRRORED_TWOS] > 0) {
-    const tierL tier = tier_of(o, d, normal.y, found.offset);
-    signsL signs = signs_of_four(tier, c, normal.x, normal.z);
-    const maskL four = number < rows.end[FOURS], turned = number < rows.end[TURNED_TWOS];
-    const realL along_x = normal.x * d.x, along_z = normal.z * d.z, at_x = normal.x * o.x, at_z = normal.z * o.z;
-    const realL of_two = blend(turned, sign_of_two(tier.y, tier.v, along_x + along_z, at_x + at_z),
-                               sign_of_two(tier.y + along_z, tier.v - at_z, along_x, at_x));
-    const realL of_pair = blend(number < rows.end[MIRRORED_TWOS], of_two, splat(1));
-    signs.x = blend(four, signs.x, of_pair);
-    signs.z = blend(four, signs.z, blend(turned, of_pair, splat(1)));
+    const tierL tier = tier_of(o, d, normal.y, found.offset + HAIR_LENGTH);
+    signsL signs = {splat(1), splat(1)};
+    if (rows.end[MIRRORED_TWOS] > rows.end[FOURS]) {
+      const maskL turned = number < rows.end[TURNED_TWOS];
+      const realL along_x = normal.x * d.x, along_z = normal.z * d.z, at_x = normal.x * o.x, at_z = normal.z * o.z;
+      const realL of_two = blend(turned, sign_of_two(tier.y, tier.v, along_x + along_z, at_x + at_z),
+                                 sign_of_two(tier.y + along_z, tier.v - at_z, along_x, at_x));
+      signs.x = blend(number < rows.end[MIRRORED_TWOS], of_two, signs.x);
+      signs.z = blend(turned, of_two, signs.z);
+    }
+    if (rows.end[FOURS] > 0) {
+      const maskL four = number < rows.end[FOURS], eight = number < rows.end[EIGHTS];
+      const signsL of_four = first_signs(tier, c, normal.x, blend(eight, normal.x, normal.z));
+      signs.x = blend(four, of_four.x, signs.x);
+      signs.z = blend(four, of_four.z, signs.z);
+      const maskL other = eight & exchanged(tier, c, signs, normal.x + normal.z);
+      normal = vec3(blend(other, normal.z, normal.x), normal.y, blend(other, normal.x, normal.z));
+    }
     normal.x = flip(normal.x, signs.x);
     normal.z = flip(normal.z, signs.z);
   }
   const realL speed = dot3(normal, d), gap = fmax(found.offset - dot3(normal, o), splat(SMALLEST_GAP));
-  const crossingL crossing = {first[0].speed > 0, gap / fmax(speed, splat(PARALLEL)), normal};
+  const crossingL crossing = {(first[0].speed > 0) & (speed > 0), gap / fmax(speed, splat(PARALLEL)), normal};
   return crossing;
 }
 

@@ -35,7 +35,7 @@
 // for packing, and PoCL's any() is many.
 #if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_compresssi512_mask) && \
     __has_builtin(__builtin_ia32_permvarsf512) && __has_builtin(__builtin_ia32_permvarsi512) &&                        \
-    __has_builtin(__builtin_ia32_vpermi2varps512)
+    __has_builtin(__builtin_ia32_vpermi2varps512) && __has_builtin(__builtin_ia32_pternlogd512_mask)
 #define AVX512 1
 #else
 #define AVX512 0
@@ -175,9 +175,14 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 
 static inline realL splat(real value) { return (realL)(value); }
 
-// x, or -x where `sign` is negative; and what has the sign of -a b.
-static inline realL flip(realL x, realL sign) { return AS_REAL(AS_BITS(x) ^ (AS_BITS(sign) & (bitsL)(SIGN_BIT))); }
-static inline realL opposite(realL a, realL b) { return AS_REAL(~(AS_BITS(a) ^ AS_BITS(b))); }
+// x, or -x where `sign` is negative.
+static inline realL flip(realL x, realL sign) {
+#if LANES == 16 && AVX512
+  return AS_REAL(__builtin_ia32_pternlogd512_mask(AS_BITS(x), AS_BITS(sign), (bitsL)(SIGN_BIT), 0x78, 0xffff));
+#else
+  return AS_REAL(AS_BITS(x) ^ (AS_BITS(sign) & (bitsL)(SIGN_BIT)));
+#endif
+}
 
 // Clang's is one instruction, PoCL's is several.
 #if __has_builtin(__builtin_elementwise_floor)

@@ -33,9 +33,10 @@ def frames(planes: Array) -> list[Array]:
     return found
 
 
-def images(planes: Array, signs: tuple[int, int, int]) -> NDArray[np.int64]:
-    """(F,) the facet that is each one's image when its normal takes these signs; -1 where there is none."""
-    apart, nearest = cKDTree(planes).query(planes * [*signs, 1], p=np.inf)
+def images(planes: Array, carry: Array) -> NDArray[np.int64]:
+    """(F,) the facet that is each one's image when its normal is carried so, (3, 3); -1 where there is none."""
+    carried = np.column_stack([planes[:, :3] @ carry.T, planes[:, 3]])
+    apart, nearest = cKDTree(planes).query(carried, p=np.inf)
     return np.where(apart < SAME, nearest, -1)
 
 

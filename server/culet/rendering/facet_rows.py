@@ -1,8 +1,8 @@
-"""Facets of a convex stone as rows, each of which stands for four, for two or for one of them: what facet_rows.cl
+"""Facets of a convex stone as rows, each of which stands for eight, for four, two or one of them: what facet_rows.cl
 follows light by.
 
-Most cuts have an axis of half turns and mirrors along it, so that in the right axes facets differ in the signs of x and
-z alone. A stone without symmetry has one row for each facet.
+Most cuts have an axis of half or quarter turns and mirrors along it, so that in the right axes facets differ in the
+signs of x and z, and in which is which. A stone without symmetry has one row for each facet.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.geometry.symmetry import SAME, frames, images
+from culet.geometry.symmetry import frames, images
 from culet.rendering.device import Real
 from culet.rendering.layout import constants
 
@@ -22,16 +22,13 @@ Array = NDArray[np.float64]
 
 MOST_FACETS = 512
 """Of a stone whose symmetry is looked for, which takes some 50 ms. What has more is hardly ever cut."""
-COSTS = 13.0, 16.0, 11.0, 11.0, 9.0
-"""Multiplications and comparisons of a row of each kind: they share a port of the processor and take most time."""
-HAIR = 2.5
-"""Steps of a number next to 1, R, by which offsets are too large where light looks for the facet that it reaches first:
-so the gap to the facet that it has just left is positive, however it was rounded."""
+COSTS = 31.0, 22.0, 18.0, 18.0, 12.0
+"""Instructions for a row of each kind, which is what limits the search."""
 _KERNEL = constants("facet_rows.cl")
-TIERS, FOURS, TURNED_TWOS, MIRRORED_TWOS, ONES = (
-    _KERNEL[name] for name in ("TIERS", "FOURS", "TURNED_TWOS", "MIRRORED_TWOS", "ONES")
+EIGHTS, FOURS, TURNED_TWOS, MIRRORED_TWOS, ONES = (
+    _KERNEL[name] for name in ("EIGHTS", "FOURS", "TURNED_TWOS", "MIRRORED_TWOS", "ONES")
 )
-COLUMN_ROWS = _KERNEL["COLUMN_ROWS"]
+COLUMN_ROWS, HAIR = _KERNEL["COLUMN_ROWS"], _KERNEL["HAIR"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,66 +78,63 @@ def _cost(rows: FacetRows) -> float:
 
 def _rows(planes: Array, axes: Array) -> FacetRows:
     turned = np.column_stack([planes[:, :3] @ axes, planes[:, 3]])
-    same, rows, ends = np.empty_like(turned), [np.empty((0, 4))], []
+    same = np.empty_like(turned)
+    rows: list[Array] = []
+    ends: list[int] = []
     for kind, groups in enumerate(_groups(turned)):
-        own = np.array([(turned[group] * _signs(kind, turned[group])).mean(axis=0) for group in groups]).reshape(-1, 4)
-        if kind == TIERS:
-            own = _levelled(own)
-        for group, row in zip(groups, own, strict=True):
-            same[group] = row * _signs(kind, turned[group])
-        rows.append(own)
-        if kind != ONES:
-            rows.append(own[len(own) - len(own) % 2 :])
-        ends.append(sum(map(len, rows)))
+        own: list[Array] = []
+        for group in groups:
+            carry = _carry(kind, turned[group])
+            own.append(np.einsum("nij,nj->ni", carry, turned[group]).mean(axis=0))
+            if kind == EIGHTS and len(group) == 4:
+                own[-1][2] = 0
+            same[group] = own[-1] @ carry  # what carries facets to their row carries it back to them
+        if kind in (TURNED_TWOS, MIRRORED_TWOS):
+            own += own[len(own) - len(own) % 2 :]
+        rows += own
+        ends.append(len(rows))
     same[:, :3] = same[:, :3] @ axes.T
-    return FacetRows(axes, np.concatenate(rows), tuple(ends), same)
+    return FacetRows(axes, np.array(rows), tuple(ends), same)
 
 
-def _signs(kind: int, planes: Array) -> Array:
-    """By which a row of that kind becomes its facets, which are near these."""
-    signs = np.ones_like(planes)
-    if kind in (TIERS, FOURS):
-        signs[:, [0, 2]] = np.where(planes[:, [0, 2]] < 0, -1, 1)
+def _carry(kind: int, planes: Array) -> Array:
+    """(N, 4, 4) orthogonal: what carries the facets of a group of that kind, near these planes, to their row."""
+    carry = np.tile(np.eye(4), (len(planes), 1, 1))
+    if kind in (EIGHTS, FOURS):
+        carry[:, 0, 0], carry[:, 2, 2] = np.where(planes[:, [0, 2]] < 0, -1, 1).T
     elif kind == TURNED_TWOS:
-        signs[1, [0, 2]] = -1
+        carry[1, [0, 2], [0, 2]] = -1
     elif kind == MIRRORED_TWOS:
-        signs[1, 0] = -1
-    return signs
-
-
-def _levelled(tiers: Array) -> Array:
-    """With the same y and offset in both rows of each two, and normals of unit length."""
-    level = tiers[:, [1, 3]].reshape(-1, 2, 2).mean(axis=1).repeat(2, axis=0)
-    across = tiers[:, [0, 2]] * np.sqrt((1 - level[:, :1] ** 2) / (tiers[:, [0, 2]] ** 2).sum(axis=1, keepdims=True))
-    return np.column_stack([across[:, 0], level[:, 0], across[:, 1], level[:, 1]])
+        carry[1, 0, 0] = -1
+    if kind == EIGHTS:
+        steep = np.abs(planes[:, 2]) > np.abs(planes[:, 0])
+        carry[steep] = carry[steep][:, [2, 1, 0, 3]]
+    return carry
 
 
 def _groups(turned: Array) -> list[list[list[int]]]:
-    """By kind of row: facets that share one, of which the first is like the row."""
-    by_turn, by_x, by_z = (images(turned, signs) for signs in ((-1, 1, -1), (-1, 1, 1), (1, 1, -1)))
+    """By kind of row: facets that share one, of which the first is like the row if there are one or two."""
+    by_turn, by_x, by_z = (images(turned, np.diag(signs)) for signs in ((-1, 1, -1), (-1, 1, 1), (1, 1, -1)))
+    exchange = images(turned, np.eye(3)[[2, 1, 0]])
     groups: list[list[list[int]]] = [[] for _ in COSTS]
     left = set(range(len(turned)))
     for facet in range(len(turned)):
         if facet not in left:
             continue
         half, x, z = (int(image[facet]) for image in (by_turn, by_x, by_z))
-        others = left - {facet}
-        if len({half, x, z}) == 3 and others >= {half, x, z}:
-            kind, group = FOURS, [facet, half, x, z]
-        elif half in others:
+        four = {facet, half, x, z}
+        eight = four | {int(exchange[each]) for each in four}
+        axial = x == facet or z == facet
+        if left >= eight and (len(eight) == 8 or (len(eight) == 4 and axial)):
+            kind, group = EIGHTS, [*eight]
+        elif left >= four and len(four) == 4:
+            kind, group = FOURS, [*four]
+        elif half in left - {facet}:
             kind, group = TURNED_TWOS, [facet, half]
-        elif x in others:
+        elif x in left - {facet}:
             kind, group = MIRRORED_TWOS, [facet, x]
         else:
             kind, group = ONES, [facet]
         groups[kind].append(group)
         left -= set(group)
-    waiting = sorted(groups[FOURS], key=lambda four: (*np.round(turned[four[0], [1, 3]], 5),))
-    groups[FOURS] = []
-    while waiting:
-        four = waiting.pop()
-        if waiting and np.abs(turned[four[0], [1, 3]] - turned[waiting[-1][0], [1, 3]]).max() < SAME:
-            groups[TIERS] += [four, waiting.pop()]
-        else:
-            groups[FOURS].append(four)
     return groups
