@@ -154,6 +154,8 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
     // Light outside goes first: it is what makes the pools grow.
     if (pools->away.count >= LANES)
       look_away(world, tile, pools, task);
+    else if (pools->up.count >= LANES)
+      look_up(world, tile, pools, task);
     else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
       look_around(world, tile, pools, task);
     else if (has_full(&pools->inside) || (all_begun && !last))
@@ -170,6 +172,8 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
       work->hit += LANES;
     } else if (pools->away.count > 0)
       look_away(world, tile, pools, task);
+    else if (pools->up.count > 0)
+      look_up(world, tile, pools, task);
     else
       return;
   }
@@ -183,6 +187,7 @@ static inline void begin_chain_tile(chain_work_t *work, int number) {
   clear_inside(&work->pools.inside);
   clear(&work->pools.towards);
   clear(&work->pools.away);
+  clear(&work->pools.up);
 }
 
 // Goes on with a tile for as many steps as are left, each of which takes some tenths of a microsecond to some

@@ -78,7 +78,8 @@ static inline bool advance_path(world_t world, classic_path_t *path, int channel
       }
     }
     const maskL in_room = active & !at_stone;
-    const viewL view = look(world, ray, meeting == 0 ? BY_CAMERA : BY_STONE, meeting == 0 ? backdrop : 0, channels);
+    const viewL view =
+        look(world, ray, in_room, meeting == 0 ? BY_CAMERA : BY_STONE, meeting == 0 ? backdrop : 0, channels);
     const radianceL fallback =
         sky(world, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
     const maskL faces_room = in_room & view.meets;

@@ -38,7 +38,7 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
       if (any_lane(leaves)) {
         polarisationL transmitted = parts.transmitted;
         if (POLARISED) transmitted.axis = outward(stone, transmitted.axis);
-        leave(tile, pools, task, &packet, from_own(stone, outward(stone, packet.origin)),
+        leave(world, tile, pools, task, &packet, from_own(stone, outward(stone, packet.origin)),
               outward(stone, refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal)),
               (real)1 - parts.kept, transmitted, leaves);
       }
