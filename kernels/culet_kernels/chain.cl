@@ -152,10 +152,9 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
     const bool all_begun = work->hit >= hits->count;
     const bool last = all_begun && is_empty(&pools->inside);
     // Light outside goes first: it is what makes the pools grow.
-    if (pools->away.count >= LANES)
-      look_away(world, tile, pools, task);
-    else if (pools->up.count >= LANES)
-      look_up(world, tile, pools, task);
+    pool_t *left = larger_away(pools);
+    if (left->count >= LANES)
+      look_away(world, tile, pools, left, task);
     else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
       look_around(world, tile, pools, task);
     else if (has_full(&pools->inside) || (all_begun && !last))
@@ -170,10 +169,8 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
         enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
               DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
-    } else if (pools->away.count > 0)
-      look_away(world, tile, pools, task);
-    else if (pools->up.count > 0)
-      look_up(world, tile, pools, task);
+    } else if (left->count > 0)
+      look_away(world, tile, pools, left, task);
     else
       return;
   }

@@ -85,10 +85,15 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
     lose(tile, goes_on, &inner, over_channels(task, &inner));
 }
 
-// Takes one packet that can meet the room only, and shows what it sees there. What a mirror sends towards a stone goes on.
-static inline void look_away(world_t world, tile_t *tile, pools_t *pools, task_t task) {
+// The larger of the pools of what meets no stone next.
+static inline pool_t *larger_away(pools_t *pools) {
+  return pools->away.count >= pools->up.count ? &pools->away : &pools->up;
+}
+
+// Takes one packet of these pools, and shows what it sees. What a mirror sends towards a stone goes on.
+static inline void look_away(world_t world, tile_t *tile, pools_t *pools, pool_t *from, task_t task) {
   maskL taken;
-  packetL packet = pop(&pools->away, &taken);
+  packetL packet = pop(from, &taken);
   rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
   maskL towards = taken;
   realL cut = splat(0);
@@ -104,13 +109,6 @@ static inline void look_away(world_t world, tile_t *tile, pools_t *pools, task_t
     scale_weights(&packet, ray.weight);
     put_off(tile, pools, task, towards, &packet);
   }
-}
-
-// Takes one packet that can meet the sky only.
-static inline void look_up(world_t world, tile_t *tile, pools_t *pools, task_t task) {
-  maskL taken;
-  const packetL packet = pop(&pools->up, &taken);
-  show(tile, task, taken, &packet, seen_sky(world, packet.direction, BY_STONE, 0, channels_of(task)));
 }
 
 // Takes one packet that may meet a stone: it enters, or goes on through the room.

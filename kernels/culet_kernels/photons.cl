@@ -170,8 +170,7 @@ static inline void follow(world_t world, __constant const map_frame_t *frame, __
                           photons_t *photons, task_t task, landings_t *to, bool last) {
   pools_t *pools = &photons->pools;
   for (;;) {
-    pool_t *left =
-        pools->away.count >= pools->up.count ? &pools->away : &pools->up; // of both some is counted, or lands
+    pool_t *left = larger_away(pools);
     if (left->count >= LANES || (last && is_empty(&pools->inside) && pools->towards.count == 0 && left->count > 0)) {
       maskL taken;
       const packetL packet = pop(left, &taken);

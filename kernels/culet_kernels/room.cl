@@ -140,15 +140,6 @@ static inline realL past_stones(world_t world, vec3L point) {
   return part;
 }
 
-// What the sky shows of a ray that meets nothing else.
-static inline radianceL seen_sky(world_t world, vec3L direction, int viewer, const radianceL *backdrop,
-                                 channels_t channels) {
-  radianceL radiance = backdrop ? *backdrop : sky(world, direction, channels);
-  if (viewer == BY_STONE && DECIDED(HEAD, world.scene->has_head))
-    hide_by_head(world, direction, direction.x <= direction.x, channels, &radiance);
-  return radiance;
-}
-
 // What a ray that meets no stone shows, of the lanes that are `wanted`. What the camera sees in place of the sky is `backdrop`, if
 // that is not null.
 static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, const radianceL *backdrop,
@@ -164,22 +155,11 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
   const int has_map = DECIDED(LIGHT_MAP, scene->has_map);
   const int endless = walls_kind == NONE ? floor_kind == STUDIO_FLOOR : 0;
   const int same = has_map ? 0 : endless;
-  if (viewer == BY_STONE ? same : 0) { // the same wherever it is met
-    view.meets = ray.direction.y < -HORIZON;
-    if (any_lane(wanted & !view.meets)) view.radiance = seen_sky(world, ray.direction, viewer, backdrop, channels);
-    EACH_CHANNEL (k, channels)
-      view.radiance.channel[k] =
-          blend(view.meets, splat(scene->floor_colour[channels.first + k]), view.radiance.channel[k]);
-    return view;
-  }
-  const int first = floor_kind == NONE ? 1 : 0, last = walls_kind == NONE ? 1 : MAX_SURFACES;
-  if (first == last) {
-    view.radiance = seen_sky(world, ray.direction, viewer, backdrop, channels);
-    return view;
-  }
+  const int plain = viewer == BY_STONE ? same : 0; // a floor that is the same wherever it is met
+  const int first = floor_kind == NONE ? 1 : plain, last = walls_kind == NONE ? 1 : MAX_SURFACES;
 
   realL nearest = splat(1e30f), centre_along = splat(0), centre_across = splat(0);
-  maskL met = none, mirror = none, studio = none;
+  maskL met = plain ? ray.direction.y < -HORIZON : none, mirror = none, studio = none;
   radianceL from_sky = black();
   placeL place;
   place.surface = (intL)(first);
@@ -203,7 +183,17 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
     mirror = kind == MIRROR ? mirror | nearer : mirror & !nearer;
     if (floor_kind == STUDIO_FLOOR) studio = i == 0 ? nearer : studio & !nearer;
   }
-  if (any_lane(wanted & !met)) view.radiance = seen_sky(world, ray.direction, viewer, backdrop, channels);
+  if (any_lane(wanted & !met)) {
+    view.radiance = backdrop ? *backdrop : sky(world, ray.direction, channels);
+    if (viewer == BY_STONE && DECIDED(HEAD, scene->has_head))
+      hide_by_head(world, ray.direction, !none, channels, &view.radiance);
+  }
+  if (plain) {
+    view.meets = met;
+    EACH_CHANNEL (k, channels)
+      view.radiance.channel[k] = blend(met, splat(scene->floor_colour[channels.first + k]), view.radiance.channel[k]);
+    return view;
+  }
   if (!any_lane(met)) return view;
   nearest = blend(met, nearest, splat(0));
   view.point = along(ray.origin, nearest, ray.direction);
