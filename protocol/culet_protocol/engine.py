@@ -47,6 +47,14 @@ class GetSession(Message):
     session: SessionId
 
 
+class GetScene(Message):
+    """Ask for the scene that a session showed at `step` (the latest if None), with camera and stones where they were."""
+
+    type: Literal["get_scene"] = "get_scene"
+    session: SessionId
+    step: int | None = None
+
+
 class ListSessions(Message):
     """Ask for all sessions, each as GetSession answers it: what a gateway needs that takes over from one that died."""
 
@@ -159,6 +167,7 @@ Request = (
     OpenSession
     | CloseSession
     | GetSession
+    | GetScene
     | ListSessions
     | Control
     | Ask

@@ -318,6 +318,27 @@ async def test_the_frame_of_a_step_is_the_picture_that_was_shown_then(gateway: G
     assert_problem(await gateway.http.get(path, params={"step": 10**9}), 404)
 
 
+async def test_the_scene_of_a_step_makes_another_session_that_shows_the_same_picture(gateway: Gateway) -> None:
+    scene = {"sampling": {"samples_per_pixel": 1}, "simulation": {"gravity": 0}, "stones": [{"velocity": [2, 0, 0]}]}
+    session = await gateway.session(scene)
+    path = f"/api/sessions/{session}"
+    async with gateway.viewer(session) as viewer:
+        start = (await gateway.http.get(f"{path}/scene")).json()
+        assert start == (await gateway.http.get(path)).json()["scene"]
+        await gateway.http.post(f"{path}/events", json={"type": "toggle_fall"})
+        await viewer.until(lambda: bool(viewer.frames) and viewer.frames[-1].simulation_time > 0.1)
+        step = viewer.frames[-1].step
+        await gateway.http.patch(path, json={"camera": {"position": [3, 2, 3]}})
+    shown = (await gateway.http.get(f"{path}/scene", params={"step": step})).json()
+    assert shown["camera"] == start["camera"]
+    assert shown["stones"][0]["position"][0] > start["stones"][0]["position"][0] + 0.15
+    seen = await gateway.http.get(f"{path}/frame.tga", params=SMALL | {"step": step})
+    another = await gateway.http.get(f"/api/sessions/{await gateway.session(shown)}/frame.tga", params=SMALL)
+    assert another.content == seen.content
+    assert_problem(await gateway.http.get(f"{path}/scene", params={"step": 10**9}), 404)
+    assert_problem(await gateway.http.get(f"{path}/scene", params={"step": -1}), 422, "step")
+
+
 async def test_the_frame_of_a_session_is_the_same_picture_as_png_and_as_tga(gateway: Gateway) -> None:
     path = f"/api/sessions/{await gateway.session({'sampling': {'samples_per_pixel': 1}})}/frame"
     targa, png = [await gateway.http.get(f"{path}.{ending}", params=SMALL) for ending in ("tga", "png")]

@@ -12,6 +12,7 @@ export type Effect =
   | { kind: "select"; target: Target }
   | { kind: "send"; event: (target: Target) => SessionEvent }
   | { kind: "download"; format: Format }
+  | { kind: "copy"; what: "picture" | "link" }
   | { kind: "stones"; command: "remove" | "putBack" }
   | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
@@ -93,6 +94,8 @@ export const ACTIONS: readonly Action[] = [
   edit("undo", "ctrl+z", "Undo"),
   edit("redo", "ctrl+shift+z", "Redo"),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
+  letter("copy_picture", "X", "Copy the picture", { kind: "copy", what: "picture" }),
+  letter("copy_link", "K", "Copy a link to this view", { kind: "copy", what: "link" }),
   {
     name: "keys",
     label: "All keys",

@@ -18,7 +18,7 @@ import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
 import type { SessionEvent } from "./events";
 import { FallButton } from "./fall-button";
-import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
+import { chooseFile, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
 import { Findings } from "./findings";
 import { framed, framingPatch } from "./framing";
 import { placeOf } from "./gestures";
@@ -32,15 +32,17 @@ import { listenToPointers } from "./pointer-input";
 import { expose, header } from "./probe";
 import { OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
+import { Saving } from "./saving";
 import { SceneStrip } from "./scene-strip";
 import { Screen } from "./screen";
-import { sessionAddress, streamUrl, wantedSession } from "./session-url";
+import { sessionAddress, streamUrl, type Wanted, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
 import { StoneCommands } from "./stone-commands";
 import { idsOf, stonePatch, stonesOf } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
+import { fitted, LinkError, unpackedView } from "./view-link";
 import { describeChange, INITIAL, inVain, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
 import { Welcome } from "./welcome";
@@ -63,6 +65,7 @@ const toasts = new Toasts(element("toasts", HTMLElement));
 const announcement = element("announcement", HTMLElement);
 const statusLine = element("status", HTMLElement);
 const PROBLEMS_KEPT = 100;
+const VIEW_REFUSED = "This server cannot show the view of this link.";
 const COME_BACK = "H, Esc or a tap on the picture brings everything back.";
 const problems: string[] = [];
 const files = new OpenedFiles();
@@ -88,6 +91,12 @@ const stones = new StoneCommands({
   tell: problem,
 });
 
+const saving = new Saving({
+  seen: () => (session && viewer?.lastFrame ? { ...viewer.lastFrame, session } : null),
+  scene: () => viewer?.state.scene ?? null,
+  note: (text) => toasts.note(text),
+});
+
 /** Of one stone all was told when its mesh was opened. */
 const findings = new Findings(
   async () => (session === null ? [] : (await rest.findSession(session)).findings),
@@ -99,8 +108,8 @@ const panel = new Panel(element("panel", HTMLElement), {
   perform,
   stones,
   removals: () => stones.removals,
-  saveTarga: () => attempt(() => savePicture("tga")),
-  saveScene: () => attempt(saveScene),
+  savePicture: (format) => attempt(() => saving.picture(format)),
+  saveScene: () => attempt(() => saving.scene()),
   openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
   openMesh: () => chooseFile(MESH_TYPES, (file) => attempt(() => openMesh(file))),
   openSky: () => chooseFile(SKY_TYPES, (file) => attempt(() => openSky(file))),
@@ -135,7 +144,8 @@ listenToPointers(
 );
 
 function perform({ effect }: Action): void {
-  if (effect.kind === "download") attempt(() => savePicture(effect.format));
+  if (effect.kind === "download") attempt(() => saving.picture(effect.format));
+  else if (effect.kind === "copy") attempt(() => copy[effect.what]());
   else if (effect.kind === "page") onPage[effect.command]();
   else if (!viewer) problem("There is no session yet.");
   else if (effect.kind === "stones") stones[effect.command]();
@@ -148,6 +158,8 @@ function send(to: Viewer, event: SessionEvent): void {
   if (vain) toasts.note(vain);
   else to.send(event);
 }
+
+const copy = { picture: () => saving.copyPicture(), link: () => saving.copyLink() };
 
 /** What changes the page alone. */
 const onPage = {
@@ -175,23 +187,6 @@ function attempt(work: () => Promise<void>): void {
 function problem(text: string, about?: string): void {
   if (problems.push(text) > PROBLEMS_KEPT) problems.shift();
   toasts.problem(text, about);
-}
-
-async function savePicture(format: rest.Format): Promise<void> {
-  const frame = viewer?.lastFrame;
-  if (!session || !frame) throw new Error("There is no picture yet.");
-  const clear = toasts.note("Rendering the picture at full quality\u2026");
-  try {
-    download(await rest.picture(session, frame.step, format), `culet-${frame.step}.${format}`);
-  } finally {
-    clear();
-  }
-}
-
-async function saveScene(): Promise<void> {
-  const scene = viewer?.state.scene;
-  if (!scene) throw new Error("There is no scene yet.");
-  download(new Blob([`${JSON.stringify(scene, null, 2)}\n`], { type: "application/json" }), "scene.json");
 }
 
 async function openScene(file: File): Promise<void> {
@@ -339,8 +334,8 @@ function watch(id: string): void {
 }
 
 /** The id of a session that is made for this window. */
-async function newSession(preset?: string): Promise<string> {
-  const { id, scene } = await rest.createSession(preset);
+async function newSession(preset: string | undefined): Promise<string> {
+  const { id, scene } = await rest.createSession(preset === undefined ? {} : { preset });
   const patch = framingPatch(scene, aspect());
   if (patch) await rest.patchSession(id, patch);
   return id;
@@ -348,22 +343,38 @@ async function newSession(preset?: string): Promise<string> {
 
 /** Find or make the session; after `tries` that failed, since the server was not ready. */
 async function start(tries = 0): Promise<void> {
-  const wanted = wantedSession(location.search);
+  const wanted = wantedSession(location.search, location.hash);
   if (wanted.kind === "invalid") {
     return obstacle.show(`${wanted.id} is not the id of a session.`, "Start a new session", startAnew);
   }
   try {
-    if (wanted.kind === "session") await rest.findSession(wanted.id);
-    watch(wanted.kind === "session" ? wanted.id : await newSession(wanted.preset));
+    watch(await sessionFor(wanted));
     obstacle.hide();
   } catch (error) {
-    const known = asProblem(error);
     banner.show(null);
+    if (error instanceof LinkError) return obstacle.show(error.message, "Start a new session", startAnew);
+    const known = asProblem(error);
+    if (wanted.kind === "view" && known.status === 422) {
+      return obstacle.show(`${VIEW_REFUSED}\n${known.message}`, "Start a new session", startAnew);
+    }
     if (wanted.kind === "session" && known.status === 404) {
       return obstacle.show(obstacleText(CloseCode.UNKNOWN_SESSION, ""), "Start a new session", startAnew);
     }
     if (rest.isPassing(known)) later(known.message, tries, start);
     else obstacle.show(known.message, "Try again", () => attempt(start));
+  }
+}
+
+/** The id of the session that is there, or of the one that is made. */
+async function sessionFor(wanted: Exclude<Wanted, { kind: "invalid" }>): Promise<string> {
+  switch (wanted.kind) {
+    case "session":
+      await rest.findSession(wanted.id);
+      return wanted.id;
+    case "view":
+      return (await rest.createSession({ scene: fitted(await unpackedView(wanted.packed), aspect()) })).id;
+    case "new":
+      return newSession(wanted.preset);
   }
 }
 
@@ -420,6 +431,8 @@ expose({
   },
   problems,
 });
+// A link that is pasted over one that could not be read is no other page to the browser.
+window.addEventListener("hashchange", () => location.reload());
 waiting.show("Connecting\u2026");
 attempt(async () => strip.show(await rest.presets(), choosePreset));
 attempt(async () => panel.choices.addMaterials(await rest.materials()));

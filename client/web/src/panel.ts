@@ -13,6 +13,8 @@ import { CutPanel } from "./cut-panel";
 import { EditButtons } from "./edit-buttons";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
+import type { Format } from "./rest";
+import { FORMATS } from "./saving";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { withFirst } from "./stones";
 import { SurfacePanel } from "./surface-panel";
@@ -24,7 +26,7 @@ export interface PanelActions {
   stones: StoneActions;
   /** How many stones this viewer may put back. */
   removals: () => number;
-  saveTarga: () => void;
+  savePicture: (format: Format) => void;
   saveScene: () => void;
   openScene: () => void;
   openMesh: () => void;
@@ -127,7 +129,9 @@ export class Panel {
   private addFiles(section: Section): void {
     const button = (label: string, act: () => void) => section.add(new Command(label, act));
     this.addButton(section, actionNamed("download"));
-    button("Save the picture (.tga)", () => this.actions.saveTarga());
+    for (const [format, label] of FORMATS) button(label, () => this.actions.savePicture(format));
+    this.addButton(section, actionNamed("copy_picture"));
+    this.addButton(section, actionNamed("copy_link"));
     button("Save the scene (.json)", () => this.actions.saveScene());
     button("Open a scene\u2026", () => this.actions.openScene());
     button("Open a mesh\u2026", () => this.actions.openMesh());

@@ -78,12 +78,13 @@ class SessionAnswer(Model):
     stream: Annotated[str, Field(description="Path of the WebSocket; see the protocol's specification.")]
 
 
+Step = Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")]
+
+
 class FrameQuery(Model):
     """Which state, and how large."""
 
-    step: Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")] | None = (
-        None
-    )
+    step: Step | None = None
     width: Width | None = None
     height: Height | None = None
 
@@ -115,6 +116,18 @@ async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
     session = gateway.sessions.get(session_id)
     await gateway.sessions.describe(session)
     return _answer(session)
+
+
+@router.get("/api/sessions/{session_id}/scene", responses=answers(404, 422, 429, 503))
+async def get_scene(
+    session_id: str, gateway: ThisGateway, step: Annotated[Step | None, Query()] = None
+) -> dict[str, Any]:
+    """The scene that a session shows, or showed at `step`: with the camera as it was, and every stone where it was.
+
+    A session that is made of this scene shows the same picture. The scene of the session itself, `GET
+    /api/sessions/{id}`, has the stones where they start.
+    """
+    return await gateway.sessions.scene_shown(gateway.sessions.get(session_id), step)
 
 
 @router.patch("/api/sessions/{session_id}", responses=answers(404, 413, 422, 429, 503))

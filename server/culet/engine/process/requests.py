@@ -76,6 +76,9 @@ class Requests:
                 return {}, None
             case protocol.GetSession():
                 return await described(self.sessions.get(request.session)), None
+            case protocol.GetScene():
+                past = self.sessions.get(request.session).session.recall(request.step)
+                return {"step": past.step, "scene": past.scene.model_dump(mode="json")}, None
             case protocol.ListSessions():
                 clients = [
                     await described(live) | {"client": self.sessions.client(live)} for live in list(self.sessions)
