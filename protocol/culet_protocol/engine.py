@@ -48,7 +48,7 @@ class GetSession(Message):
 
 
 class GetScene(Message):
-    """Ask for the scene that a session showed at `step` (the latest if None), with camera and stones where they were."""
+    """The scene that a session showed at `step` (the latest if None), with camera and stones where they were."""
 
     type: Literal["get_scene"] = "get_scene"
     session: SessionId

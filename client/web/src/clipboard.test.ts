@@ -49,5 +49,7 @@ it("that refuses says why, and the text is there to be copied by hand", async ()
 it("is not blamed for a picture that could not be rendered", async () => {
   vi.stubGlobal("ClipboardItem", Item);
   vi.stubGlobal("navigator", { clipboard: { write: ([item]: [Item]) => item.parts["image/png"] } });
-  await expect(copyPicture(() => Promise.reject(new Error("the engine is down")))).rejects.toThrow("the engine is down");
+  await expect(copyPicture(() => Promise.reject(new Error("the engine is down")))).rejects.toThrow(
+    "the engine is down",
+  );
 });
