@@ -142,11 +142,12 @@ class LivePainter:
             self._tally.counters.refinements += 1
         else:
             self._tally.counters.frames_rendered += 1
+        governor, seconds = live.quality.governor, work.picture.seconds
+        asked = live.frames_per_second, self._share_of(live)
         if work.plan is not None:
-            seconds = work.picture.seconds
-            live.quality.governor.rendered(
-                work.plan, seconds, work.spent - seconds, live.frames_per_second, self._share_of(live)
-            )  # fmt: skip
+            governor.rendered(work.plan, seconds, work.spent - seconds, *asked)
+        elif work.kind is Kind.FULL:
+            governor.rested(work.shown.scene, work.wanted, seconds, *asked)
         self._sender.publish(live.session, live.outgoing, work.frame, work.begun_at)
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
