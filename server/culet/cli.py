@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from culet import __version__
 from culet.command.help import ListedHelp
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
-from culet.command.places import check_place, opened
+from culet.command.places import opened
 from culet.command.settings import options_of
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.endpoints import check_trusted
 from culet.engine.process.limits import Limits
-from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
 from culet.logs import configure
+from culet.places import check_place
 from culet.settings import Settings
 from culet.study.command import study_app
-
-if TYPE_CHECKING:
-    from culet.rendering.renderer import Picture
+from culet.version import __version__
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -78,7 +74,7 @@ def culet(
 def render(
     scene: SceneFile = None,
     out: Annotated[
-        Path, typer.Option("-o", "--out", metavar="FILE", help="Picture: .tga .png .jpg, or linear: .exr .npy")
+        Path, typer.Option("-o", "--out", metavar="FILE", help="Picture: .png .jpg .webp .tga, or linear: .exr .npy")
     ] = Path("out.png"),
     width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 640,
     height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 360,
@@ -90,42 +86,16 @@ def render(
     sky: SkyFile = None,
 ) -> None:
     """Render a still picture into a file."""
-    from culet.rendering.files import ENCODERS, write
-    from culet.rendering.renderer import Renderer
+    from culet.rendering.files import FORMATS
+    from culet.stills import render_stage
 
     with errors_in_one_line():
-        check_place(out, "out", ENCODERS)
+        check_place(out, "out", FORMATS)
         stage = read_stage(scene, preset, mesh, sky)
-        picture = Renderer().picture(stage, width, height)
-        wanted = samples or stage.scene.sampling.samples_per_pixel
         with progress_bar(f"rendering {out.name}") as advance:
-            for part in picture.refine_in_pieces(wanted, PROGRESS_SECONDS):
-                advance(part)
-        try:
-            write(picture, out)
-        except OSError as error:
-            raise InputError(f"out: cannot write {out}: {error.strerror}", "out") from error
-        typer.echo(f"{out}: {width} x {height}, {_quality(picture)}")
-
-
-def _quality(picture: Picture) -> str:
-    """How right a picture is."""
-    samples = "1 sample" if picture.samples == 1 else f"{picture.samples} samples"
-    error = picture.error_estimate()
-    estimated = "" if math.isnan(error) else f", estimated error {error:.2g}"
-    missing = f"mean radiance too low by at most {picture.truncation_bound():.2g} (light cut off)"
-    return f"{samples} per pixel, {missing}{estimated}{_light_quality(picture)}"
-
-
-def _light_quality(picture: Picture) -> str:
-    """How right shadows and caustics are, where there are any."""
-    if math.isnan(picture.light_bound()):
-        return ""
-    what = "shadows" if picture.shows_shadows_only() else "shadows and caustics"
-    return (
-        f"; {what} miss at most {picture.light_bound():.2g} of the light that meets stones, "
-        f"estimated error {picture.light_error():.2g}"
-    )
+            picture = render_stage(stage, width, height, samples=samples, progress=advance)
+        picture.save(out)
+        typer.echo(f"{out}: {width} x {height}, {picture.quality()}")
 
 
 @app.command()
@@ -145,10 +115,8 @@ def simulate(
 
     A stone that stands on the floor is lifted to y = 1.5 first, several stones all together.
     """
-    from culet.simulation.paths import ENDINGS, write
-    from culet.simulation.paths import record as record_path
-    from culet.simulation.several_paths import record_several
-    from culet.simulation.staged import dropped
+    from culet.falls import simulate_stage
+    from culet.simulation.paths import ENDINGS
 
     with errors_in_one_line():
         check_place(out, "out", ENDINGS)
@@ -156,15 +124,13 @@ def simulate(
             check_place(plot, "plot", ["png"])
         stage = read_stage(scene, preset, mesh)
         with progress_bar("simulating") as advance:
-            alone = len(stage.shapes) <= 1 and all(stone.scale == 1 for stone in stage.scene.stones)
-            record_all = record_path if alone else record_several
-            path = record_all(dropped(stage), seconds, advance)
-        write(path, out)
+            motion = simulate_stage(stage, seconds, progress=advance)
+        motion.save(out)
         if plot is not None:
             from culet.simulation.plot import plot as draw
 
-            draw(path, plot)
-        typer.echo(f"{out}: {len(path.time)} states, {path.time[-1]:g} s")
+            draw(motion.path, plot)
+        typer.echo(f"{out}: {len(motion.time)} states, {motion.time[-1]:g} s")
 
 
 @app.command()

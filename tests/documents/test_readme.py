@@ -13,6 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 import typer
 from PIL import Image
 
@@ -115,3 +116,18 @@ def test_the_examples_of_the_command_line_run(tmp_path: Path) -> None:
     assert size_and_format(tmp_path / "tetrahedron.tga") == ((640, 360), "TGA")
     assert (tmp_path / "wide-table.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01", "OpenEXR's magic number"
     assert (tmp_path / "path.csv").read_text().count("\n") > 3 / (1 / 30), "a line for every step, and a header"
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
+def test_the_examples_of_python_run(tmp_path: Path, document: str) -> None:
+    """In one process, in their order."""
+    text = (ROOT / document).read_text(encoding="utf-8")
+    examples = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert examples
+    done = subprocess.run(
+        [sys.executable, "-c", "\n".join(examples)], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    if document == "README.md":
+        assert size_and_format(tmp_path / "ruby.webp") == ((320, 240), "WEBP")
+        assert size_and_format(tmp_path / "in-the-air.png") == ((320, 240), "PNG")

@@ -14,7 +14,6 @@ from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Resp
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 
-from culet import __version__
 from culet.gateway import catalogue, health, problems, session_routes, stills, upload_routes
 from culet.gateway.access_log import AccessLog
 from culet.gateway.admission import Admission
@@ -30,6 +29,7 @@ from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
 from culet.gateway.still_places import StillPlaces
 from culet.gateway.uploads import Uploads
+from culet.version import __version__
 
 log = logging.getLogger(__name__)
 

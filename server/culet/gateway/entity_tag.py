@@ -7,7 +7,7 @@ import re
 
 from pydantic import BaseModel
 
-from culet import __version__
+from culet.version import __version__
 
 _TAG = re.compile(r'(?:W/)?("[^"]*")')
 

@@ -15,13 +15,12 @@ from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import opened
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, report_console
-from culet.errors import InputError, SceneError
+from culet.errors import SceneError
 
 if TYPE_CHECKING:
-    from culet.stage import Stage
     from culet.study.comparison import Difference
+    from culet.study.measuring import Study
     from culet.study.report import Report
-    from culet.study.studies import Effort
 
 study_app = typer.Typer(
     help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.", no_args_is_help=True
@@ -55,11 +54,7 @@ def rendering(
 
     Stopped with Ctrl-C it goes on where it was when it is started again.
     """
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_rendering
-
-        stage, effort = _with_stone(read_stage(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
-        _tell(study_rendering(stage, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
+    _measure("rendering", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
 
 
 @study_app.command()
@@ -72,11 +67,7 @@ def simulation(
     fresh: Fresh = False,
 ) -> None:
     """Sweep integrators and step sizes on motions whose truth is known."""
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_simulation
-
-        stage = _with_stone(read_stage(scene, preset, mesh))
-        _tell(study_simulation(stage, out, _progress, quick=quick, fresh=fresh), out)
+    _measure("simulation", (scene, preset, mesh), out, quick=quick, fresh=fresh)
 
 
 @study_app.command()
@@ -92,12 +83,7 @@ def streaming(
     height: Height = None,
 ) -> None:
     """Sweep codecs and qualities on moving and still frames."""
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_streaming
-
-        stage, effort = _with_stone(read_stage(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
-        size = effort.width, effort.height
-        _tell(study_streaming(stage, out, _progress, size=size, quick=quick, fresh=fresh), out)
+    _measure("streaming", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
 
 
 @study_app.command()
@@ -113,12 +99,7 @@ def caustics(
 
     The light is a point's, then a sun's; the scene's own is out. Stopped with Ctrl-C it goes on where it was.
     """
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_caustics
-
-        _tell(
-            study_caustics(_with_stone(read_stage(scene, preset, mesh)), out, _progress, quick=quick, fresh=fresh), out
-        )
+    _measure("caustics", (scene, preset, mesh), out, quick=quick, fresh=fresh)
 
 
 @study_app.command()
@@ -244,29 +225,34 @@ def headline(
             write_into(into, text)
 
 
-def _with_stone(stage: Stage) -> Stage:
-    if not stage.shapes:
-        raise SceneError("stones: a study needs a stone; the scene has none", "stones")
-    return stage
+def _measure(
+    study: Study,
+    named: tuple[Path | None, str | None, Path | None] | tuple[Path | None, str | None, Path | None, Path | None],
+    out: Path,
+    *,
+    quick: bool,
+    fresh: bool,
+    size: tuple[int | None, int | None] = (None, None),
+) -> None:
+    """Of the stage that the user named: a scene, a preset, a mesh, a sky."""
+    from culet.study.measuring import measure_stage
 
-
-def _effort(width: int | None, height: int | None, *, quick: bool) -> Effort:
-    """The usual one, at the size that was asked for."""
-    from culet.study.studies import FULL, QUICK
-
-    usual = QUICK if quick else FULL
-    return usual._replace(width=width or usual.width, height=height or usual.height)
+    with _errors(), _interruptible(out):
+        width, height = size
+        _tell(
+            measure_stage(
+                study, read_stage(*named), out, _progress, quick=quick, fresh=fresh, width=width, height=height
+            ),
+            out,
+        )
 
 
 @contextlib.contextmanager
 def _errors() -> Iterator[None]:
-    with errors_in_one_line():
-        try:
-            yield
-        except ModuleNotFoundError as error:
-            if error.name is None or error.name.split(".")[0] != "skimage":
-                raise
-            raise InputError("a study needs scikit-image: pip install 'culet[study]'") from error
+    from culet.study.measuring import needs_of_studies
+
+    with errors_in_one_line(), needs_of_studies():
+        yield
 
 
 @contextlib.contextmanager

@@ -88,7 +88,7 @@ def encode_still(picture: Picture, file_format: str) -> bytes:
     from culet.rendering.renderer import Picture as OpenClPicture
 
     assert isinstance(picture, OpenClPicture)  # noqa: S101 - made by `open_renderer`
-    return encode(picture, file_format)
+    return encode(file_format, picture.rgb, picture.linear)
 
 
 async def serve(

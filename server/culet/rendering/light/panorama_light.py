@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from culet.optics.panoramas import Panorama, check_panorama
 from culet.rendering.light.lamp_field import ALL, normals
@@ -148,6 +147,8 @@ def _moments(pixels: Panorama) -> Array:
 
 
 def _spots(pixels: Panorama) -> tuple[RoundLamp, ...]:
+    from scipy import ndimage  # few scenes need it, and importing it takes 50 ms
+
     height, width = pixels.shape[:2]
     grey = pixels.mean(axis=-1, dtype=np.float32)
     solid_angle = _solid_angles(height, width)
