@@ -13,7 +13,7 @@ export type Effect =
   | { kind: "send"; event: (target: Target) => SessionEvent }
   | { kind: "download"; format: Format }
   | { kind: "copy"; what: "picture" | "link" }
-  | { kind: "stones"; command: "remove" | "putBack" }
+  | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
   | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
 export interface Action {
@@ -64,6 +64,7 @@ function dolly(forward: number): Effect {
   return { kind: "send", event: (target) => ({ type: "dolly", target, forward }) };
 }
 
+const LOOK = { one: "Look at the stone", several: "Look at the chosen stone, or all" };
 const PUT_BACK = { one: "Put the stone back", several: "Put the stones back" };
 
 export const ACTIONS: readonly Action[] = [
@@ -77,6 +78,7 @@ export const ACTIONS: readonly Action[] = [
   letter("in", "I", "In", dolly(STEP), true),
   letter("out", "O", "Out", dolly(-STEP), true),
   plain("reset_camera", "F", "Reset the camera", "reset_camera"),
+  letter("look", "V", LOOK, { kind: "stones", command: "lookAround" }),
   plain("fall", "P", "Fall or pause", "toggle_fall"),
   plain("reset_stone", "R", PUT_BACK, "reset_stone"),
   plain("mirror", "M", "Mirror or checker", "toggle_mirror"),

@@ -122,6 +122,7 @@ export class Panel {
     const target = section.add(new Choice<Target>("What", options, "camera"));
     target.onInput((name) => this.actions.perform(actionNamed(name)));
     for (const name of MOVES) this.addButton(section, actionNamed(name)).element.classList.add("half");
+    this.addButton(section, actionNamed("look"));
     this.addButton(section, actionNamed("reset_camera"));
     return target;
   }

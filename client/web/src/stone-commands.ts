@@ -42,6 +42,13 @@ export class StoneCommands {
     this.toChosen("look_at_stone");
   }
 
+  /** At the chosen stone, or at all. */
+  lookAround(): void {
+    const { scene, stone } = this.world.state();
+    if (stonesOf(scene).length === 0) this.world.tell(NO_STONE);
+    else this.world.send(stone === null ? { type: "look_at_stone" } : { type: "look_at_stone", stone });
+  }
+
   reset(): void {
     this.toChosen("reset_stone");
   }
