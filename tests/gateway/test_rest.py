@@ -361,7 +361,17 @@ async def test_the_description_says_of_what_kind_every_picture_is(gateway: Gatew
         (paths[f"{session}.tga"]["get"], {"image/x-tga"}),
         (paths[f"{session}.png"]["get"], {"image/png"}),
     ):
-        assert set(operation["responses"]["200"]["content"]) == kinds
+        content = operation["responses"]["200"]["content"]
+        assert set(content) == kinds
+        assert all(answer["schema"] == {"type": "string", "format": "binary"} for answer in content.values())
+
+
+async def test_generated_clients_get_names_that_can_be_read(gateway: Gateway) -> None:
+    paths = (await gateway.http.get("/openapi.json")).json()["paths"]
+    names = [operation["operationId"] for operations in paths.values() for operation in operations.values()]
+    assert len(set(names)) == len(names)
+    assert {"render_png", "frame_exr", "create_session", "post_event", "upload_mesh"} <= set(names)
+    assert [name for name in names if "api" in name] == []
 
 
 async def test_sessions_are_capped(engine: Endpoints, tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from fastapi import FastAPI
 from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
+from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 
@@ -49,6 +50,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         openapi_url=None,  # FastAPI would make the document on the loop, which takes longer than a frame
         docs_url=None,  # its pages load their scripts from the network
         redoc_url=None,
+        generate_unique_id_function=_operation_id,
         lifespan=_lifespan,
     )
     app.state.gateway = _gateway(settings)
@@ -87,12 +89,17 @@ def create_app(settings: GatewaySettings) -> FastAPI:
             CORSMiddleware,
             allow_origins=settings.allow_origin,
             allow_methods=("GET", "HEAD", "POST", "PATCH", "DELETE"),
-            expose_headers=("Location", "Retry-After", "Content-Disposition"),
+            expose_headers=("Location", "Retry-After", "Content-Disposition", "ETag"),
             allow_private_network=True,
         )
     app.add_middleware(SecurityHeaders, settings=settings)
     app.add_middleware(AccessLog, metrics=app.state.gateway.metrics)
     return app
+
+
+def _operation_id(route: APIRoute) -> str:
+    """What generated clients call a route: `create_session`, `render_png`."""
+    return route.name
 
 
 @contextlib.asynccontextmanager

@@ -11,7 +11,7 @@ from culet.gateway import stream as streaming
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
-from culet.gateway.picture_response import PictureResponse
+from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers, check_numbers, finite
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
@@ -187,11 +187,15 @@ def _offer_frame(ending: str, file_format: Format) -> None:
         f"{FRAME}.{ending}",
         frame,
         methods=["GET"],
+        name=f"frame_{ending}",
         summary=f"Frame as {ending.upper()}",
         description="What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a "
         "pixel.",
         response_class=response_class_of(file_format),
-        responses=answers(404, 422, 429, 503),
+        responses={
+            **picture_answers(MEDIA_TYPES[file_format], headers=("Content-Disposition",)),
+            **answers(404, 422, 429, 503),
+        },
     )
 
 

@@ -11,7 +11,7 @@ from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.entity_tag import entity_tag, names
 from culet.gateway.parts import ThisGateway
-from culet.gateway.picture_response import PictureResponse
+from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
@@ -111,12 +111,17 @@ def _offer(ending: str, file_format: Format) -> None:
         f"/api/render.{ending}",
         render_preset,
         methods=["GET"],
+        name=f"render_{ending}",
         summary=f"Render Preset as {ending.upper()}",
         description="A preset, rendered"
         + (" as linear radiance" if file_format == "exr" else "")
         + ". `If-None-Match` with the `ETag` of an earlier answer asks whether the picture would be another.",
         response_class=response_class_of(file_format),
-        responses={304: {"description": "The picture is as it was."}, **answers(404, 422, 429, 503)},
+        responses={
+            **picture_answers(MEDIA_TYPES[file_format], headers=("ETag", "Cache-Control", "Vary")),
+            304: {"description": "The picture is as it was."},
+            **answers(404, 422, 429, 503),
+        },
     )
 
 
@@ -127,10 +132,7 @@ for _ending, _format in ENDINGS.items():
 @router.post(
     "/api/render",
     response_class=Response,
-    responses={
-        200: {"description": "The picture", "content": {kind: {} for kind in MEDIA_TYPES.values()}},
-        **answers(413, 422, 429, 503),
-    },
+    responses={**picture_answers(*MEDIA_TYPES.values()), **answers(413, 422, 429, 503)},
 )
 async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> Response:
     """Render a scene in the format asked for."""
