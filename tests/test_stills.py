@@ -66,6 +66,20 @@ def test_what_a_picture_misses_is_told() -> None:
     assert nothing.missed.bound == 0
 
 
+def test_a_picture_is_refined_to_the_error_that_is_asked_for_and_says_so() -> None:
+    met = culet.render("white", *SIZE, error=0.02)
+    assert met.met
+    assert 0 < met.missed.shown_error <= 0.02
+    assert 2 < met.cost.samples < 50  # measured 12
+    assert f"estimated error as shown {met.missed.shown_error:.2g} (0.02 was asked for)" in met.quality()
+    missed = culet.render("white", *SIZE, error=0.02, samples=met.cost.samples - 1)
+    assert missed.met is False
+    assert missed.missed.shown_error > 0.02
+    assert "(but 0.02 was asked for)" in missed.quality()
+    assert culet.render("white", *SIZE, samples=2).met is None, "none was asked for"
+    assert "error not known (0.02 was asked for)" in culet.render("white", *SIZE, error=0.02, samples=1).quality()
+
+
 def test_a_scene_may_be_named_in_every_way(tmp_path: Path) -> None:
     scene = preset("ruby")
     file = tmp_path / "ruby.json"

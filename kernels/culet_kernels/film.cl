@@ -76,11 +76,20 @@ static inline float16 shown(float16 x, int tone_map) {
   return inside;
 }
 
-static inline uchar16 to_bytes(float16 x, int tone_map) { return convert_uchar16_sat_rte(255 * shown(x, tone_map)); }
+// Radiance times exposure as a screen shows it; `inside_gamut` says that no component is negative, or that those that are may
+// be clipped. What is above 1 is clipped by who takes it.
+static inline rgb16 developed(rgb16 colour, int tone_map, int inside_gamut) {
+  if (!inside_gamut) colour = desaturate(colour, 1e20f);
+  if (tone_map == TONE_FILMIC) colour = filmic(colour);
+  if (tone_map == TONE_NEUTRAL) colour = neutral(colour);
+  const rgb16 result = {shown(colour.red, tone_map), shown(colour.green, tone_map), shown(colour.blue, tone_map)};
+  return result;
+}
+
+static inline uchar16 to_bytes(float16 x) { return convert_uchar16_sat_rte(255 * x); }
 
 // A work-item shows BLOCK of the pixels from `begin` to before `end`, of which `earlier` and, if `both`, `later` hold sums of
-// samples. `scale` is the exposure over the number of samples; `inside_gamut` says that no component is negative, or that
-// those that are may be clipped.
+// samples. `scale` is the exposure over the number of samples.
 __kernel void develop(__global const real4 *earlier, __global const real4 *later, int both, __global uchar *bytes,
                       int begin, int end, float scale, int tone_map, int inside_gamut) {
   const int first = begin + get_global_id(0) * BLOCK, count = min(BLOCK, end - first);
@@ -93,14 +102,50 @@ __kernel void develop(__global const real4 *earlier, __global const real4 *later
     linear[1][i] = scale * sum.y;
     linear[2][i] = scale * sum.z;
   }
-  rgb16 colour = {vload16(0, linear[0]), vload16(0, linear[1]), vload16(0, linear[2])};
-  if (!inside_gamut) colour = desaturate(colour, 1e20f);
-  if (tone_map == TONE_FILMIC) colour = filmic(colour);
-  if (tone_map == TONE_NEUTRAL) colour = neutral(colour);
+  const rgb16 radiance = {vload16(0, linear[0]), vload16(0, linear[1]), vload16(0, linear[2])};
+  const rgb16 colour = developed(radiance, tone_map, inside_gamut);
   uchar out[3][BLOCK];
-  vstore16(to_bytes(colour.red, tone_map), 0, out[0]);
-  vstore16(to_bytes(colour.green, tone_map), 0, out[1]);
-  vstore16(to_bytes(colour.blue, tone_map), 0, out[2]);
+  vstore16(to_bytes(colour.red), 0, out[0]);
+  vstore16(to_bytes(colour.green), 0, out[1]);
+  vstore16(to_bytes(colour.blue), 0, out[2]);
   for (int i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) bytes[3 * (first + i) + k] = out[k][i];
+}
+
+// BLOCK of the pixels from `first` on, or the last of `count` again and again; times `scale`.
+static inline rgb16 scaled(__global const real4 *sums, int first, int count, float scale) {
+  float linear[3][BLOCK];
+  for (int i = 0; i < BLOCK; i++) {
+    const float4 sum = convert_float4(sums[first + min(i, count - 1)]);
+    linear[0][i] = scale * sum.x;
+    linear[1][i] = scale * sum.y;
+    linear[2][i] = scale * sum.z;
+  }
+  const rgb16 result = {vload16(0, linear[0]), vload16(0, linear[1]), vload16(0, linear[2])};
+  return result;
+}
+
+static inline float16 squared_difference(float16 a, float16 b) {
+  const float16 difference = clamp(a, 0.0f, 1.0f) - clamp(b, 0.0f, 1.0f);
+  return difference * difference;
+}
+
+// How far two runs of samples are apart on a screen, from pixel `begin` to before `end`: of each work-item's `block` pixels the
+// sum over pixels and components, from 0 to 1, of the squared differences. `scale` is the exposure over each run's samples.
+__kernel void apart_as_shown(__global const real4 *earlier, __global const real4 *later, __global float *apart,
+                             int block, int begin, int end, float scale, int tone_map, int inside_gamut) {
+  const int first = begin + get_global_id(0) * block, last = min(first + block, end);
+  const int16 lane = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  float16 sums = 0;
+  for (int pixel = first; pixel < last; pixel += BLOCK) {
+    const int count = min(BLOCK, last - pixel);
+    const rgb16 a = developed(scaled(earlier, pixel, count, scale), tone_map, inside_gamut);
+    const rgb16 b = developed(scaled(later, pixel, count, scale), tone_map, inside_gamut);
+    const float16 squared =
+        squared_difference(a.red, b.red) + squared_difference(a.green, b.green) + squared_difference(a.blue, b.blue);
+    sums += select((float16)(0), squared, lane < count);
+  }
+  const float8 eight = sums.lo + sums.hi;
+  const float4 four = eight.lo + eight.hi;
+  apart[get_global_id(0)] = four.x + four.y + four.z + four.w;
 }

@@ -93,6 +93,13 @@ class Demand(Message):
 class Render(Message):
     """A still: of a scene, or of what a session showed at `step` (the latest if None).
 
+    With an `error`, samples are taken until what is shown is estimated to be off by that (root mean square over pixels
+    and colours, from 0 to 1), `samples` at most; else so many samples. With neither the scene says how many; of a
+    session the still is as good as the live picture gets at rest.
+
+    The reply's result has `samples`, the `error` that is estimated (None: not known), and whether it has `met` the one
+    that was asked for (None: none was).
+
     `client` says on whose behalf, in whatever words the gateway tells clients apart: stills take turns by client.
     """
 
@@ -102,6 +109,8 @@ class Render(Message):
     step: int | None = None
     width: int | None = None
     height: int | None = None
+    samples: int | None = None
+    error: float | None = None
     format: Format = "tga"
     client: Annotated[str, Field(max_length=200)] = ""
 

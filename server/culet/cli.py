@@ -22,6 +22,7 @@ from culet.engine.process.limits import Limits
 from culet.gateway.settings import GatewaySettings
 from culet.logs import configure
 from culet.places import check_place
+from culet.scene.film import MOST_SAMPLES
 from culet.settings import Settings
 from culet.study.command import study_app
 from culet.version import __version__
@@ -79,7 +80,18 @@ def render(
     width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 640,
     height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 360,
     samples: Annotated[
-        int | None, typer.Option(min=1, max=65536, help="Samples per pixel; without it, the scene's.")
+        int | None,
+        typer.Option(
+            min=1, max=MOST_SAMPLES, help="Samples per pixel, with --error at most; without either the scene's."
+        ),
+    ] = None,
+    error: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RMSE",
+            help="Take samples until what is shown, from 0 to 1, is estimated to be off by this (root mean square over "
+            "pixels and colours); from 0.004 on no difference is seen.",
+        ),
     ] = None,
     preset: Preset = None,
     mesh: MeshFile = None,
@@ -93,7 +105,7 @@ def render(
         check_place(out, "out", FORMATS)
         stage = read_stage(scene, preset, mesh, sky)
         with progress_bar(f"rendering {out.name}") as advance:
-            picture = render_stage(stage, width, height, samples=samples, progress=advance)
+            picture = render_stage(stage, width, height, samples=samples, error=error, progress=advance)
         picture.save(out)
         typer.echo(f"{out}: {width} x {height}, {picture.quality()}")
 

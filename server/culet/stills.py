@@ -19,7 +19,9 @@ from culet.errors import InputError
 from culet.rendering import files
 from culet.rendering.renderer import Picture as Refined
 from culet.rendering.renderer import Renderer
+from culet.rendering.target import Target
 from culet.scene import Scene
+from culet.scene.film import MOST_SAMPLES
 from culet.sources import load_scene, load_stage
 from culet.stage import Stage
 
@@ -27,8 +29,6 @@ PIECE_SECONDS = 0.1
 """Between two looks at the progress, and at whether the caller wants to stop (Ctrl-C)."""
 LARGEST_EDGE = 8192
 """Pixels."""
-MOST_SAMPLES = 65536
-"""Of a pixel."""
 
 Progress = Callable[[float], None]
 """Called now and then with the part done, 0 to 1."""
@@ -54,6 +54,8 @@ class Missed(NamedTuple):
     """The most by which the mean radiance, averaged over the channels, can be too low for it."""
     error: float
     """Root mean square error of `linear` that its samples let expect, radiance; NaN below two samples."""
+    shown_error: float
+    """The same of what is shown, from 0 (black) to 1 (white), as `rgb` is of 255; what more samples would take away."""
     light_bound: float
     """Of the light that meets stones, the part whose shadows and caustics on floor and walls may be missing at most;
     NaN where a scene has none."""
@@ -75,6 +77,10 @@ class Picture:
     """(height, width, 3) as the scene's `film` develops it for a screen."""
     cost: Cost
     missed: Missed
+    error: float | None = None
+    """That `missed.shown_error` was to fall to, if that was asked for."""
+    met: bool | None = None
+    """Whether it has."""
     findings: tuple[str, ...] = ()
     """What was found in the files that were named, repaired or left out, and which stones overlap, a sentence each."""
 
@@ -111,9 +117,16 @@ class Picture:
     def quality(self) -> str:
         """How right it is, in words."""
         samples = "1 sample" if self.cost.samples == 1 else f"{self.cost.samples} samples"
-        estimated = "" if math.isnan(self.missed.error) else f", estimated error {self.missed.error:.2g}"
         missing = f"mean radiance too low by at most {self.missed.bound:.2g} (light cut off)"
-        return f"{samples} per pixel, {missing}{estimated}{self._light_quality()}"
+        return f"{samples} per pixel, {self._noise()}{missing}{self._light_quality()}"
+
+    def _noise(self) -> str:
+        """What more samples would take away."""
+        shown, linear = self.missed.shown_error, self.missed.error
+        if math.isnan(shown):
+            return "" if self.error is None else f"error not known ({self.error:g} was asked for), "
+        asked = "" if self.error is None else f" ({'' if self.met else 'but '}{self.error:g} was asked for)"
+        return f"estimated error as shown {shown:.2g}{asked} and of radiance {linear:.2g}, "
 
     def _light_quality(self) -> str:
         """How right shadows and caustics are, where there are any."""
@@ -132,6 +145,7 @@ def render(
     height: int = 360,
     *,
     samples: int | None = None,
+    error: float | None = None,
     mesh: str | os.PathLike[str] | None = None,
     sky: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
@@ -142,7 +156,10 @@ def render(
         scene: as `load_scene` takes it: a preset's name, a mapping, a file, a Scene; without it the default scene.
         width: pixels, 1 to 8192.
         height: pixels, 1 to 8192.
-        samples: of each pixel, 1 to 65536; without it the scene's `sampling.samples_per_pixel`.
+        samples: of each pixel, 1 to 65536; without it the scene's `sampling.samples_per_pixel`, or with an
+            `error` at most 65536.
+        error: take samples until what is shown, from 0 to 1, is estimated to be off by this, root mean square over
+            pixels and colours; from 0.004 on no difference is seen. Whether that is `met` the picture says.
         mesh: file (.obj .off .stl .ply .glb) whose mesh takes the place of the scene's stone.
         sky: file (.exr .hdr .png) with a panorama, twice as wide as high, that becomes the scene's sky; of a preset,
             and of the default scene, nothing hides it.
@@ -161,7 +178,7 @@ def render(
     ((18, 32, 3), 'uint8', 2)
     """
     stage, findings = stage_of(scene, mesh, sky)
-    return render_stage(stage, width, height, samples=samples, progress=progress, findings=findings)
+    return render_stage(stage, width, height, samples=samples, error=error, progress=progress, findings=findings)
 
 
 def stage_of(
@@ -188,6 +205,7 @@ def render_stage(
     height: int,
     *,
     samples: int | None = None,
+    error: float | None = None,
     progress: Progress | None = None,
     findings: tuple[str, ...] = (),
 ) -> Picture:
@@ -196,19 +214,22 @@ def render_stage(
         _check(field, value, most)
     if samples is not None:
         _check("samples", samples, MOST_SAMPLES)
-    wanted = samples or stage.scene.sampling.samples_per_pixel
+    if error is not None and (isinstance(error, bool) or not isinstance(error, int | float | np.number)):
+        raise InputError(f"error: expected a number above 0 and up to 1, got {error!r}", "error")
+    target = Target.of(samples, error, stage.scene)
     with _RENDERING:
         picture = _renderer().picture(stage, width, height)
         began, segments, paths = time.perf_counter(), 0, 0
-        while picture.samples < wanted:
-            done = picture.samples
-            for part in picture.refine_in_pieces(1, PIECE_SECONDS):
+        while not picture.reached(target):
+            for part in picture.refine_until(target, PIECE_SECONDS, pause=lambda: True):
                 if progress is not None:
-                    progress(min(1.0, (done + part) / wanted))
+                    progress(part)
             segments, paths = segments + picture.segments(), paths + 1
         rgb = picture.rgb()
         cost = Cost(picture.samples, paths * width * height + segments, time.perf_counter() - began)
-        return Picture(stage.scene, np.asarray(picture.linear(), np.float32), rgb, cost, _missed(picture), findings)
+        met = None if error is None else picture.meets(target)
+        linear = np.asarray(picture.linear(), np.float32)
+        return Picture(stage.scene, linear, rgb, cost, _missed(picture), error, met, findings)
 
 
 def _missed(picture: Refined) -> Missed:
@@ -216,6 +237,7 @@ def _missed(picture: Refined) -> Missed:
         cut=picture.cut(),
         bound=picture.truncation_bound(),
         error=picture.error_estimate(),
+        shown_error=picture.shown_error(),
         light_bound=picture.light_bound(),
         light_error=picture.light_error(),
         shadows_only=picture.shows_shadows_only(),

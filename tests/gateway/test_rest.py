@@ -461,3 +461,25 @@ async def test_other_pages_may_read_but_not_change(gateway: Gateway) -> None:
 
 async def test_an_unknown_path_is_a_problem_too(gateway: Gateway) -> None:
     assert_problem(await gateway.http.get("/api/nothing"), 404)
+
+
+async def test_a_picture_is_refined_to_the_error_asked_for_and_says_so(gateway: Gateway) -> None:
+    path = f"/api/sessions/{await gateway.session()}/frame.png"
+    query: dict[str, str | int | float] = {**SMALL, "error": 0.02}
+    answers = [
+        await gateway.http.get("/api/render.png", params=query),
+        await gateway.http.post("/api/render", json=query),
+        await gateway.http.get(path, params=query),
+    ]
+    for answer in answers:
+        assert answer.headers["culet-target"] == "met"
+        assert 0.01 < float(answer.headers["culet-error"]) <= 0.02
+        assert 2 < int(answer.headers["culet-samples"]) < 100  # measured 11
+    limited = await gateway.http.get("/api/render.png", params=query | {"samples": 2})
+    assert (limited.headers["culet-samples"], limited.headers["culet-target"]) == ("2", "missed")
+    assert "etag" not in limited.headers, "with more time it might be another"
+    plain = await gateway.http.get("/api/render.png", params=SMALL | {"samples": 1})
+    assert plain.headers["culet-samples"] == "1"
+    assert {"culet-error", "culet-target"}.isdisjoint(plain.headers)
+    for error in (0, -1, 1.5, "much"):
+        assert_problem(await gateway.http.get("/api/render.png", params={"error": error}), 422, "error")

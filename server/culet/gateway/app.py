@@ -24,6 +24,7 @@ from culet.gateway.link import EngineLink
 from culet.gateway.methods import Methods
 from culet.gateway.metrics import Metrics
 from culet.gateway.openapi import Application
+from culet.gateway.quality import QUALITY_HEADERS
 from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
@@ -89,7 +90,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
             CORSMiddleware,
             allow_origins=settings.allow_origin,
             allow_methods=("GET", "HEAD", "POST", "PATCH", "DELETE"),
-            expose_headers=("Location", "Retry-After", "Content-Disposition", "ETag"),
+            expose_headers=("Location", "Retry-After", "Content-Disposition", "ETag", *QUALITY_HEADERS),
             allow_private_network=True,
         )
     app.add_middleware(SecurityHeaders, settings=settings)

@@ -7,6 +7,8 @@ from typing import Any
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
+from culet.gateway.quality import QUALITY_HEADERS
+
 PIECE_BYTES = 256 * 1024
 """What waits for a slow reader, besides the picture itself."""
 
@@ -30,11 +32,12 @@ BINARY = {"type": "string", "format": "binary"}
 
 
 def picture_answers(*media_types: str, headers: tuple[str, ...] = ()) -> dict[int | str, dict[str, Any]]:
-    """What OpenAPI should say about the answer of a route: a picture of one of these kinds, with these headers."""
+    """What OpenAPI should say about the answer of a route: a picture of one of these kinds, with these headers, and
+    those that say how good the picture is."""
     return {
         200: {
             "description": "The picture.",
             "content": {kind: {"schema": BINARY} for kind in media_types},
-            "headers": {name: {"schema": {"type": "string"}} for name in headers},
+            "headers": {name: {"schema": {"type": "string"}} for name in headers} | QUALITY_HEADERS,
         }
     }

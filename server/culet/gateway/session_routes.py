@@ -13,9 +13,10 @@ from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers, check_numbers, finite
+from culet.gateway.quality import quality_headers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
-from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Height, Width, response_class_of
+from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Error, Height, Samples, Width, response_class_of
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
 from culet_protocol.engine import Format, Render
@@ -87,6 +88,8 @@ class FrameQuery(Model):
     step: Step | None = None
     width: Width | None = None
     height: Height | None = None
+    samples: Samples | None = None
+    error: Error | None = None
 
 
 @router.post("/api/sessions", status_code=201, responses=answers(404, 413, 422, 429, 503))
@@ -189,8 +192,8 @@ def _offer_frame(ending: str, file_format: Format) -> None:
         methods=["GET"],
         name=f"frame_{ending}",
         summary=f"Frame as {ending.upper()}",
-        description="What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a "
-        "pixel.",
+        description="What a session shows, or showed at `step`, rendered anew at full quality: with as many "
+        "samples as are asked for, or to the `error` asked for; with neither as good as the live picture gets at rest.",
         response_class=response_class_of(file_format),
         responses={
             **picture_answers(MEDIA_TYPES[file_format], headers=("Content-Disposition",)),
@@ -220,14 +223,17 @@ async def _frame(
         step=query.step,
         width=query.width,
         height=query.height,
+        samples=query.samples,
+        error=query.error,
         format=file_format,
         client=client,
     )
     with gateway.stills.place(client):
         result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
     kind = "attachment" if file_format in {"tga", "exr"} else "inline"  # which no browser shows
-    disposition = f'{kind}; filename="culet-{result["step"]}.{ending}"'
-    return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
+    headers = quality_headers(result)
+    headers["Content-Disposition"] = f'{kind}; filename="culet-{result["step"]}.{ending}"'
+    return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers=headers)
 
 
 def _answer(session: SessionRecord) -> SessionAnswer:

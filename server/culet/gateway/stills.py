@@ -13,8 +13,10 @@ from culet.gateway.entity_tag import entity_tag, names
 from culet.gateway.parts import ThisGateway
 from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers
+from culet.gateway.quality import MISSED, TARGET, quality_headers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
+from culet.scene.film import MOST_SAMPLES
 from culet.scene.patch import patched
 from culet.scene.sky_seen import under
 from culet.scene.stone import MaterialName
@@ -38,6 +40,21 @@ FRESHNESS = "max-age=3600"
 
 Width = Annotated[int, Field(ge=1, le=8192, description="Pixels; width x height is at most 33.5 million.")]
 Height = Annotated[int, Field(ge=1, le=8192, description="Pixels.")]
+Samples = Annotated[
+    int,
+    Field(
+        ge=1, le=MOST_SAMPLES, description="Per pixel, with an `error` at most; without either the scene says how many."
+    ),
+]
+Error = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=1,
+        description="Take samples until what is shown, from 0 to 1, is estimated to be off by this: root mean square "
+        "over pixels and colours. From 0.004 on no difference is seen. The answer's headers say what was reached.",
+    ),
+]
 Kind = Literal["none", "matte", "mirror"]
 
 
@@ -47,7 +64,8 @@ class StillQuery(Model):
     preset: Annotated[str, Field(description="A name from /api/presets.")] = "default"
     width: Width = DEFAULT_WIDTH
     height: Height = DEFAULT_HEIGHT
-    samples: Annotated[int, Field(ge=1, le=65536, description="Per pixel; the preset's if not given.")] | None = None
+    samples: Samples | None = None
+    error: Error | None = None
     material: MaterialName | None = None
     floor: Kind | None = None
     walls: Kind | None = None
@@ -56,8 +74,6 @@ class StillQuery(Model):
     def scene(self) -> Scene:
         """The preset's scene with the changes."""
         data: dict[str, Any] = preset(self.preset).model_dump(mode="json")
-        if self.samples is not None:
-            data["sampling"]["samples_per_pixel"] = self.samples
         if self.material is not None:
             for stone in data["stones"]:
                 stone["material"] = self.material
@@ -78,6 +94,8 @@ class StillRequest(Model):
     scene: Scene = Scene()
     width: Width = DEFAULT_WIDTH
     height: Height = DEFAULT_HEIGHT
+    samples: Samples | None = None
+    error: Error | None = None
     format: Annotated[Format, Field(description="EXR is linear radiance; the others are tone-mapped.")] = "tga"
 
     model_config = Model.model_config | {
@@ -99,12 +117,17 @@ def _offer(ending: str, file_format: Format) -> None:
 
     async def render_preset(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
         scene = query.scene()
-        tag = entity_tag(scene, query.width, query.height, file_format)
-        headers = {"ETag": tag, "Cache-Control": FRESHNESS}
+        asked = f"{query.width}x{query.height} {file_format} {query.samples} {query.error}"
+        headers = {"ETag": (tag := entity_tag(scene, asked)), "Cache-Control": FRESHNESS}
         if names(http.headers.get("If-None-Match"), tag):
             return Response(status_code=304, headers=headers)
-        picture = await _picture(http, gateway, scene, query.width, query.height, file_format)
-        picture.headers.update(headers)
+        message = Render(
+            scene=scene.model_dump(mode="json"), width=query.width, height=query.height, samples=query.samples,
+            error=query.error, format=file_format, client=client_of(http.scope),
+        )  # fmt: skip
+        picture = await _picture(http, gateway, message)
+        if picture.headers.get(TARGET) != MISSED:  # for want of time, which there may be more of next time
+            picture.headers.update(headers)
         return picture
 
     router.add_api_route(
@@ -136,14 +159,14 @@ for _ending, _format in ENDINGS.items():
 )
 async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> Response:
     """Render a scene in the format asked for."""
-    return await _picture(http, gateway, request.scene, request.width, request.height, request.format)
+    message = Render(
+        scene=request.scene.model_dump(mode="json"), width=request.width, height=request.height,
+        samples=request.samples, error=request.error, format=request.format, client=client_of(http.scope),
+    )  # fmt: skip
+    return await _picture(http, gateway, message)
 
 
-async def _picture(
-    http: Request, gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format
-) -> Response:
-    client = client_of(http.scope)
-    message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format, client=client)
-    with gateway.stills.place(client):
-        _, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
-    return PictureResponse(data, media_type=MEDIA_TYPES[file_format])
+async def _picture(http: Request, gateway: ThisGateway, message: Render) -> Response:
+    with gateway.stills.place(message.client):
+        result, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+    return PictureResponse(data, media_type=MEDIA_TYPES[message.format], headers=quality_headers(result))

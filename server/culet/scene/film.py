@@ -8,6 +8,9 @@ from pydantic import Field
 
 from culet.scene.fields import Model
 
+MOST_SAMPLES = 65536
+"""Of a pixel."""
+
 
 class Sampling(Model):
     """How each pixel is sampled; the first sample is the pixel's centre."""
@@ -16,7 +19,7 @@ class Sampling(Model):
         "box", description="Reconstruction: box averages the pixel, tent reaches to its neighbours' centres."
     )
 
-    samples_per_pixel: Annotated[int, Field(ge=1, le=65536)] = 1
+    samples_per_pixel: Annotated[int, Field(ge=1, le=MOST_SAMPLES)] = 1
 
 
 class Film(Model):

@@ -27,6 +27,7 @@ from culet.engine.session.stepper import Stepper, Steps
 from culet.engine.session.viewpoint import orbit
 from culet.optics.panoramas import Panorama
 from culet.rendering.light.effort import Effort
+from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.messages import Balance
@@ -66,6 +67,8 @@ class World:
         self.drawn: list[Drawn] = []
         self.samples = 0
         """Of the picture that got some last."""
+        self.needed = 0
+        """Samples by which any error is met."""
         self.pictures = weakref.WeakSet[TimedPicture]()
         """That somebody holds."""
         scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
@@ -143,6 +146,26 @@ class TimedPicture:
         self._world.samples = self.samples
         self.seconds = in_all
         drawn.ended = self.clock.now
+
+    def refine_until(
+        self, target: Target, seconds: float, *, pause: Callable[[], bool] = lambda: False
+    ) -> Iterator[float]:
+        spent = 0.0
+        while not self.reached(target):
+            yield from self.refine_in_pieces(1, seconds)
+            spent += self.seconds
+            if pause():
+                break
+        self.seconds = spent
+
+    def reached(self, target: Target) -> bool:
+        return self.samples >= min(max(target.least, self._world.needed), target.samples)
+
+    def meets(self, target: Target) -> bool:
+        return self.samples >= self._world.needed
+
+    def shown_error(self) -> float:
+        return math.nan
 
     def develop_in_pieces(self) -> Iterator[None]:
         return iter(())
