@@ -103,6 +103,18 @@ def caustics(
 
 
 @study_app.command()
+def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh = False) -> None:
+    """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers.
+
+    Stopped with Ctrl-C it goes on where it was.
+    """
+    with _errors(), _interruptible(out):
+        from culet.study.studies import study_growth
+
+        _tell(study_growth(out, _progress, quick=quick, fresh=fresh), out)
+
+
+@study_app.command()
 def gallery(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets gallery.md and its pictures.")

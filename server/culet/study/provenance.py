@@ -21,6 +21,7 @@ REFERENCE_CODE = (*IMAGE_CODE, "study/shot.py", "study/knobs.py", "study/referen
 RENDERING_STUDY = (*IMAGE_CODE, "study")
 """What the points of each study depend on."""
 CAUSTICS_STUDY = RENDERING_STUDY
+GROWTH_STUDY = (*RENDERING_STUDY, "engine", "gateway", "service", "simulation")
 SIMULATION_STUDY = ("geometry", "scene", "simulation", "stage.py", "study")
 STREAMING_STUDY = (*RENDERING_STUDY, "simulation")
 
