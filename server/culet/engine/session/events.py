@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from culet.engine.session import viewpoint
 from culet.engine.session.clearance import entered, stepped_back, stopped
 from culet.engine.session.edits import Edit, Moment, paths_of
+from culet.engine.session.hand import by_hand
 from culet.engine.session.history import Past
 from culet.engine.session.picking import placed
 from culet.engine.session.session import Session
@@ -43,6 +44,8 @@ def _edited_by(event: SessionEvent) -> str | None:
             return None if event.target == "camera" else event.target
         case messages.PatchScene():
             return None if event.patch.keys() == {"camera"} else paths_of(event.patch)
+        case messages.MoveStone() | messages.DragStone() | messages.TurnStone():
+            return f"hand {event.stone}"
         case messages.ToggleMirror() | messages.ToggleEnvironment() | messages.ToggleWalls() | messages.SetScene():
             return ""
         case messages.ResetCamera() | messages.LookAtStone() | messages.Balance() | messages.Undo() | messages.Redo():
@@ -67,6 +70,8 @@ def _apply(session: Session, event: SessionEvent, library: Library) -> None:
             session.reset_stone(event.stone)
         case messages.Push():
             session.push(event.x, event.y, event.right, event.up)
+        case messages.MoveStone() | messages.DragStone() | messages.TurnStone():
+            by_hand(session, event)
         case messages.ToggleMirror():
             session.change(session.stage.showing(_with_mirror_toggled(session.scene)))
         case messages.ToggleEnvironment():

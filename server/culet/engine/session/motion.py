@@ -240,6 +240,14 @@ class Motion:
         else:
             self.stop()
 
+    def hold_still(self, name: str) -> None:
+        """Keep a stone that was put somewhere there: time goes on for others, and stops where there are none."""
+        if self.falling and len(self.world.bodies) > 1:
+            self.world.hold(name, held=True)
+            self._stop_if_all_are_held()
+        else:
+            self.stop()
+
     def set_falling(self, falling: bool) -> None:
         """Let time go on, or not; InputError without a stone."""
         self._check_stones("fall")
