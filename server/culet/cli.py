@@ -317,7 +317,7 @@ def record(
 @contextmanager
 def _watched(session: str | None, watch: str | None) -> Iterator[str]:
     """The watch id of what the user named; that none of its frames came is said of the session that was named."""
-    from culet_client import ClientError, SilenceError
+    from culet_client.errors import ClientError, SilenceError
     from culet_protocol.watch import watch_id
 
     if (session is None) == (watch is None):

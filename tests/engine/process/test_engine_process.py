@@ -18,8 +18,10 @@ import pytest
 import zmq
 from PIL import Image
 
+from culet_client import RefusedError, connect
 from culet_protocol.engine import REQUEST_NUMBER
 from culet_protocol.frame import Codec, Flags, Frame
+from culet_protocol.messages import PatchScene, ToggleFall
 from culet_protocol.watch import watch_id
 from engine.peer import PATIENCE, SIZE, EngineProcess, connected, running_engine
 
@@ -440,3 +442,22 @@ def test_sigterm_ends_the_engine_in_order_while_it_compiles(tmp_path: Path) -> N
     finally:
         engine.kill()
         engine.wait()
+
+
+def test_a_viewer_needs_no_gateway_to_make_a_session_and_to_steer(engine: EngineProcess) -> None:
+    scene = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}, "environment": {"kind": "light"}}
+    with connect(
+        engine.frames, control=engine.control, scene=scene, size=(64, 36), timeout_seconds=PATIENCE
+    ) as connection:
+        assert next(image for image in connection if image.pixels.min() > 127).pixels.shape == (36, 64, 3)
+        connection.send(PatchScene(patch={"environment": {"kind": "dark"}}))
+        assert next(image for image in connection if image.pixels.max() < 128)
+        with pytest.raises(RefusedError, match="lava"):
+            connection.send(PatchScene(patch={"floor": {"kind": "lava"}}))
+        session = connection.session
+        assert session is not None
+    with (
+        connect(engine.frames, session=session, control=engine.control, timeout_seconds=PATIENCE) as late,
+        pytest.raises(RefusedError, match=f"no session {session}"),
+    ):
+        late.send(ToggleFall())
