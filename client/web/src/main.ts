@@ -1,5 +1,6 @@
 /** The page: finds or makes a session, then connects keys, fingers, panel and picture to it. */
 
+import { Flag } from "@culet/protocol/frame";
 import { CloseCode, type Outline, type Pick } from "@culet/protocol/messages";
 import { type Action, actionNamed } from "./actions";
 import {
@@ -311,9 +312,11 @@ function watch(id: string): void {
   waiting.show(WAITING);
   const timer = setTimeout(() => waiting.show(WAITING_LONG), WAITING_LONG_MS);
   const whereabouts = new Whereabouts();
+  let shownStep: bigint | null = null;
   viewer = new Viewer(streamUrl(location, id), {
     show: (picture, frame, arrival) => {
-      screen.show(picture);
+      screen.show(picture, shownStep === frame.step && !(frame.flags & Flag.MOVING));
+      shownStep = frame.step;
       clearTimeout(timer);
       if (viewer?.player.shown === 0) welcome.show();
       waiting.show(null);
@@ -410,6 +413,9 @@ expose({
   },
   get lastFrame() {
     return viewer?.lastFrame ? header(viewer.lastFrame) : null;
+  },
+  get fading() {
+    return screen.fading;
   },
   get framesShown() {
     return viewer?.player.shown ?? 0;
