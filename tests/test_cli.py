@@ -22,8 +22,9 @@ from culet.study.cases import CASES, FEATURE_CASES, stage_of
 from culet_protocol.watch import watch_id
 from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
+from geometry.designs.files import design, gcs_of
 
-COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record"]
+COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record", "design"]
 TINY = ("--width", "48", "--height", "27")
 ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
 """A scene of whose sky nothing is hidden."""
@@ -94,6 +95,47 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
     run = invoke("render", "-o", tmp_path / "mesh.npy", "--mesh", mesh, *TINY)
     assert run.returncode == 0, run.stderr
     assert not np.array_equal(np.load(tmp_path / "cut.npy"), np.load(tmp_path / "mesh.npy"))
+
+
+def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_path: Path) -> None:
+    """What was converted is the same stone to the last bit: so is its picture."""
+    there, back = tmp_path / "stone.gcs", tmp_path / "stone.asc"
+    there.write_bytes(gcs_of(design("13_chiral_negative_wheel")))
+    run = invoke("design", "convert", there, back)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert re.fullmatch(rf"{re.escape(str(back))}: 25 facets in 4 tiers; read back, planes are \S+ apart\n", run.stdout)
+    shown = invoke("design", "show", back).stdout
+    turned = "34 22 10 94 82 70 58 46"  # 48 less those of its own wheel: a .gcs has no offset, and counts one way
+    for part in ("crown", "35.00", turned, "T/W", "0.6273", "made for a refractive index of 1.54"):
+        assert part.lower() in shown.lower()
+    for file in (there, back):
+        run = invoke("render", "-o", f"{file}.npy", "--mesh", file, *TINY)
+        assert run.returncode == 0, run.stderr
+        assert "25 facets in 4 tiers" in run.stderr
+    pictures = [np.load(f"{file}.npy") for file in (there, back)]
+    assert pictures[0] == pytest.approx(pictures[1], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("show", "open.asc"), "open.asc: the design is open above and below"),
+        (("show", "nowhere.gem"), "nowhere.gem: cannot be read"),
+        (("show", "stone.obj"), "stone.obj: expected a design of type asc, gem, gcs, got 'obj'"),
+        (("convert", "wrong.asc", "a.asc"), "wrong.asc: .asc: line 2: expected a distance, got 'x'"),
+        (("convert", "open.asc", "a.gem"), "out: expected a name that ends in .asc"),
+        (("convert", "open.asc", "missing/a.asc"), "there is no folder"),
+    ],
+)
+def test_designs_that_cannot_be_used_are_refused_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("open.asc").write_text("g 96\na 90 1 24 48 72 96\n")
+    Path("wrong.asc").write_text("g 96\na 90 x 24 48 72 96\n")
+    Path("stone.obj").write_text("v 0 0 0\n")
+    assert said in refused(invoke("design", *arguments))
+    assert not Path("a.asc").exists()
 
 
 def test_a_mesh_takes_the_place_of_a_stone_of_any_scale(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from culet_protocol.messages import Condition, Message, Question, Revision, Sess
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "webp", "exr"]
-MeshType = Literal["obj", "off", "stl", "ply", "glb"]
+MeshType = Literal["obj", "off", "stl", "ply", "glb", "asc", "gem", "gcs"]
+"""Meshes, and the designs of GemCad and Gem Cut Studio."""
 SkyType = Literal["exr", "hdr", "png"]
 SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 
@@ -116,7 +117,7 @@ class Render(Message):
 
 
 class PutMesh(Message):
-    """Parse the mesh in the bytes and keep it under an id; the reply is a DescribedMesh."""
+    """Parse the mesh or the design in the bytes and keep it under an id; the reply is a DescribedMesh."""
 
     type: Literal["put_mesh"] = "put_mesh"
     file_type: MeshType

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from culet.command.design import design_app
 from culet.command.help import ListedHelp
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import opened
@@ -334,3 +335,4 @@ def _watched(session: str | None, watch: str | None) -> Iterator[str]:
 
 
 app.add_typer(study_app, name="study")
+app.add_typer(design_app, name="design")

@@ -101,15 +101,15 @@ def _with_mesh(scene: Scene, shape: Shape) -> Scene:
 
 
 def _mesh(file: Path, tell: Tell) -> Shape:
-    """The shape in a mesh file."""
-    from culet.geometry.mesh import shape_from_mesh
+    """The shape in a file of a mesh or of a design."""
+    from culet.geometry.stone_file import shape_from_file
 
     try:
         data = file.read_bytes()
     except OSError as error:
         raise MeshError(f"{file}: cannot be read: {error.strerror}") from error
     with naming(str(file)):
-        shape = shape_from_mesh(data, file.suffix.lower().lstrip("."), name=file.stem)
+        shape = shape_from_file(data, file.suffix, name=file.stem)
     _tell_of(file, shape.findings, tell)
     return shape
 

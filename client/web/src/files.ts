@@ -2,7 +2,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 
-export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb";
+export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb,.asc,.gem,.gcs";
 export const SKY_TYPES = ".exr,.hdr,.png";
 
 /** Save a blob under a name, as a click on a link would. */

@@ -15,7 +15,11 @@ SceneFile = Annotated[
 ]
 Preset = Annotated[str | None, typer.Option(help=f"Start from a named scene instead: {', '.join(PRESETS)}.")]
 MeshFile = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Mesh (.obj .off .stl .ply .glb) or design (.asc .gem .gcs) that takes the place of the stone.",
+    ),
 ]
 SkyFile = Annotated[
     Path | None,
