@@ -131,7 +131,8 @@ def simulate(
     Args:
         scene: as `load_scene` takes it: a preset's name, a mapping, a file, a Scene; without it the default scene.
         seconds: simulated time, s, 0 or more.
-        mesh: file (.obj .off .stl .ply .glb) whose mesh takes the place of the scene's stone.
+        mesh: file of a mesh (.obj .off .stl .ply .glb) or of a design (.asc .gem .gcs) that takes the place of the
+            scene's stone.
         progress: called now and then with the part done, 0 to 1.
 
     Raises:

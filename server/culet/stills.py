@@ -160,7 +160,8 @@ def render(
             `error` at most 65536.
         error: take samples until what is shown, from 0 to 1, is estimated to be off by this, root mean square over
             pixels and colours; from 0.004 on no difference is seen. Whether that is `met` the picture says.
-        mesh: file (.obj .off .stl .ply .glb) whose mesh takes the place of the scene's stone.
+        mesh: file of a mesh (.obj .off .stl .ply .glb) or of a design (.asc .gem .gcs) that takes the place of the
+            scene's stone.
         sky: file (.exr .hdr .png) with a panorama, twice as wide as high, that becomes the scene's sky; of a preset,
             and of the default scene, nothing hides it.
         progress: called about ten times a second with the part done, 0 to 1.
