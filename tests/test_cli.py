@@ -177,6 +177,31 @@ def test_bad_input_is_one_line_and_exit_code_1(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_help_is_asked_for_in_short_too_and_names_the_exit_codes() -> None:
+    assert invoke("render", "-h").stdout == invoke("render", "--help").stdout
+    shown = re.sub(r"\s+", " ", invoke("-h").stdout)
+    assert "Exit codes: 0 done; 1 refused, or a check that failed" in shown
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [("culet ren", ["render"]), ("culet render --preset ru", ["ruby"]), ("culet study st", ["streaming"])],
+)
+def test_a_shell_completes_commands_and_presets(
+    words: str, completed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("_CULET_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
+    assert invoke().stdout.split() == completed
+
+
+def test_the_version_waits_for_nothing_that_commands_need() -> None:
+    script = "import sys; from culet.cli import app; app(['--version'], standalone_mode=False); print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert not {"pydantic", "numpy", "zmq", "websockets", "rich"} & set(run.stdout.split())
+
+
 @pytest.mark.parametrize("arguments", [["render", "--width", "0"], ["render", "--widht", "9"], ["view"], ["dance"]])
 def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
     assert invoke(*arguments).returncode == 2
@@ -346,13 +371,23 @@ def test_a_folder_without_a_page_is_refused_at_once(tmp_path: Path) -> None:
 
 
 async def test_serve_runs_and_ends_with_all_its_processes(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "culet", "serve", "--port", "0"]
+    config, browser, shown = tmp_path / "culet.toml", tmp_path / "browser", tmp_path / "shown"
+    config.write_text("port = 0\nopen = true\n")
+    browser.write_text(f'#!/bin/sh\necho "$1" >{shown}\n')
+    browser.chmod(0o755)
+    command = [sys.executable, "-m", "culet", "serve", "--config", str(config)]
+    environment = os.environ | {"BROWSER": str(browser)}
     with (
         (tmp_path / "log").open("wb") as log,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as server,  # noqa: ASYNC220
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, env=environment) as server,  # noqa: ASYNC220
     ):
         try:
-            assert announced(server)
+            address = announced(server)
+
+            async def opened() -> bool:
+                return shown.is_file() and shown.read_text() == f"{address}\n"
+
+            await eventually(opened)
 
             async def complete() -> bool:
                 return len(children(server.pid)) == 4

@@ -15,14 +15,16 @@ from culet.sources import naming
 if TYPE_CHECKING:
     from culet.geometry.designs.design import Design
 
-design_app = typer.Typer(help="Gem designs of cutters' programs: .asc, .gem and .gcs.", no_args_is_help=True)
+app = typer.Typer(
+    help="Gem designs of cutters' programs: .asc, .gem and .gcs.", no_args_is_help=True, add_completion=False
+)
 
 DesignFile = Annotated[
     Path, typer.Argument(metavar="FILE", help="Design: .asc or .gem of GemCad, .gcs of Gem Cut Studio.")
 ]
 
 
-@design_app.command()
+@app.command()
 def show(file: DesignFile) -> None:
     """Print a design's tiers, its proportions and what was found in the file."""
     from culet.geometry.designs.solid import Solid
@@ -35,7 +37,7 @@ def show(file: DesignFile) -> None:
         print_design(report_console(), solid)
 
 
-@design_app.command()
+@app.command()
 def convert(
     file: DesignFile,
     out: Annotated[Path, typer.Argument(metavar="OUT.asc", help="Design to write, as GemCad's text.")],

@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from culet.study.measuring import Study
     from culet.study.report import Report
 
-study_app = typer.Typer(
-    help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.", no_args_is_help=True
+app = typer.Typer(
+    help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.",
+    no_args_is_help=True,
+    add_completion=False,
 )
 
 Out = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the report; made if missing.")]
@@ -38,7 +40,7 @@ SHOWN_RATIOS = 20
 """Of a comparison: those that changed most."""
 
 
-@study_app.command()
+@app.command()
 def rendering(
     scene: SceneFile = None,
     out: Out = Path("report/rendering"),
@@ -57,7 +59,7 @@ def rendering(
     _measure("rendering", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
 
 
-@study_app.command()
+@app.command()
 def simulation(
     scene: SceneFile = None,
     out: Out = Path("report/simulation"),
@@ -70,7 +72,7 @@ def simulation(
     _measure("simulation", (scene, preset, mesh), out, quick=quick, fresh=fresh)
 
 
-@study_app.command()
+@app.command()
 def streaming(
     scene: SceneFile = None,
     out: Out = Path("report/streaming"),
@@ -86,7 +88,7 @@ def streaming(
     _measure("streaming", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
 
 
-@study_app.command()
+@app.command()
 def caustics(
     scene: SceneFile = None,
     out: Out = Path("report/caustics"),
@@ -102,7 +104,7 @@ def caustics(
     _measure("caustics", (scene, preset, mesh), out, quick=quick, fresh=fresh)
 
 
-@study_app.command()
+@app.command()
 def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh = False) -> None:
     """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers.
 
@@ -114,7 +116,7 @@ def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh 
         _tell(study_growth(out, _progress, quick=quick, fresh=fresh), out)
 
 
-@study_app.command()
+@app.command()
 def gallery(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets gallery.md and its pictures.")
@@ -143,7 +145,7 @@ def gallery(
         raise typer.Exit(1)
 
 
-@study_app.command()
+@app.command()
 def contacts(
     out: Out = Path("report/contacts"),
     quick: Quick = False,
@@ -170,7 +172,7 @@ def contacts(
         raise typer.Exit(1)
 
 
-@study_app.command()
+@app.command()
 def governor(
     scene: SceneFile = None,
     preset: Preset = None,
@@ -198,7 +200,7 @@ def governor(
         typer.echo(described(measured, size, rate_of(exactness)))
 
 
-@study_app.command()
+@app.command()
 def diff(before: ReportFile, after: ReportFile) -> None:
     """Compare two reports of the same study, as ratios after / before."""
     from culet.study.comparison import compare_reports
@@ -208,7 +210,7 @@ def diff(before: ReportFile, after: ReportFile) -> None:
         _print_difference(compare_reports(Report.read(before), Report.read(after)))
 
 
-@study_app.command("compare-bench")
+@app.command("compare-bench")
 def compare_bench(before: BenchFile, after: BenchFile) -> None:
     """Compare the last lines of two files of `culet bench -o`, as ratios after / before. Fails on no ratio."""
     from culet.study.baseline import last_line
@@ -218,7 +220,7 @@ def compare_bench(before: BenchFile, after: BenchFile) -> None:
         print_comparison(report_console(), last_line(before), last_line(after))
 
 
-@study_app.command()
+@app.command()
 def headline(
     report: ReportFile,
     into: Annotated[
