@@ -396,7 +396,7 @@ function later(why: string, tries: number, work: (tries: number) => Promise<void
   obstacle.show(`${why}\n${tryingAgainText(delay)}`, "Try now", again);
 }
 
-statusLine.title = `error: ${ERROR_MEANINGS.estimated}\nfrontier's error: ${ERROR_MEANINGS.frontier}`;
+statusLine.title = `error as shown: ${ERROR_MEANINGS.shown}\nfrontier's error: ${ERROR_MEANINGS.frontier}`;
 setInterval(() => {
   const now = performance.now();
   statusLine.textContent = statusText({
