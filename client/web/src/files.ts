@@ -2,6 +2,8 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 
+export const SCENE_TYPES = ".json,application/json";
+/** Of meshes and of cutters' designs. */
 export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb,.asc,.gem,.gcs";
 export const SKY_TYPES = ".exr,.hdr,.png";
 

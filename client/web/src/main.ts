@@ -19,7 +19,8 @@ import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
 import type { SessionEvent } from "./events";
 import { FallButton } from "./fall-button";
-import { chooseFile, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
+import { listenToDrops } from "./file-drop";
+import { chooseFile, MESH_TYPES, parseScene, SCENE_TYPES, SKY_TYPES } from "./files";
 import { Findings } from "./findings";
 import { framed, framingPatch } from "./framing";
 import { placeOf } from "./gestures";
@@ -104,6 +105,11 @@ const findings = new Findings(
   (text) => toasts.finding(text),
 );
 
+const open = {
+  scene: (file: File) => attempt(() => openScene(file)),
+  mesh: (file: File) => attempt(() => openMesh(file)),
+  sky: (file: File) => attempt(() => openSky(file)),
+};
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
@@ -111,9 +117,9 @@ const panel = new Panel(element("panel", HTMLElement), {
   removals: () => stones.removals,
   savePicture: (format) => attempt(() => saving.picture(format)),
   saveScene: () => attempt(() => saving.scene()),
-  openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
-  openMesh: () => chooseFile(MESH_TYPES, (file) => attempt(() => openMesh(file))),
-  openSky: () => chooseFile(SKY_TYPES, (file) => attempt(() => openSky(file))),
+  openScene: () => chooseFile(SCENE_TYPES, open.scene),
+  openMesh: () => chooseFile(MESH_TYPES, open.mesh),
+  openSky: () => chooseFile(SKY_TYPES, open.sky),
   patch: (patch) => viewer?.send({ type: "patch_scene", patch }),
   newSession: startAnew,
   clamped,
@@ -129,6 +135,7 @@ const welcome = new Welcome(element("welcome", HTMLElement));
 const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(COME_BACK));
 const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance), clamped);
 listenToKeys(window, perform);
+listenToDrops(window, open, problem);
 listenToPointers(
   canvas,
   () => viewer?.state.target ?? INITIAL.target,

@@ -135,7 +135,7 @@ export class Panel {
     this.addButton(section, actionNamed("copy_link"));
     button("Save the scene (.json)", () => this.actions.saveScene());
     button("Open a scene\u2026", () => this.actions.openScene());
-    button("Open a mesh\u2026", () => this.actions.openMesh());
+    button("Open a mesh or a design\u2026", () => this.actions.openMesh());
     button("Open a sky\u2026", () => this.actions.openSky());
     button("New session", () => this.actions.newSession());
   }
