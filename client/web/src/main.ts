@@ -17,16 +17,18 @@ import {
 import { Bareness } from "./bareness";
 import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
-import type { SessionEvent } from "./events";
+import type { SessionEvent, Target } from "./events";
 import { FallButton } from "./fall-button";
 import { listenToDrops } from "./file-drop";
 import { chooseFile, MESH_TYPES, parseScene, SCENE_TYPES, SKY_TYPES } from "./files";
 import { Findings } from "./findings";
 import { framed, framingPatch } from "./framing";
 import { placeOf } from "./gestures";
+import { Hand } from "./hand";
 import { KeyCard } from "./key-card";
 import { listenToKeys } from "./keys";
 import { Meter } from "./meter";
+import { type Move, movesOf } from "./moves";
 import { OutlineView } from "./outline-view";
 import { element } from "./page";
 import { Panel } from "./panel";
@@ -40,7 +42,7 @@ import { Screen } from "./screen";
 import { sessionAddress, streamUrl, type Wanted, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
-import { StoneCommands } from "./stone-commands";
+import { CHOOSE_FIRST, StoneCommands } from "./stone-commands";
 import { idsOf, stonePatch, stonesOf } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
@@ -136,11 +138,20 @@ const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(CO
 const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance), clamped);
 listenToKeys(window, perform);
 listenToDrops(window, open, problem);
-listenToPointers(
-  canvas,
-  () => viewer?.state.target ?? INITIAL.target,
-  (event) => viewer?.send(event),
-  (x, y) => {
+const hand = new Hand({
+  ids: () => idsOf(viewer?.state.scene ?? null),
+  pick: (x, y, told) => {
+    const at = placeOf(x, y, screen.area);
+    chosen.pick(at.x, at.y, told);
+  },
+  send: (event) => viewer?.send(event),
+  size: () => ({ height: screen.area.height, side: Math.min(canvas.clientWidth, canvas.clientHeight) }),
+});
+listenToPointers(canvas, {
+  target: () => viewer?.state.target ?? INITIAL.target,
+  move,
+  push: (push) => viewer?.send(push),
+  click: (x, y) => {
     if (bareness.on) {
       bareness.toggle();
       return;
@@ -148,8 +159,9 @@ listenToPointers(
     const at = placeOf(x, y, screen.area);
     if (idsOf(viewer?.state.scene ?? null).length > 1) chosen.pick(at.x, at.y);
   },
-  () => screen.area,
-);
+  hand,
+  area: () => screen.area,
+});
 
 function perform({ effect }: Action): void {
   if (effect.kind === "download") attempt(() => saving.picture(effect.format));
@@ -158,7 +170,15 @@ function perform({ effect }: Action): void {
   else if (!viewer) problem("There is no session yet.");
   else if (effect.kind === "stones") stones[effect.command]();
   else if (effect.kind === "select") viewer.select(effect.target);
-  else send(viewer, effect.event(viewer.state.target));
+  else if (effect.kind === "move") move(effect.move, viewer.state.target);
+  else send(viewer, effect.event);
+}
+
+/** Move the target: a stone only if it is known which. */
+function move(by: Move, target: Target): void {
+  const stone = stones.chosen();
+  if (target === "stone" && stone === null) problem(CHOOSE_FIRST);
+  else for (const event of movesOf(by, target, stone ?? "")) viewer?.send(event);
 }
 
 function send(to: Viewer, event: SessionEvent): void {

@@ -37,8 +37,8 @@ export interface PanelActions {
   clamped: (typed: number, taken: number) => void;
 }
 
-const MOVES = ["left", "right", "up", "down", "in", "out"];
-const TARGETS = ["camera", "light_1", "light_2"] as const;
+const MOVES = ["left", "right", "up", "down", "in", "out", "turn_left", "turn_right", "turn_up", "turn_down"];
+const TARGETS = ["camera", "light_1", "light_2", "stone"] as const;
 const STONE = { one: "Stone", several: "Stones" };
 const NARROW = 640;
 
