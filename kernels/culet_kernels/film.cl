@@ -149,3 +149,34 @@ __kernel void apart_as_shown(__global const real4 *earlier, __global const real4
   const float4 four = eight.lo + eight.hi;
   apart[get_global_id(0)] = four.x + four.y + four.z + four.w;
 }
+
+#define RGB 3
+
+// The mean of the byte at `at` and of those of the pixels beside it, 1 : 6 : 1, times 8.
+static inline ushort16 across(__global const uchar *bytes, int at) {
+  return convert_ushort16(vload16(0, bytes + at - RGB)) + convert_ushort16(vload16(0, bytes + at + RGB)) +
+         (ushort16)(6) * convert_ushort16(vload16(0, bytes + at));
+}
+
+// The same of one byte of a row; at its ends the pixel itself stands for the one that is not there.
+static inline ushort across_one(__global const uchar *row, int x, int width) {
+  return row[x < RGB ? x : x - RGB] + row[x >= width - RGB ? x : x + RGB] + 6 * row[x];
+}
+
+// A developed picture of `rows` rows of `width` bytes, filtered by (1 6 1)/8 along both axes: a work-item a row.
+__kernel void soften(__global const uchar *bytes, __global uchar *softened, int width, int rows) {
+  const int row = get_global_id(0);
+  if (row >= rows) return;
+  __global const uchar *own = bytes + (size_t)row * width;
+  __global const uchar *above = row > 0 ? own - width : own, *below = row < rows - 1 ? own + width : own;
+  __global uchar *to = softened + (size_t)row * width;
+  int x = RGB;
+  for (; x + BLOCK + RGB <= width; x += BLOCK) {
+    const ushort16 sum = across(above, x) + across(below, x) + (ushort16)(6) * across(own, x);
+    vstore16(convert_uchar16((sum + (ushort16)(32)) >> (ushort16)(6)), 0, to + x);
+  }
+  for (int k = 0; k < width; k = k == RGB - 1 ? x : k + 1) {
+    const ushort sum = across_one(above, k, width) + across_one(below, k, width) + 6 * across_one(own, k, width);
+    to[k] = (sum + 32) >> 6;
+  }
+}

@@ -25,6 +25,7 @@ from culet.rendering.light.lighting import Lighting, Maker
 from culet.rendering.pace import Pace
 from culet.rendering.program import Programs
 from culet.rendering.shown_difference import ShownDifference, film_arguments
+from culet.rendering.softening import Softening
 from culet.rendering.sums import Fold, Sums
 from culet.rendering.target import Target
 from culet.rendering.tree import has_tree, tree_of
@@ -72,6 +73,7 @@ class Renderer:
         film = build(self.device, "film.cl", self.variant.options)
         self.develop = cl.Kernel(film, "develop")
         self.shown_difference = ShownDifference(self.device, film)
+        self.softening = Softening(self.device, film, self.allocate)
         self._warm_up()
 
     def prepare(self) -> None:
@@ -127,6 +129,7 @@ class Renderer:
         )  # fmt: skip
         self.fold.warm_up(scratch)
         self.shown_difference.warm_up(scratch)
+        self.softening.warm_up(scratch)
         self.device.queue.finish()
 
     def pace_of(self, kernel: Kernel, triangles: int) -> Pace:
@@ -385,6 +388,10 @@ class Picture:
         for _ in self.develop_in_pieces():
             pass
         return self._shown
+
+    def softened(self) -> NDArray[np.uint8]:
+        """`rgb()`, filtered as a single sample of each pixel should be that is seen but for a moment."""
+        return self._renderer.softening.softened(self.rgb())
 
     def develop_in_pieces(self) -> Iterator[None]:
         """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""

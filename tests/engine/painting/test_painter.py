@@ -187,6 +187,9 @@ class TimedPicture:
     def develop_in_pieces(self) -> Iterator[None]:
         return iter(())
 
+    def softened(self) -> NDArray[np.uint8]:
+        return self.rgb()
+
     def rgb(self) -> NDArray[np.uint8]:
         return np.zeros((16, 16, 3), np.uint8)
 

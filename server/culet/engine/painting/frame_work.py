@@ -107,9 +107,11 @@ class FrameWork:
         yield from picture.develop_in_pieces()
         develop_seconds = perf_counter() - started
         spent = self.simulate_seconds, self.render_seconds
+        whole = (width, height) == self.wanted  # a smaller one is softened enough by being enlarged
         self.frame = LiveFrame.developed(
-            picture, self.shown, self.plan, spent, develop_seconds, aim=self.aim, final=self.final, slow=self.slow
-        )
+            picture, self.shown, self.plan, spent, develop_seconds, aim=self.aim, final=self.final, slow=self.slow,
+            soft=picture.samples == 1 and whole and not self.final,
+        )  # fmt: skip
 
     def _samples(self, picture: Picture) -> Iterator[float]:
         """The first one; or as many more as there are, but no more than REFRESH_SECONDS allow, nor than are needed.

@@ -64,13 +64,15 @@ class LiveFrame:
         aim: Target | None,
         final: bool,
         slow: bool,
+        soft: bool,
     ) -> LiveFrame:
         """Of a picture that is done and developed, and took that long to simulate and to render.
 
         Estimating its error costs nothing for the single sample of a moving one.
         """
         started = time.perf_counter()
-        rgb, cut, error = picture.rgb(), picture.cut(), picture.error_estimate()
+        rgb = picture.softened() if soft else picture.rgb()
+        cut, error = picture.cut(), picture.error_estimate()
         return cls(
             rgb=rgb,
             shown=shown,

@@ -69,6 +69,9 @@ class Picture(Protocol):
     def rgb(self) -> NDArray[np.uint8]:
         """(height, width, 3), tone-mapped; at once if that was done in pieces."""
 
+    def softened(self) -> NDArray[np.uint8]:
+        """The same, filtered: of a single sample a pixel it is nearer to what more would show."""
+
     def cut(self) -> float:
         """Mean weight of what the cut-off dropped."""
 
