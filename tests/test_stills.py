@@ -169,3 +169,13 @@ def test_progress_goes_from_nothing_to_all() -> None:
     culet.render("white", *SIZE, samples=4, progress=told.append)
     assert told == sorted(told)
     assert 0 <= told[0] < told[-1] == 1
+
+
+def test_a_transparent_picture_has_alpha(tmp_path: Path) -> None:
+    picture = culet.render(ALL_SKY, *SIZE, transparent=True)
+    assert (picture.rgb == 0).all(), "nothing is there"
+    assert picture.linear.shape == (16, 24, 4)
+    with Image.open(picture.save(tmp_path / "gem.png")) as image:
+        assert image.mode == "RGBA"
+    said_so = culet.render(ALL_SKY | {"film": {"background": "transparent"}}, *SIZE)
+    assert (said_so.rgb == picture.rgb).all()

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from culet.errors import InputError
 from culet.rendering import files
+from culet.rendering.cut_out import CuttingRenderer
 from culet.rendering.renderer import Picture as Refined
-from culet.rendering.renderer import Renderer
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.scene.film import MOST_SAMPLES
@@ -72,9 +72,11 @@ class Picture:
     scene: Scene
     """What it shows."""
     linear: NDArray[np.float32]
-    """(height, width, 3) linear radiance in the primaries of sRGB, the top row first; not exposed, not clipped."""
+    """(height, width, 3) linear radiance in the primaries of sRGB, the top row first; not exposed, not clipped. Of a
+    transparent picture (height, width, 4): multiplied by alpha, and alpha."""
     rgb: NDArray[np.uint8]
-    """(height, width, 3) as the scene's `film` develops it for a screen."""
+    """(height, width, 3) as the scene's `film` develops it for a screen. Of a transparent picture (height, width, 4):
+    not multiplied by alpha, and alpha."""
     cost: Cost
     missed: Missed
     error: float | None = None
@@ -146,6 +148,7 @@ def render(
     *,
     samples: int | None = None,
     error: float | None = None,
+    transparent: bool = False,
     mesh: str | os.PathLike[str] | None = None,
     sky: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
@@ -160,6 +163,8 @@ def render(
             `error` at most 65536.
         error: take samples until what is shown, from 0 to 1, is estimated to be off by this, root mean square over
             pixels and colours; from 0.004 on no difference is seen. Whether that is `met` the picture says.
+        transparent: whether nothing is behind the stones, in place of the backdrop: pictures with alpha, and twice the
+            work. The scene's `film.background` says so too.
         mesh: file of a mesh (.obj .off .stl .ply .glb) or of a design (.asc .gem .gcs) that takes the place of the
             scene's stone.
         sky: file (.exr .hdr .png) with a panorama, twice as wide as high, that becomes the scene's sky; of a preset,
@@ -179,7 +184,15 @@ def render(
     ((18, 32, 3), 'uint8', 2)
     """
     stage, findings = stage_of(scene, mesh, sky)
+    if transparent:
+        stage = cut_out(stage)
     return render_stage(stage, width, height, samples=samples, error=error, progress=progress, findings=findings)
+
+
+def cut_out(stage: Stage) -> Stage:
+    """The stage whose stills have nothing behind the stones."""
+    film = stage.scene.film.model_copy(update={"background": "transparent"})
+    return stage.showing(stage.scene.model_copy(update={"film": film}))
 
 
 def stage_of(
@@ -219,7 +232,9 @@ def render_stage(
         raise InputError(f"error: expected a number above 0 and up to 1, got {error!r}", "error")
     target = Target.of(samples, error, stage.scene)
     with _RENDERING:
-        picture = _renderer().picture(stage, width, height)
+        renderer = _renderer()
+        make = renderer.cut_out if stage.scene.film.background == "transparent" else renderer.picture
+        picture = make(stage, width, height)
         began, segments, paths = time.perf_counter(), 0, 0
         while not picture.reached(target):
             for part in picture.refine_until(target, PIECE_SECONDS, pause=lambda: True):
@@ -257,6 +272,6 @@ _RENDERING = threading.Lock()
 
 
 @functools.cache
-def _renderer() -> Renderer:
+def _renderer() -> CuttingRenderer:
     """The process's own, made by the first picture."""
-    return Renderer()
+    return CuttingRenderer()

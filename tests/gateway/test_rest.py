@@ -366,6 +366,21 @@ async def test_the_description_says_of_what_kind_every_picture_is(gateway: Gatew
         assert all(answer["schema"] == {"type": "string", "format": "binary"} for answer in content.values())
 
 
+async def test_a_transparent_picture_has_alpha(gateway: Gateway) -> None:
+    query = SMALL | {"preset": "ruby", "background": "transparent"}
+    alphas = []
+    for ending, mode in (("png", "RGBA"), ("webp", "RGBA"), ("jpg", "RGB")):
+        answer = await gateway.http.get(f"/api/render.{ending}", params=query)
+        assert answer.status_code == 200, answer.text
+        image = Image.open(io.BytesIO(answer.content))
+        assert (image.mode, image.size) == (mode, (64, 36))
+        alphas.append(image.getextrema()[-1])
+    assert alphas[0] == alphas[1] == (0, 255)
+    session = await gateway.session({"film": {"background": "transparent"}})
+    frame = await gateway.http.get(f"/api/sessions/{session}/frame.png", params=SMALL | {"samples": 1})
+    assert Image.open(io.BytesIO(frame.content)).mode == "RGBA"
+
+
 async def test_generated_clients_get_names_that_can_be_read(gateway: Gateway) -> None:
     paths = (await gateway.http.get("/openapi.json")).json()["paths"]
     names = [operation["operationId"] for operations in paths.values() for operation in operations.values()]

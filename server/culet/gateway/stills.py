@@ -70,6 +70,13 @@ class StillQuery(Model):
     floor: Kind | None = None
     walls: Kind | None = None
     environment: Literal["dark", "light", "studio"] | None = None
+    background: (
+        Annotated[
+            Literal["backdrop", "transparent"],
+            Field(description="Whether nothing is behind the stones: with alpha, white in .jpg; twice the work."),
+        ]
+        | None
+    ) = None
 
     def scene(self) -> Scene:
         """The preset's scene with the changes."""
@@ -77,6 +84,8 @@ class StillQuery(Model):
         if self.material is not None:
             for stone in data["stones"]:
                 stone["material"] = self.material
+        if self.background is not None:
+            data["film"]["background"] = self.background
         if self.environment is not None:
             data["environment"] = {"kind": self.environment}
             if self.environment != "studio":

@@ -20,9 +20,9 @@ from culet.places import check_place, write_whole
 JPEG_QUALITY = 95
 
 Developed = NDArray[np.uint8]
-"""(height, width, 3), as a screen shows it."""
+"""(height, width, 3), as a screen shows it; of a transparent picture (height, width, 4), alpha last."""
 Linear = NDArray[np.floating[Any]]
-"""(height, width, 3), linear radiance."""
+"""(height, width, 3), linear radiance; (height, width, 4), multiplied by alpha, and alpha."""
 
 
 def _pillow(rgb: Developed, name: str, **options: object) -> bytes:
@@ -32,7 +32,7 @@ def _pillow(rgb: Developed, name: str, **options: object) -> bytes:
 
 
 def _tga(rgb: Developed) -> bytes:
-    """24 bits, uncompressed, bottom row first, with the footer of TGA 2.0."""
+    """24 bits, with alpha 32, uncompressed, bottom row first, with the footer of TGA 2.0."""
     return _pillow(rgb, "TGA")
 
 
@@ -41,6 +41,10 @@ def _png(rgb: Developed) -> bytes:
 
 
 def _jpeg(rgb: Developed) -> bytes:
+    """On white where it is transparent."""
+    if rgb.shape[-1] > 3:
+        colour, alpha = rgb[..., :3].astype(np.float32), rgb[..., 3:] / np.float32(255)
+        rgb = np.rint(alpha * colour + (1 - alpha) * 255).astype(np.uint8)
     return _pillow(rgb, "JPEG", quality=JPEG_QUALITY, subsampling=0)  # 4:2:0 would blur the fire's colours
 
 
@@ -54,12 +58,12 @@ def _exr(linear: Linear) -> bytes:
     pixels = np.ascontiguousarray(linear, np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with path_in_memory(ending="exr") as path:
-        OpenEXR.File(header, {"RGB": pixels}).write(str(path))
+        OpenEXR.File(header, {"RGBA"[: pixels.shape[-1]]: pixels}).write(str(path))
         return path.read_bytes()
 
 
 def _npy(linear: Linear) -> bytes:
-    """(height, width, 3) float32, linear radiance."""
+    """float32, linear radiance."""
     buffer = io.BytesIO()
     np.save(buffer, np.ascontiguousarray(linear, np.float32))
     return buffer.getvalue()

@@ -25,6 +25,12 @@ class Sampling(Model):
 class Film(Model):
     """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
 
+    background: Literal["backdrop", "transparent"] = Field(
+        "backdrop",
+        description="What stills have behind everything. backdrop: what the camera sees there; transparent: nothing, "
+        "with alpha in .png, .webp, .tga and .exr, white in .jpg. The light on the stones stays. Live pictures have "
+        "the backdrop.",
+    )
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
     tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(
         "neutral",

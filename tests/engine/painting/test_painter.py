@@ -97,6 +97,8 @@ class World:
         self.pictures.add(picture)
         return picture
 
+    cut_out = picture
+
     def alive(self) -> int:
         """Pictures that somebody holds; work that was given up is garbage in a circle."""
         gc.collect()
@@ -556,6 +558,8 @@ class Crowd(World):
         picture = TimedPicture(world, stage.scene, (width, height))
         picture.clock = self
         return picture
+
+    cut_out = picture
 
 
 async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_its_rate() -> None:

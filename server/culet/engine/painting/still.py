@@ -11,6 +11,7 @@ from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account, Shares
 from culet.errors import BusyError
 from culet.rendering.target import Target
+from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.engine import Format
 
@@ -48,17 +49,28 @@ class Still:
     """It is left as it is after the sample under way, though its target is not reached."""
 
     @property
+    def pictures(self) -> int:
+        """That are made for it."""
+        return pictures_of(self.stage.scene)
+
+    @property
     def pixels(self) -> int:
-        """Of the picture."""
-        return self.width * self.height
+        """Of all its pictures."""
+        return self.width * self.height * self.pictures
 
     def paint(self, renderer: Renderer) -> Iterator[object]:
         """Render, yielding between pieces of work. Runs in the render thread."""
-        picture = renderer.picture(self.stage, self.width, self.height)
+        make = renderer.picture if self.pictures == 1 else renderer.cut_out
+        picture = make(self.stage, self.width, self.height)
         self.picture = picture
         yield from picture.refine_until(self.target, PIECE_SECONDS, pause=lambda: self.out_of_time)
         if self.format not in LINEAR_FORMATS:
             yield from picture.develop_in_pieces()
+
+
+def pictures_of(scene: Scene) -> int:
+    """That a still of a scene is made of: a transparent one of two."""
+    return 2 if scene.film.background == "transparent" else 1
 
 
 class StillQueue:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.still import Still, StillQueue
+from culet.engine.painting.still import Still, StillQueue, pictures_of
 from culet.engine.process.limits import Limits, check_still_size, check_still_work, most_samples
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
@@ -65,7 +65,7 @@ class StillRequests:
         scene = stage.scene
         width = default_size[0] if request.width is None else request.width
         height = default_size[1] if request.height is None else request.height
-        check_still_size(width, height, self._limits)
+        check_still_size(width, height, self._limits, pictures=pictures_of(scene))
         target = self._target(request, scene, width, height)
         still = Still(stage, width, height, target, request.format, request.client, time.monotonic())
         await self._painter.make_ready(stage)
@@ -81,7 +81,7 @@ class StillRequests:
             target = replace(rest, samples=max(rest.samples, own), least=max(rest.least, own))
         else:
             target = Target.of(request.samples, request.error, scene)
-        bands = scene.optics.bands
+        bands = scene.optics.bands * pictures_of(scene)
         if target.error is None or request.samples is not None:
             check_still_work(width, height, target.samples, bands, self._limits)
             return target
@@ -113,8 +113,8 @@ class StillRequests:
         """BusyError if it does not fit besides what is held and what waits, of which no more pixels are begun at a time
         than a largest still has."""
         waiting = [other for other in self._awaited if other.picture is None]
-        needed = sum(picture_bytes(other.width, other.height) for other in (*waiting, still))
+        needed = sum(picture_bytes(other.pixels, 1) for other in (*waiting, still))
         most = picture_bytes(self._limits.max_still_pixels, 1)
-        needed = max(picture_bytes(still.width, still.height), min(needed, most))
+        needed = max(picture_bytes(still.pixels, 1), min(needed, most))
         with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
             pass
