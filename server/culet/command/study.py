@@ -14,8 +14,9 @@ import typer
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import opened
 from culet.command.stage import read_stage
-from culet.command.terminal import errors_in_one_line, report_console
+from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.errors import SceneError
+from culet.scene.film import MOST_SAMPLES
 
 if TYPE_CHECKING:
     from culet.study.comparison import Difference
@@ -102,6 +103,38 @@ def caustics(
     The light is a point's, then a sun's; the scene's own is out. Stopped with Ctrl-C it goes on where it was.
     """
     _measure("caustics", (scene, preset, mesh), out, quick=quick, fresh=fresh)
+
+
+@app.command()
+def resting(
+    scene: SceneFile = None,
+    preset: Preset = None,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels.")] = 960,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels.")] = 540,
+    error: Annotated[
+        float, typer.Option(metavar="RMSE", help="Refine to this, as `culet serve --rest-error`.")
+    ] = 0.004,
+    samples: Annotated[int, typer.Option(min=16, max=MOST_SAMPLES, help="At most, as `--rest-samples`.")] = 256,
+    reference: Annotated[int, typer.Option(min=16, max=MOST_SAMPLES, help="Samples of the converged picture.")] = 1024,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every picture.")] = None,
+) -> None:
+    """Refine a picture at rest as the engine does: how soon is it how good, and is its estimated error right?"""
+    from culet.engine.process.limits import REST_LEAST
+    from culet.rendering.target import Target
+    from culet.study.resting import described, measure, table
+
+    with errors_in_one_line():
+        stage = read_stage(scene, preset, None, None)
+        with opened(out) as file:
+            with progress_bar("rendering") as advance:
+                rest = Target(samples, error, least=min(REST_LEAST, samples))
+                found = measure(stage, width, height, rest, reference, advance)
+            if file is not None:
+                file.truncate(0)
+                file.write(found.document() + "\n")
+        report_console().print(table(found))
+        for line in described(found):
+            typer.echo(line)
 
 
 @app.command()
