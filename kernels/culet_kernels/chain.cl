@@ -135,7 +135,7 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
       open = heading;
     }
     const int first = first_pixel(x, y);
-    EACH (k, 3) store_lanes(radiance.channel[k], tile->radiance[k] + first);
+    EACH (k, 3) begin_sums(radiance.channel[k], tile->radiance[k] + first);
     store_lanes(3 * cut, tile->cut + first);
     const intL tag = first + LANE_INDEX + (groups_of(x, y, world.scene->sample) << PIXEL_BITS);
     if (any_lane(met.hit)) note(hits, met.hit, met.point, ray, met.normal, met.stone, tag);
@@ -154,6 +154,8 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
     // Light outside goes first: it is what makes the pools grow.
     if (pools->away.count >= LANES)
       look_away(world, tile, pools, task);
+    else if (pools->up.count >= LANES)
+      look_up(world, tile, pools, task);
     else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
       look_around(world, tile, pools, task);
     else if (has_full(&pools->inside) || (all_begun && !last))
@@ -163,13 +165,15 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
       vec3L normal;
       const packetL packet = hits_at(hits, work->hit, &normal);
       if (camera_inside)
-        push_inside(&pools->inside, mask, &packet);
+        push_inside(world, &pools->inside, mask, &packet);
       else
         enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
               DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
     } else if (pools->away.count > 0)
       look_away(world, tile, pools, task);
+    else if (pools->up.count > 0)
+      look_up(world, tile, pools, task);
     else
       return;
   }
@@ -183,6 +187,7 @@ static inline void begin_chain_tile(chain_work_t *work, int number) {
   clear_inside(&work->pools.inside);
   clear(&work->pools.towards);
   clear(&work->pools.away);
+  clear(&work->pools.up);
 }
 
 // Goes on with a tile for as many steps as are left, each of which takes some tenths of a microsecond to some

@@ -78,7 +78,8 @@ static inline bool advance_path(world_t world, classic_path_t *path, int channel
       }
     }
     const maskL in_room = active & !at_stone;
-    const viewL view = look(world, ray, meeting == 0 ? BY_CAMERA : BY_STONE, meeting == 0 ? backdrop : 0, channels);
+    const viewL view =
+        look(world, ray, in_room, meeting == 0 ? BY_CAMERA : BY_STONE, meeting == 0 ? backdrop : 0, channels);
     const radianceL fallback =
         sky(world, reflect3(ray.direction, dot3(ray.direction, view.normal), view.normal), channels);
     const maskL faces_room = in_room & view.meets;
@@ -146,7 +147,7 @@ static inline bool advance_classic_tile(world_t world, classic_work_t *work, int
       if (!advance_path(world, &work->path, work->channel, DECIDED(BACKDROP, scene->has_backdrop) ? &behind : 0,
                         &tile->segments, steps))
         return false;
-      store_lanes(work->path.radiance, tile->radiance[work->channel] + first);
+      begin_sums(work->path.radiance, tile->radiance[work->channel] + first);
     }
     store_lanes(splat(0), tile->cut + first);
   }

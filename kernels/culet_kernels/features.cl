@@ -109,6 +109,9 @@
 
 #define DECIDED(feature, parameter) ((feature) == RUNTIME ? (parameter) : (feature))
 
+// Whether light inside a stone is followed in other axes than the world's.
+#define INNER_AXES (GEOMETRY == HULL || STONES == MANY)
+
 // Whether light that leaves a stone may meet a stone before it meets the room.
 #define EXCHANGE (GEOMETRY == MESH || STONES == MANY)
 

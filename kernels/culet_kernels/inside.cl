@@ -21,7 +21,7 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
   const chainL eta = (chainL)(OF_CHAIN(own, packet.tag, eta));
   maskL alive = taken;
   for (int segment = 0; segment < STRIDE && any_lane(alive); segment++) {
-    const crossingL crossing = stone_exit(world, stone, packet.origin, packet.direction, alive);
+    const crossingL crossing = inner_exit(world, stone, packet.origin, packet.direction, alive);
     tile->segments += count_mask(alive);
     packet.origin = along(packet.origin, crossing.t, packet.direction);
     if (ABSORPTION != 0) {
@@ -35,17 +35,20 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     if (POLARISED || any_lane(leaves)) {
       const realL cos_a = sqrt(fmax(squared_a, (realL)0));
       const splitL parts = meet_boundary(world, &packet, crossing.normal, cos_a, cos_s, squared_a, eta);
-      if (any_lane(leaves))
-        leave(tile, pools, task, &packet, from_own(stone, packet.origin),
-              refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal), (real)1 - parts.kept,
-              parts.transmitted, leaves);
+      if (any_lane(leaves)) {
+        polarisationL transmitted = parts.transmitted;
+        if (POLARISED) transmitted.axis = outward(stone, transmitted.axis);
+        leave(world, tile, pools, task, &packet, from_own(stone, outward(stone, packet.origin)),
+              outward(stone, refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal)),
+              (real)1 - parts.kept, transmitted, leaves);
+      }
       scale_weights(&packet, parts.kept);
       packet.polarisation = parts.reflected;
     }
     packet.direction = reflect_inside(stone, packet.direction, cos_s, crossing.normal);
     packet.tag += ONE_BOUNCE;
     const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
-    alive = settle(world, tile, task, &packet, alive, used_up);
+    alive = settle(world, tile, task, &packet, stone, alive, used_up);
   }
   if (any_lane(alive)) push_to_stone(&pools->inside, number, alive, &packet);
 }

@@ -21,8 +21,10 @@
 #if IS_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define MASK long
+#define SIGN_BIT LONG_MIN
 #else
 #define MASK int
+#define SIGN_BIT INT_MIN
 #endif
 
 #ifndef __has_builtin
@@ -32,7 +34,8 @@
 // Whether 16 numbers of single precision have the processor's own instructions for masks and for packing: OpenCL has none
 // for packing, and PoCL's any() is many.
 #if !IS_DOUBLE && defined(__AVX512F__) && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_compresssi512_mask) && \
-    __has_builtin(__builtin_ia32_permvarsf512) && __has_builtin(__builtin_ia32_permvarsi512)
+    __has_builtin(__builtin_ia32_permvarsf512) && __has_builtin(__builtin_ia32_permvarsi512) &&                        \
+    __has_builtin(__builtin_ia32_vpermi2varps512) && __has_builtin(__builtin_ia32_pternlogd512_mask)
 #define AVX512 1
 #else
 #define AVX512 0
@@ -45,6 +48,9 @@ typedef JOIN(REAL, 4) real4;
 typedef real realL;
 typedef int intL;
 typedef int maskL;
+typedef MASK bitsL;
+#define AS_BITS JOIN(as_, MASK)
+#define AS_REAL JOIN(as_, REAL)
 #define PACKET_WIDTH 1
 #define PACKET_HEIGHT 1
 #define LANE_INDEX 0
@@ -63,6 +69,9 @@ static inline intL blend_ints_by(maskL mask, intL yes, intL no) { return mask ? 
 typedef JOIN(REAL, LANES) realL;
 typedef JOIN(int, LANES) intL;
 typedef JOIN(MASK, LANES) maskL;
+typedef maskL bitsL;
+#define AS_BITS JOIN(JOIN(as_, MASK), LANES)
+#define AS_REAL JOIN(JOIN(as_, REAL), LANES)
 #if LANES == 4
 #define PACKET_WIDTH 2
 #define PACKET_HEIGHT 2
@@ -165,6 +174,15 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 #define EACH(k, number) _Pragma("unroll") for (int k = 0; k < (number); k++)
 
 static inline realL splat(real value) { return (realL)(value); }
+
+// x, or -x where `sign` is negative.
+static inline realL flip(realL x, realL sign) {
+#if LANES == 16 && AVX512
+  return AS_REAL(__builtin_ia32_pternlogd512_mask(AS_BITS(x), AS_BITS(sign), (bitsL)(SIGN_BIT), 0x78, 0xffff));
+#else
+  return AS_REAL(AS_BITS(x) ^ (AS_BITS(sign) & (bitsL)(SIGN_BIT)));
+#endif
+}
 
 // Clang's is one instruction, PoCL's is several.
 #if __has_builtin(__builtin_elementwise_floor)

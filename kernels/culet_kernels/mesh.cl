@@ -238,19 +238,6 @@ static inline void probe_tree(tree_t tree, int root, real side, probe_t *probe) 
   }
 }
 
-// To a stone's own axes, and back.
-static inline vec3L to_own_axes(__constant const stone_t *stone, vec3L v) {
-  return vec3(v.x * stone->axes[0][0] + v.y * stone->axes[1][0] + v.z * stone->axes[2][0],
-              v.x * stone->axes[0][1] + v.y * stone->axes[1][1] + v.z * stone->axes[2][1],
-              v.x * stone->axes[0][2] + v.y * stone->axes[1][2] + v.z * stone->axes[2][2]);
-}
-
-static inline vec3L to_world_axes(__constant const stone_t *stone, vec3L v) {
-  return vec3(v.x * stone->axes[0][0] + v.y * stone->axes[0][1] + v.z * stone->axes[0][2],
-              v.x * stone->axes[1][0] + v.y * stone->axes[1][1] + v.z * stone->axes[1][2],
-              v.x * stone->axes[2][0] + v.y * stone->axes[2][1] + v.z * stone->axes[2][2]);
-}
-
 // Cosine to a facet below which rounding of the ray's start moves the crossing by more than 1e-5 R along the ray.
 #define GRAZING (100000 * SMALLEST_GAP)
 
@@ -288,7 +275,7 @@ static inline crossingL mesh_crossing(__constant const stone_t *stone, tree_t tr
   int wanted[LANES];
   real rows[PROBE_ROWS][LANES], t[LANES], normal[3][LANES];
   store_mask(mask, wanted);
-  aim(to_own_axes(stone, origin), to_own_axes(stone, direction), t_min, side, rows);
+  aim(into_axes(stone->axes, origin), into_axes(stone->axes, direction), t_min, side, rows);
   for (int lane = 0; lane < LANES; lane++) {
     t[lane] = -1e30f;
     EACH (k, 3) normal[k][lane] = 0;
@@ -307,7 +294,7 @@ static inline crossingL mesh_crossing(__constant const stone_t *stone, tree_t tr
   }
   const realL found = load_lanes(t);
   const maskL hit = mask & (found > (real)-1e29);
-  const crossingL crossing = {hit, blend(hit, found, splat(0)), to_world_axes(stone, load3(normal))};
+  const crossingL crossing = {hit, blend(hit, found, splat(0)), out_of_axes(stone->axes, load3(normal))};
   return crossing;
 }
 

@@ -10,7 +10,18 @@ typedef struct {
   inside_t inside;
   pool_t towards; // may meet a stone
   pool_t away;    // can meet the room and the sky only, by way of mirrors a stone again
+  pool_t up;      // can meet the sky only
 } pools_t;
+
+// Puts off a packet that meets no stone next. Where there is a floor and no wall, what goes up and what goes down wait apart, so
+// that a packet does not look at both.
+static inline void put_away(world_t world, pools_t *pools, maskL mask, const packetL *packet) {
+  const int floor_kind = DECIDED(FLOOR, world.scene->floor_kind), walls_kind = DECIDED(WALLS, world.scene->walls_kind);
+  const int parted = floor_kind == NONE ? 0 : walls_kind == NONE;
+  const maskL up = packet->direction.y >= -HORIZON;
+  if (parted) push(&pools->up, mask & up, packet);
+  push(&pools->away, parted ? mask & !up : mask, packet);
+}
 
 // Puts off a packet that may meet a stone. What finds no room is counted as cut.
 static inline void put_off(tile_t *tile, pools_t *pools, task_t task, maskL mask, const packetL *packet) {
@@ -21,8 +32,8 @@ static inline void put_off(tile_t *tile, pools_t *pools, task_t task, maskL mask
 }
 
 // Lets go what leaves a stone's surface at a point of the frame, reflected or from inside. `packet` is as it meets the surface.
-static inline void leave(tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point, vec3L direction,
-                         realL share, polarisationL polarisation, maskL mask) {
+static inline void leave(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point,
+                         vec3L direction, realL share, polarisationL polarisation, maskL mask) {
   packetL outer = *packet;
   outer.origin = point;
   outer.direction = direction;
@@ -31,7 +42,7 @@ static inline void leave(tile_t *tile, pools_t *pools, task_t task, const packet
   if (EXCHANGE)
     put_off(tile, pools, task, mask, &outer);
   else
-    push(&pools->away, mask, &outer);
+    put_away(world, pools, mask, &outer);
 }
 
 #if STONES == MANY
@@ -60,16 +71,16 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   const realL cos_s = cosine_in_stone(cos_a, eta);
   const splitL parts = meet_boundary(world, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
   if (glare)
-    leave(tile, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept, parts.reflected,
-          mask);
+    leave(world, tile, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept,
+          parts.reflected, mask);
   packetL inner = *packet;
   inner.direction = refract_inward(packet->direction, cos_a, cos_s, eta, normal);
   inner.polarisation = parts.transmitted;
   scale_weights(&inner, (real)1 - parts.kept);
   inner.tag = packet->tag & (ONE_BOUNCE - 1);
-  const maskL goes_on = settle(world, tile, task, &inner, mask, mask & !mask);
+  const maskL goes_on = settle(world, tile, task, &inner, 0, mask, mask & !mask);
   if (has_room_inside(&pools->inside))
-    push_inside(&pools->inside, goes_on, &inner);
+    push_inside(world, &pools->inside, goes_on, &inner);
   else
     lose(tile, goes_on, &inner, over_channels(task, &inner));
 }
@@ -95,6 +106,13 @@ static inline void look_away(world_t world, tile_t *tile, pools_t *pools, task_t
   }
 }
 
+// Takes one packet that can meet the sky only.
+static inline void look_up(world_t world, tile_t *tile, pools_t *pools, task_t task) {
+  maskL taken;
+  const packetL packet = pop(&pools->up, &taken);
+  show(tile, task, taken, &packet, seen_sky(world, packet.direction, BY_STONE, 0, channels_of(task)));
+}
+
 // Takes one packet that may meet a stone: it enters, or goes on through the room.
 static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task_t task) {
   maskL taken;
@@ -103,10 +121,10 @@ static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task
   const rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
   const maskL meets = met.hit & !hidden_by_room(world, ray, met.t);
   const maskL misses = taken & !meets;
-  if (any_lane(misses)) push(&pools->away, misses, &packet);
+  if (any_lane(misses)) put_away(world, pools, misses, &packet);
   // Between stones that overlap light could be reflected for ever; so only what is worth it meets another one.
   maskL hits = taken & meets;
-  if (STONES == MANY) hits = settle(world, tile, task, &packet, hits, misses & !misses);
+  if (STONES == MANY) hits = settle(world, tile, task, &packet, 0, hits, misses & !misses);
   if (any_lane(hits)) {
     const vec3L point = along(packet.origin, met.t, packet.direction);
     packet.origin = met.point;

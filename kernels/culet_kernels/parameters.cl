@@ -5,6 +5,7 @@
 #define CULET_PARAMETERS
 #include "lanes.cl"
 
+#define ROW_KINDS 5
 #define MAX_LIGHTS 8
 #define MAX_LAMPS 24
 #define MAX_SURFACES 4 // the floor and three walls
@@ -68,23 +69,25 @@ typedef struct {
 // A stone. Its facets, triangles and shadows are in its own measure: relative to its centre, in the world's axes (triangles:
 // in its own), in units of its radius.
 typedef struct {
-  real centre[3];                   // in the frame
-  real radius, inverse_radius;      // R
-  real reach;                       // R from the centre within which a ray may meet it, rounded up
-  real axes[3][3];                  // columns: its own axes in the world's
-  real absorption[3];               // per radius, by channel
-  real contact[3][3];               // its contact shadow's ellipsoid, see room.cl
-  real contact_shadow;              // part of the floor's light that it takes at most
-  real shade_reach;                 // R from the centre within which it takes any
-  int first_facet, facets;          // its half-spaces
-  int first_block, blocks;          // the same, TREE_WIDTH abreast
-  int root;                         // of its tree
-  int first_chain;                  // its material's
-  int convex;                       // light that leaves it does not come back by itself
-  int by_triangles;                 // it is met by its tree, not by its half-spaces
-  int few_mirrors;                  // it reflects light into few directions
-  int columns[2], rows[2];          // first and last pixel where a ray of the camera may meet it
-  int shadow_start[MAX_LIGHTS + 1]; // where each light's planes begin
+  real centre[3];                    // in the frame
+  real radius, inverse_radius;       // R
+  real reach;                        // R from the centre within which a ray may meet it, rounded up
+  real axes[3][3];                   // columns: its own axes in the world's, and
+  real inner_axes[3][3];             // those in which light inside it is followed, see facet_rows.cl
+  real absorption[3];                // per radius, by channel
+  real contact[3][3];                // its contact shadow's ellipsoid, see room.cl
+  real contact_shadow;               // part of the floor's light that it takes at most
+  real shade_reach;                  // R from the centre within which it takes any
+  int first_facet, facets;           // its half-spaces
+  int first_block, blocks;           // the same, TREE_WIDTH abreast
+  int first_row, row_end[ROW_KINDS]; // the same by symmetry, in the inner axes, see facet_rows.cl
+  int root;                          // of its tree
+  int first_chain;                   // its material's
+  int convex;                        // light that leaves it does not come back by itself
+  int by_triangles;                  // it is met by its tree, not by its half-spaces
+  int few_mirrors;                   // it reflects light into few directions
+  int columns[2], rows[2];           // first and last pixel where a ray of the camera may meet it
+  int shadow_start[MAX_LIGHTS + 1];  // where each light's planes begin
 } stone_t;
 
 // Stones that are near each other, at most eight: a ray that passes their common sphere by need not be tested against each.

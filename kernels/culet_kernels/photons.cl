@@ -170,10 +170,11 @@ static inline void follow(world_t world, __constant const map_frame_t *frame, __
                           photons_t *photons, task_t task, landings_t *to, bool last) {
   pools_t *pools = &photons->pools;
   for (;;) {
-    if (pools->away.count >= LANES ||
-        (last && is_empty(&pools->inside) && pools->towards.count == 0 && pools->away.count > 0)) {
+    pool_t *left =
+        pools->away.count >= pools->up.count ? &pools->away : &pools->up; // of both some is counted, or lands
+    if (left->count >= LANES || (last && is_empty(&pools->inside) && pools->towards.count == 0 && left->count > 0)) {
       maskL taken;
-      const packetL packet = pop(&pools->away, &taken);
+      const packetL packet = pop(left, &taken);
       land(world, frame, bundles, photons, task, &packet, packet.origin, packet.direction, taken, 1, to);
     } else if (REENTRY &&
                (pools->towards.count >= LANES || (last && is_empty(&pools->inside) && pools->towards.count > 0)))
@@ -204,6 +205,7 @@ __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *fra
     clear_inside(&photons.pools.inside);
     clear(&photons.pools.towards);
     clear(&photons.pools.away);
+    clear(&photons.pools.up);
     photons.tile.segments = (intL)(0);
     const real flux = CHANNELS == 3 ? (bundle->flux[0] + bundle->flux[1] + bundle->flux[2]) / 3
                                     : bundle->flux[task.first_channel] / 3;

@@ -3,6 +3,7 @@
 #ifndef CULET_POOL
 #define CULET_POOL
 #include "packet.cl"
+#include "stones.cl"
 
 // Rays that a pool can hold. Where light can come back to a stone, every packet may leave another one behind in each
 // generation, and generations end by weight: some ten for a cut-off of 0.01. What finds no room is counted as cut.
@@ -41,7 +42,16 @@ static inline void clear(pool_t *pool) {
   }
 }
 
-// Rays inside stones. A packet of them is in one stone, since its facets are looked at by all lanes together: the rays of each
+// A packet that comes into a stone, or begins there.
+static inline packetL turned_inward(__constant const stone_t *stone, const packetL *packet) {
+  packetL inner = *packet;
+  inner.origin = inward(stone, packet->origin);
+  inner.direction = inward(stone, packet->direction);
+  if (POLARISED) inner.polarisation.axis = inward(stone, packet->polarisation.axis);
+  return inner;
+}
+
+// Rays inside stones, in the axes of light inside. A packet of them is in one stone, since its facets are looked at by all lanes together: the rays of each
 // stone gather until they are a packet, and full packets wait in a pile, the latest on top.
 #if STONES == MANY
 #define PILE 256 // full packets that may wait; what finds no room is counted as cut
@@ -87,8 +97,8 @@ static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const 
   inside->stone[inside->full++] = stone;
 }
 
-// Appends the lanes that the mask names, each to its own stone.
-static inline void push_inside(inside_t *inside, maskL mask, const packetL *packet) {
+// Appends the lanes that the mask names, each to its own stone, of a packet that comes from outside.
+static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
   int named[LANES], number[LANES];
   store_mask(mask, named);
   store_ints(packet->stone, number);
@@ -96,7 +106,8 @@ static inline void push_inside(inside_t *inside, maskL mask, const packetL *pack
     if (!named[lane]) continue;
     const int stone = number[lane];
     const maskL same = mask & widen(packet->stone == (intL)(stone));
-    push_to_stone(inside, stone, same, packet);
+    const packetL inner = turned_inward(world.stones + stone, packet);
+    push_to_stone(inside, stone, same, &inner);
     for (int other = lane + 1; other < LANES; other++) named[other] = number[other] == stone ? 0 : named[other];
   }
 }
@@ -133,7 +144,10 @@ static inline int has_room_inside(const inside_t *inside) { return has_room(insi
 static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const packetL *packet) {
   push(inside, mask, packet);
 }
-static inline void push_inside(inside_t *inside, maskL mask, const packetL *packet) { push(inside, mask, packet); }
+static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
+  const packetL inner = turned_inward(world.stones, packet);
+  push(inside, mask, &inner);
+}
 __attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *stone) {
   *stone = 0;
   return pop(inside, mask);

@@ -140,8 +140,19 @@ static inline realL past_stones(world_t world, vec3L point) {
   return part;
 }
 
-// What a ray that meets no stone shows. What the camera sees in place of the sky is `backdrop`, if that is not null.
-static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *backdrop, channels_t channels) {
+// What the sky shows of a ray that meets nothing else.
+static inline radianceL seen_sky(world_t world, vec3L direction, int viewer, const radianceL *backdrop,
+                                 channels_t channels) {
+  radianceL radiance = backdrop ? *backdrop : sky(world, direction, channels);
+  if (viewer == BY_STONE && DECIDED(HEAD, world.scene->has_head))
+    hide_by_head(world, direction, direction.x <= direction.x, channels, &radiance);
+  return radiance;
+}
+
+// What a ray that meets no stone shows, of the lanes that are `wanted`. What the camera sees in place of the sky is `backdrop`, if
+// that is not null.
+static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, const radianceL *backdrop,
+                         channels_t channels) {
   __constant const parameters_t *scene = world.scene;
   const int floor_kind = DECIDED(FLOOR, scene->floor_kind), walls_kind = DECIDED(WALLS, scene->walls_kind);
   viewL view;
@@ -149,21 +160,23 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
   view.meets = view.reflects = view.glossy = none;
   view.point = ray.origin;
   view.normal = ray.direction;
-  view.radiance = backdrop ? *backdrop : sky(world, ray.direction, channels);
-  if (viewer == BY_STONE && DECIDED(HEAD, scene->has_head))
-    hide_by_head(world, ray.direction, !none, channels, &view.radiance);
+  view.radiance = black();
   const int has_map = DECIDED(LIGHT_MAP, scene->has_map);
   const int endless = walls_kind == NONE ? floor_kind == STUDIO_FLOOR : 0;
   const int same = has_map ? 0 : endless;
   if (viewer == BY_STONE ? same : 0) { // the same wherever it is met
     view.meets = ray.direction.y < -HORIZON;
+    if (any_lane(wanted & !view.meets)) view.radiance = seen_sky(world, ray.direction, viewer, backdrop, channels);
     EACH_CHANNEL (k, channels)
       view.radiance.channel[k] =
           blend(view.meets, splat(scene->floor_colour[channels.first + k]), view.radiance.channel[k]);
     return view;
   }
   const int first = floor_kind == NONE ? 1 : 0, last = walls_kind == NONE ? 1 : MAX_SURFACES;
-  if (first == last) return view;
+  if (first == last) {
+    view.radiance = seen_sky(world, ray.direction, viewer, backdrop, channels);
+    return view;
+  }
 
   realL nearest = splat(1e30f), centre_along = splat(0), centre_across = splat(0);
   maskL met = none, mirror = none, studio = none;
@@ -190,6 +203,7 @@ static inline viewL look(world_t world, rayL ray, int viewer, const radianceL *b
     mirror = kind == MIRROR ? mirror | nearer : mirror & !nearer;
     if (floor_kind == STUDIO_FLOOR) studio = i == 0 ? nearer : studio & !nearer;
   }
+  if (any_lane(wanted & !met)) view.radiance = seen_sky(world, ray.direction, viewer, backdrop, channels);
   if (!any_lane(met)) return view;
   nearest = blend(met, nearest, splat(0));
   view.point = along(ray.origin, nearest, ray.direction);
@@ -260,7 +274,7 @@ __attribute__((always_inline)) static inline radianceL gather(world_t world, ray
   maskL active = *towards;
   *towards = active & !active;
   for (;;) {
-    const viewL view = look(world, *ray, viewer, backdrop, channels);
+    const viewL view = look(world, *ray, active, viewer, backdrop, channels);
     EACH_CHANNEL (k, channels) radiance.channel[k] += blend(active, ray->weight * view.radiance.channel[k], splat(0));
     const int studio = DECIDED(FLOOR, world.scene->floor_kind) == STUDIO_FLOOR;
     if (studio ? viewer == BY_CAMERA : 0) {

@@ -3,6 +3,7 @@
 #define CULET_SINK
 #include "packet.cl"
 #include "sky.cl"
+#include "stones.cl"
 #include "tile.cl"
 
 // What all rays of a pool have in common while it is worked on.
@@ -124,8 +125,9 @@ static inline realL cutoff_now(world_t world, const tile_t *tile, task_t task, c
 }
 
 // What becomes of chains whose weight is below the cut-off, or whose bounces are used up: which go on. What ends is added
-// to `cut`.
-static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *packet, maskL mask, maskL used_up) {
+// to `cut`. Of light inside a stone, directions are in that stone's axes; of light outside, `host` is null.
+static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *packet, __constant const stone_t *host,
+                           maskL mask, maskL used_up) {
   const int end_kind = DECIDED(END, world.scene->end_kind);
   const realL weight = largest_weight(packet);
   maskL ends = mask & (used_up | (weight < world.scene->cutoff));
@@ -139,7 +141,8 @@ static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *pa
   if (EXCHANGE ? world.scene->stones > 1 || !world.stones->convex : 0)
     ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
   if (end_kind == SKYLIGHT) {
-    show(tile, task, ends, packet, sky(world, packet->direction, channels_of(task)));
+    const vec3L direction = host ? outward(host, packet->direction) : packet->direction;
+    show(tile, task, ends, packet, sky(world, direction, channels_of(task)));
   }
   lose(tile, ends, packet, over_channels(task, packet));
   return mask & !ends;

@@ -242,6 +242,22 @@ static inline crossingL stone_exit(world_t world, __constant const stone_t *ston
   return mesh_crossing(stone, tree_of(world), origin, direction, splat(0), (real)1e30, mask, -1);
 }
 
+// The same in the axes of light inside.
+__attribute__((always_inline)) static inline crossingL inner_exit(world_t world, __constant const stone_t *stone,
+                                                                  vec3L origin, vec3L direction, maskL mask) {
+  if (by_half_spaces(stone))
+    return rows_exit(rows_of(world.rows + (STONES == MANY ? stone->first_row : 0), stone->row_end), origin, direction);
+  return mesh_crossing(stone, tree_of(world), origin, direction, splat(0), (real)1e30, mask, -1);
+}
+
+// Directions, and places about a stone's centre, in the axes of light inside, and back.
+static inline vec3L inward(__constant const stone_t *stone, vec3L v) {
+  return INNER_AXES ? into_axes(stone->inner_axes, v) : v;
+}
+static inline vec3L outward(__constant const stone_t *stone, vec3L v) {
+  return INNER_AXES ? out_of_axes(stone->inner_axes, v) : v;
+}
+
 // Whether a stone lies between points of the room and a light; all in the stone's own measure.
 static inline maskL shaded_by(world_t world, __constant const stone_t *stone, int light, vec3L point, vec3L to_light,
                               real reach, maskL mask) {

@@ -6,7 +6,7 @@
 
 // Pixels on each side: a multiple of a packet's sides, at most 64, for the bits of a ray's tag. Rays of each of several stones
 // gather to packets of their own, which takes more of them.
-#define TILE_OF_ONE 32
+#define TILE_OF_ONE 48
 #define TILE_OF_MANY 64
 #define TILE (STONES == MANY ? TILE_OF_MANY : TILE_OF_ONE)
 #define TILE_PIXELS (TILE * TILE)
@@ -14,10 +14,24 @@
 #define PACKETS_ACROSS (TILE / PACKET_WIDTH)
 #define PACKETS (TILE_PIXELS / LANES)
 
+// A pixel's sum. Where light comes back to the same directions for thousands of reflections, thousands of equal terms are
+// added, each of which single precision would round the same way.
+#if FEW_MIRRORS
+typedef double sum_t;
+static inline void begin_sums(realL value, sum_t *to) {
+  real lanes[LANES];
+  store_lanes(value, lanes);
+  for (int lane = 0; lane < LANES; lane++) to[lane] = lanes[lane];
+}
+#else
+typedef real sum_t;
+static inline void begin_sums(realL value, sum_t *to) { store_lanes(value, to); }
+#endif
+
 typedef struct {
-  real radiance[3][TILE_PIXELS]; // by channel
-  real cut[TILE_PIXELS];         // weight that was dropped, summed over the channels
-  intL segments;                 // inside the stone
+  sum_t radiance[3][TILE_PIXELS]; // by channel
+  real cut[TILE_PIXELS];          // weight that was dropped, summed over the channels
+  intL segments;                  // inside the stone
 } tile_t;
 
 // Pixels lie packet by packet in a tile, so that a packet is stored as it is.
@@ -76,8 +90,8 @@ static inline void write_tile(const tile_t *tile, __global real4 *image, __globa
   for (int y = 0; y < rows; y++)
     for (int x = 0; x < columns; x++) {
       const int pixel = pixel_at(x, y);
-      const real4 sample =
-          (real4)(tile->radiance[0][pixel], tile->radiance[1][pixel], tile->radiance[2][pixel], tile->cut[pixel] / 3);
+      const real4 sample = (real4)((real)tile->radiance[0][pixel], (real)tile->radiance[1][pixel],
+                                   (real)tile->radiance[2][pixel], tile->cut[pixel] / 3);
       __global real4 *sum = image + (size_t)(row + y) * scene->width + (column + x);
       *sum = accumulate ? *sum + sample : sample;
       dropped += sample.w;

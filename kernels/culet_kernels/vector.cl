@@ -49,4 +49,16 @@ static inline vec3L renormalise(vec3L a) { return scale3(fma((real)-0.5, dot3(a,
 // a is mirrored at the plane with normal n; a_dot_n is their dot product.
 static inline vec3L reflect3(vec3L a, realL a_dot_n, vec3L n) { return along(a, (real)-2 * a_dot_n, n); }
 
+// To axes whose columns these are, and back.
+static inline vec3L into_axes(__constant const real axes[3][3], vec3L v) {
+  return vec3(v.x * axes[0][0] + v.y * axes[1][0] + v.z * axes[2][0],
+              v.x * axes[0][1] + v.y * axes[1][1] + v.z * axes[2][1],
+              v.x * axes[0][2] + v.y * axes[1][2] + v.z * axes[2][2]);
+}
+static inline vec3L out_of_axes(__constant const real axes[3][3], vec3L v) {
+  return vec3(v.x * axes[0][0] + v.y * axes[0][1] + v.z * axes[0][2],
+              v.x * axes[1][0] + v.y * axes[1][1] + v.z * axes[1][2],
+              v.x * axes[2][0] + v.y * axes[2][1] + v.z * axes[2][2]);
+}
+
 #endif

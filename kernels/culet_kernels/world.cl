@@ -1,6 +1,7 @@
 // What a scene is made of, as every stage sees it.
 #ifndef CULET_WORLD
 #define CULET_WORLD
+#include "facet_rows.cl"
 #include "mesh.cl"
 #include "parameters.cl"
 
@@ -12,6 +13,7 @@
   BUFFER(__constant const group_t, groups) /* MANY */                                                                  \
   BUFFER(__global const real4, facets)     /* HULL: normal and offset */                                               \
   BUFFER(__global const real, blocks)      /* HULL of MANY: the same, by TREE_WIDTH */                                 \
+  BUFFER(__global const real4, rows)       /* HULL: the same by symmetry, see facet_rows.cl */                         \
   BUFFER(__global const real4, shadows)    /* HULL: planes of the lights' shadow volumes */                            \
   BUFFER(__global const real, boxes)       /* MESH: see tree_t */                                                      \
   BUFFER(__global const int, links)                                                                                    \

@@ -71,6 +71,21 @@ def gradient(direction: Array) -> float:
     return float(1 + direction[1]) / 2
 
 
+NEARBY = 1e-6
+"""Radians by which rays differ that single precision may take for each other, after dozens of reflections."""
+
+
+def passes_an_edge(
+    exact: Renderer, stone: Shape, eye: Array, direction: Array, eta: float, sky: dict[str, object]
+) -> bool:
+    """Whether rays that are NEARBY show different things: single precision may then show either."""
+    random = np.random.default_rng(0)
+    ways = direction + random.normal(0, NEARBY, (8, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    scenes = [ray_scene(eye, way, eta, sky, polarised=False) for way in ways]
+    return bool(np.ptp([radiance(take(exact, scene, stone, (1, 1)))[0, 0, 0] for scene in scenes]) > 1e-4)
+
+
 @pytest.mark.parametrize(("eta", "sky"), [(1.5, half), (2.42, gradient)], ids=["1.5, half", "2.42, gradient"])
 @pytest.mark.parametrize("stone", [shape_of(StoneSettings(), {}), skew_block()], ids=["brilliant", "skew block"])
 def test_rays_see_what_their_electric_fields_say(
@@ -82,6 +97,7 @@ def test_rays_see_what_their_electric_fields_say(
     double: list[float] = []
     single: list[float] = []
     effect: list[float] = []
+    steady = 0
     for _ in range(16):
         eye = random.normal(size=3)
         eye *= 3 / np.linalg.norm(eye)
@@ -89,10 +105,13 @@ def test_rays_see_what_their_electric_fields_say(
         direction /= np.linalg.norm(direction)
         fields = {mode: ray_fields.seen(stone, eta, eye, direction, sky, averaged=not mode) for mode in (True, False)}
         effect.append(abs(fields[True] - fields[False]))
+        edge = passes_an_edge(exact, stone, eye, direction, eta, kind)
+        steady += not edge
         for mode, expected in fields.items():
             scene = ray_scene(eye, direction, eta, kind, polarised=mode)
-            for used, errors in ((exact, double), (renderer, single)):
+            for used, errors in ((exact, double), *(() if edge else ((renderer, single),))):
                 errors.append(abs(radiance(take(used, scene, stone, (1, 1)))[0, 0, 0] - expected))
+    assert steady >= 14  # 15 at least
     assert max(effect) > 2e-3  # measured 0.0035 to 0.053: what polarisation changes
     assert max(double) < 2e-9  # measured 9.4e-10, the cut-off
     assert np.median(single) < 3e-7  # measured 8.7e-8

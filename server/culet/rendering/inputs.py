@@ -67,6 +67,7 @@ class Inputs:
             "groups": self._upload(self._table.groups),
             "facets": self._upload(self._table.facets.astype(real)),
             "blocks": self._upload(self._table.blocks.astype(real)),
+            "rows": self._upload(self._table.rows.astype(real)),
             "shadows": self._upload(self._table.shadows.astype(real)),
         }
 

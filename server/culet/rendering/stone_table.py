@@ -13,6 +13,7 @@ from culet.geometry.polygons import edges_of_facets
 from culet.geometry.shape import Shape
 from culet.rendering.chains import absorption, chains_of_stones
 from culet.rendering.device import Real
+from culet.rendering.facet_rows import facet_rows
 from culet.rendering.features import Features, Geometry, Stones, by_half_spaces
 from culet.rendering.footprint import footprints, reach_of
 from culet.rendering.layout import struct
@@ -42,6 +43,8 @@ class StoneTable:
     """(F, 4)"""
     blocks: Array
     """(B, 4, WIDTH): the facets of a stone, WIDTH abreast."""
+    rows: Array
+    """(N, 4): the facets of each shape by its symmetry, see facet_rows.py."""
     shadows: Array
     """(P, 4)"""
     tree: Tree | None
@@ -63,7 +66,8 @@ class StoneTable:
         if stones:
             _place(rows, scene, stones, projection.origin)
         facets, blocks, shadows, trees = [np.zeros((1, 4))], [np.zeros((0, 4, WIDTH))], [np.zeros((1, 4))], []
-        first_facet, first_block, first_plane, root, leaves = 1, 0, 1, 0, 0
+        first_facet, first_block, first_row, first_plane, root, leaves = 1, 0, 0, 1, 0, 0
+        by_symmetry = []
         for shape, numbers in by_shape(stones).items():
             by_triangles = features.geometry == Geometry.MESH and (
                 not by_half_spaces(shape) or features.stones == Stones.ONE
@@ -75,11 +79,18 @@ class StoneTable:
                 trees.append(tree.moved(root, leaves))
                 rows["root"][numbers] = root
                 root, leaves = root + len(tree.links), leaves + len(tree.corners)
+                rows["inner_axes"][numbers] = np.eye(3)
                 continue
+            symmetric = facet_rows(shape)
+            own_rows = symmetric.data(real)
+            rows["first_row"][numbers], rows["row_end"][numbers] = first_row, symmetric.ends
+            by_symmetry.append(own_rows)
+            first_row += len(own_rows)
             rotations = np.array([stones[number].rotation for number in numbers])
             planes = np.empty((len(numbers), len(shape.planes), 4))
-            planes[..., :3] = shape.planes[:, :3] @ rotations.transpose(0, 2, 1)
-            planes[..., 3] = shape.planes[:, 3]
+            planes[..., :3] = symmetric.planes[:, :3] @ rotations.transpose(0, 2, 1)
+            planes[..., 3] = symmetric.planes[:, 3]
+            rows["inner_axes"][numbers] = rotations @ symmetric.axes
             count, own = np.arange(len(numbers)), _abreast(planes)
             rows["first_facet"][numbers] = first_facet + count * planes.shape[1]
             rows["first_block"][numbers] = first_block + count * own.shape[1]
@@ -104,6 +115,7 @@ class StoneTable:
             _groups(rows[: len(stones)], real),
             np.vstack(facets[1:] if one else facets),
             np.concatenate([*blocks, np.zeros((1, 4, WIDTH))]),
+            np.concatenate([*by_symmetry, np.zeros((1, 4))]),
             np.vstack(shadows),
             Tree.joined(trees) if trees else None,
         )

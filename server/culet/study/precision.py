@@ -35,7 +35,7 @@ DECIDED = 1e-4
 """Radiance."""
 PERTURBATION = 2e-6
 """R, and radians: some ten times the rounding of a position on the stone, since that adds up over tens of bounces."""
-TURNS = 32
+TURNS = 64
 """Perturbed pictures. A pixel that is at an edge moves past it in half of them."""
 STEP = 0.55
 """Largest gap between the sorted values of a pixel, as part of their range. Values of a step have one gap, near 1; on
