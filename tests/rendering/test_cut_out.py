@@ -105,3 +105,12 @@ def test_colours_are_those_of_what_is_there_however_little_is_there(renderer: Re
     assert partly.sum() > 20
     there = rgba[partly][:, :3] / 255 * linear[partly][:, 3:]
     assert np.abs(there - 0.25 * linear[partly][:, :3]).max() <= 0.5 / 255 + 1e-6, "half a level of rounding"
+
+
+def test_before_a_colour_it_is_what_programs_make_of_the_transparent_one(renderer: Renderer) -> None:
+    transparent = cut_out(renderer, Scene()).rgb()
+    shown = cut_out(renderer, Scene.read({"film": {"background": "#f0c040"}})).rgb()
+    over = PIL.Image.new("RGBA", SIZE, "#f0c040")
+    over.alpha_composite(PIL.Image.fromarray(transparent))
+    assert shown.shape == (HEIGHT, WIDTH, 3)
+    assert np.abs(shown.astype(int) - np.asarray(over)[..., :3]).max() <= 1  # levels: Pillow rounds twice
