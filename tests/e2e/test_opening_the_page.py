@@ -35,6 +35,17 @@ def test_the_canvas_shows_what_the_server_renders(view_of: ViewOf, server: Serve
     assert difference(seen.pixels, still) < JPEG
 
 
+def test_the_first_picture_needs_less_than_60_kilobytes_of_script(view_of: ViewOf) -> None:
+    """As they come over the line, compressed. Measured: 31."""
+    view, scripts = view_of(), []
+    view.page.on(
+        "requestfinished", lambda request: scripts.append(request) if request.resource_type == "script" else None
+    )
+    view.open()
+    sizes = {script.url: script.sizes()["responseBodySize"] for script in list(scripts)}
+    assert 10_000 < sum(sizes.values()) < 60_000, sizes
+
+
 def test_a_page_opened_while_the_engine_is_away_opens_by_itself_once_it_is_back(
     view_of: ViewOf, server: Server
 ) -> None:
