@@ -108,6 +108,8 @@ def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_pa
     turned = "34 22 10 94 82 70 58 46"  # 48 less those of its own wheel: a .gcs has no offset, and counts one way
     for part in ("crown", "35.00", turned, "T/W", "0.6273", "made for a refractive index of 1.54"):
         assert part.lower() in shown.lower()
+    assert invoke("design", "diagram", back, "-o", tmp_path / "stone.svg").returncode == 0
+    assert (tmp_path / "stone.svg").read_text().count("<polygon") > 25
     for file in (there, back):
         run = invoke("render", "-o", f"{file}.npy", "--mesh", file, *TINY)
         assert run.returncode == 0, run.stderr
@@ -123,6 +125,8 @@ def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_pa
         (("show", "nowhere.gem"), "nowhere.gem: cannot be read"),
         (("show", "stone.obj"), "stone.obj: expected a design of type asc, gem, gcs, got 'obj'"),
         (("convert", "wrong.asc", "a.asc"), "wrong.asc: .asc: line 2: expected a distance, got 'x'"),
+        (("diagram", "open.asc", "-o", "a.svg"), "open.asc: the design is open above and below"),
+        (("diagram", "open.asc", "-o", "a.png"), "out: expected a name that ends in .svg"),
         (("convert", "open.asc", "a.gem"), "out: expected a name that ends in .asc"),
         (("convert", "open.asc", "missing/a.asc"), "there is no folder"),
     ],
@@ -135,7 +139,7 @@ def test_designs_that_cannot_be_used_are_refused_in_one_line(
     Path("wrong.asc").write_text("g 96\na 90 x 24 48 72 96\n")
     Path("stone.obj").write_text("v 0 0 0\n")
     assert said in refused(invoke("design", *arguments))
-    assert not Path("a.asc").exists()
+    assert not list(Path().glob("a.*"))
 
 
 def test_a_mesh_takes_the_place_of_a_stone_of_any_scale(tmp_path: Path) -> None:

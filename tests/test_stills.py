@@ -172,10 +172,14 @@ def test_progress_goes_from_nothing_to_all() -> None:
 
 
 def test_a_transparent_picture_has_alpha(tmp_path: Path) -> None:
-    picture = culet.render(ALL_SKY, *SIZE, transparent=True)
+    picture = culet.render(ALL_SKY, *SIZE, background="transparent")
     assert (picture.rgb == 0).all(), "nothing is there"
     assert picture.linear.shape == (16, 24, 4)
     with Image.open(picture.save(tmp_path / "gem.png")) as image:
         assert image.mode == "RGBA"
     said_so = culet.render(ALL_SKY | {"film": {"background": "transparent"}}, *SIZE)
     assert (said_so.rgb == picture.rgb).all()
+    colour = culet.render(ALL_SKY, *SIZE, background="#f4f1ea")
+    assert (colour.rgb == (0xF4, 0xF1, 0xEA)).all(), "to the last bit, whatever the tone map is"
+    with pytest.raises(SceneError, match=r"film\.background: expected text that matches .*; got 'blue'"):
+        culet.render(ALL_SKY, *SIZE, background="blue")

@@ -34,6 +34,9 @@ class Connection(ABC):
 
     session: str | None
     """Its id; None where only the watch id is known."""
+    notices: list[Message]
+    """What the server said between the last two pictures: the session's scene and changes to it, how many watch. Over
+    ZeroMQ nothing is said."""
 
     @abstractmethod
     def send(self, event: SessionEvent | Resize) -> None:
@@ -120,8 +123,7 @@ class _OverWebSocket(Connection):
         size: tuple[int, int] | None,
         timeout_seconds: float,
     ) -> None:
-        self.notices: list[Message] = []
-        """What came between the last two pictures: the session's scene and changes to it, how many watch."""
+        self.notices = []
         self._timeout = timeout_seconds
         rest = Rest(url, timeout_seconds)
         with ExitStack() as opened:
@@ -162,6 +164,7 @@ class _OverZeroMq(Connection):
         size: tuple[int, int] | None,
         timeout_seconds: float,
     ) -> None:
+        self.notices = []
         self._timeout = timeout_seconds
         if session is None and watch is None and control is None:
             raise ClientError("expected a session, its watch id, or a control address to make a session by; got none")

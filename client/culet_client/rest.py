@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import http.client
 import json
 import urllib.error
 import urllib.request
@@ -51,9 +52,12 @@ class Rest:
                 text = answer.read()
         except urllib.error.HTTPError as error:
             raise _refusal(error) from error
-        except OSError as error:
+        except (OSError, http.client.HTTPException) as error:
             raise ClientError(f"cannot reach {self.server}: {getattr(error, 'reason', error)}") from error
-        answered: dict[str, Any] = json.loads(text) if text else {}
+        try:
+            answered: dict[str, Any] = json.loads(text) if text else {}
+        except ValueError as error:
+            raise ClientError(f"{self.server} answered with something else than JSON; is it culet?") from error
         return answered
 
 

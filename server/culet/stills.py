@@ -72,8 +72,8 @@ class Picture:
     scene: Scene
     """What it shows."""
     linear: NDArray[np.float32]
-    """(height, width, 3) linear radiance in the primaries of sRGB, the top row first; not exposed, not clipped. Of a
-    transparent picture (height, width, 4): multiplied by alpha, and alpha."""
+    """(height, width, 3) linear radiance in the primaries of sRGB, the top row first; not exposed, not clipped. Of one
+    without a backdrop (height, width, 4): multiplied by alpha, and alpha."""
     rgb: NDArray[np.uint8]
     """(height, width, 3) as the scene's `film` develops it for a screen. Of a transparent picture (height, width, 4):
     not multiplied by alpha, and alpha."""
@@ -148,7 +148,7 @@ def render(
     *,
     samples: int | None = None,
     error: float | None = None,
-    transparent: bool = False,
+    background: str | None = None,
     mesh: str | os.PathLike[str] | None = None,
     sky: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
@@ -163,8 +163,8 @@ def render(
             `error` at most 65536.
         error: take samples until what is shown, from 0 to 1, is estimated to be off by this, root mean square over
             pixels and colours; from 0.004 on no difference is seen. Whether that is `met` the picture says.
-        transparent: whether nothing is behind the stones, in place of the backdrop: pictures with alpha, and twice the
-            work. The scene's `film.background` says so too.
+        background: `transparent` for nothing behind the stones, with alpha, or a colour, such as `#f4f1ea`, for exactly
+            that behind them; both take twice the work. Without it the scene's `film.background`.
         mesh: file of a mesh (.obj .off .stl .ply .glb) or of a design (.asc .gem .gcs) that takes the place of the
             scene's stone.
         sky: file (.exr .hdr .png) with a panorama, twice as wide as high, that becomes the scene's sky; of a preset,
@@ -184,15 +184,15 @@ def render(
     ((18, 32, 3), 'uint8', 2)
     """
     stage, findings = stage_of(scene, mesh, sky)
-    if transparent:
-        stage = cut_out(stage)
+    if background is not None:
+        stage = before(stage, background)
     return render_stage(stage, width, height, samples=samples, error=error, progress=progress, findings=findings)
 
 
-def cut_out(stage: Stage) -> Stage:
-    """The stage whose stills have nothing behind the stones."""
-    film = stage.scene.film.model_copy(update={"background": "transparent"})
-    return stage.showing(stage.scene.model_copy(update={"film": film}))
+def before(stage: Stage, background: str) -> Stage:
+    """The stage whose stills have that behind everything, as `film.background` says it; SceneError for what is none."""
+    film = stage.scene.film.model_dump(mode="json") | {"background": background}
+    return stage.showing(Scene.read(stage.scene.model_dump(mode="json") | {"film": film}))
 
 
 def stage_of(
@@ -233,7 +233,7 @@ def render_stage(
     target = Target.of(samples, error, stage.scene)
     with _RENDERING:
         renderer = _renderer()
-        make = renderer.cut_out if stage.scene.film.background == "transparent" else renderer.picture
+        make = renderer.cut_out if stage.scene.film.cut_out else renderer.picture
         picture = make(stage, width, height)
         began, segments, paths = time.perf_counter(), 0, 0
         while not picture.reached(target):

@@ -376,6 +376,9 @@ async def test_a_transparent_picture_has_alpha(gateway: Gateway) -> None:
         assert (image.mode, image.size) == (mode, (64, 36))
         alphas.append(image.getextrema()[-1])
     assert alphas[0] == alphas[1] == (0, 255)
+    brand = await gateway.http.get("/api/render.png", params=query | {"background": "f4f1ea"})
+    assert Image.open(io.BytesIO(brand.content)).convert("RGB").getpixel((0, 0)) == (0xF4, 0xF1, 0xEA)
+    assert_problem(await gateway.http.get("/api/render.png", params=query | {"background": "blue"}), 422, "background")
     session = await gateway.session({"film": {"background": "transparent"}})
     frame = await gateway.http.get(f"/api/sessions/{session}/frame.png", params=SMALL | {"samples": 1})
     assert Image.open(io.BytesIO(frame.content)).mode == "RGBA"

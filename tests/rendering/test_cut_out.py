@@ -95,3 +95,22 @@ def test_what_is_opaque_is_developed_as_ever(renderer: Renderer) -> None:
     opaque = transparent[..., 3] == 255
     assert opaque.sum() > 100
     assert np.abs(transparent[opaque][:, :3].astype(int) - whole[opaque]).max() <= 1
+
+
+def test_colours_are_those_of_what_is_there_however_little_is_there(renderer: Renderer) -> None:
+    scene = Scene.read({"floor": {"kind": "none"}, "film": {"tone_map": "none", "exposure": 0.25}})
+    picture = cut_out(renderer, scene, samples=8)
+    linear, rgba = picture.linear(), picture.rgb()
+    partly = (linear[..., 3] > 0.1) & (linear[..., 3] < 0.9) & (rgba[..., :3].max(axis=-1) < 255)
+    assert partly.sum() > 20
+    there = rgba[partly][:, :3] / 255 * linear[partly][:, 3:]
+    assert np.abs(there - 0.25 * linear[partly][:, :3]).max() <= 0.5 / 255 + 1e-6, "half a level of rounding"
+
+
+def test_before_a_colour_it_is_what_programs_make_of_the_transparent_one(renderer: Renderer) -> None:
+    transparent = cut_out(renderer, Scene()).rgb()
+    shown = cut_out(renderer, Scene.read({"film": {"background": "#f0c040"}})).rgb()
+    over = PIL.Image.new("RGBA", SIZE, "#f0c040")
+    over.alpha_composite(PIL.Image.fromarray(transparent))
+    assert shown.shape == (HEIGHT, WIDTH, 3)
+    assert np.abs(shown.astype(int) - np.asarray(over)[..., :3]).max() <= 1  # levels: Pillow rounds twice

@@ -17,6 +17,7 @@ import {
 import { Bareness } from "./bareness";
 import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
+import { type Embedding, embeddingOf, queryOf, SHOWN, Turntable } from "./embedding";
 import type { SessionEvent, Target } from "./events";
 import { FallButton } from "./fall-button";
 import { listenToDrops } from "./file-drop";
@@ -70,6 +71,8 @@ const announcement = element("announcement", HTMLElement);
 const statusLine = element("status", HTMLElement);
 const PROBLEMS_KEPT = 100;
 const VIEW_REFUSED = "This server cannot show the view of this link.";
+/** What is left to do, beside moves, where a page shows nothing but the picture. */
+const VIEWING = new Set(["reset_camera", "look", "full"]);
 const COME_BACK = "H, Esc or a tap on the picture brings everything back.";
 const problems: string[] = [];
 const files = new OpenedFiles();
@@ -135,7 +138,17 @@ const keyCard = new KeyCard(
 );
 const welcome = new Welcome(element("welcome", HTMLElement));
 const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(COME_BACK));
+const embedding = embeddingAsked();
+if (!embedding.ui) bareness.stay();
 const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance), clamped);
+const turntable = new Turntable(matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : embedding.rotate, (turn) =>
+  viewer?.stream.send(turn),
+);
+function turnOn(now: number): void {
+  if (viewer?.lastFrame) turntable.turn(now, viewer.player.shown);
+  requestAnimationFrame(turnOn);
+}
+if (embedding.rotate !== 0) requestAnimationFrame(turnOn);
 listenToKeys(window, perform);
 listenToDrops(window, open, problem);
 const hand = new Hand({
@@ -152,6 +165,8 @@ listenToPointers(canvas, {
   move,
   push: (push) => viewer?.send(push),
   click: (x, y) => {
+    turntable.toggle();
+    if (!embedding.ui) return;
     if (bareness.on) {
       bareness.toggle();
       return;
@@ -161,9 +176,11 @@ listenToPointers(canvas, {
   },
   hand,
   area: () => screen.area,
+  zooms: (event) => embedding.ui || event.ctrlKey, // a pinch of a touchpad counts as with Ctrl
 });
 
-function perform({ effect }: Action): void {
+function perform({ effect, name }: Action): void {
+  if (!embedding.ui && effect.kind !== "move" && !VIEWING.has(name)) return;
   if (effect.kind === "download") attempt(() => saving.picture(effect.format));
   else if (effect.kind === "copy") attempt(() => copy[effect.what]());
   else if (effect.kind === "page") onPage[effect.command]();
@@ -176,6 +193,7 @@ function perform({ effect }: Action): void {
 
 /** Move the target: a stone only if it is known which. */
 function move(by: Move, target: Target): void {
+  turntable.rest(performance.now());
   const stone = stones.chosen();
   if (target === "stone" && stone === null) problem(CHOOSE_FIRST);
   else for (const event of movesOf(by, target, stone ?? "")) viewer?.send(event);
@@ -205,6 +223,16 @@ window.addEventListener("keydown", ({ key }) => {
 /** A number was typed that is beyond what a slider can be at. */
 function clamped(typed: number, taken: number): void {
   toasts.note(`${typed} is beyond the slider: ${taken} is taken.`);
+}
+
+/** What the address asks for; the whole page, and words about it, if that cannot be. */
+function embeddingAsked(): Embedding {
+  try {
+    return embeddingOf(location.search);
+  } catch (error) {
+    problem(error instanceof Error ? error.message : String(error));
+    return embeddingOf("");
+  }
 }
 
 /** Run what may be refused, and tell the user why. */
@@ -267,7 +295,7 @@ function aspect(): number {
 }
 
 function startAnew(): void {
-  location.assign("/");
+  location.assign(`/?${queryOf(embedding).slice(1)}`);
 }
 
 function connectionChanged(connection: Connection): void {
@@ -333,9 +361,14 @@ function stateChanged(before: ViewState, after: ViewState): void {
   if (viewer) showBanner(viewer.stream.connection);
 }
 
+function firstShown(): void {
+  if (embedding.ui) welcome.show();
+  if (window.parent !== window) window.parent.postMessage(SHOWN, "*");
+}
+
 function watch(id: string): void {
   session = id;
-  history.replaceState(null, "", sessionAddress(id));
+  history.replaceState(null, "", sessionAddress(id, embedding));
   waiting.show(WAITING);
   const timer = setTimeout(() => waiting.show(WAITING_LONG), WAITING_LONG_MS);
   const whereabouts = new Whereabouts();
@@ -345,7 +378,7 @@ function watch(id: string): void {
       screen.show(picture, shownStep === frame.step && !(frame.flags & Flag.MOVING));
       shownStep = frame.step;
       clearTimeout(timer);
-      if (viewer?.player.shown === 0) welcome.show();
+      if (viewer?.player.shown === 0) firstShown();
       waiting.show(null);
       elsewhere = whereabouts.after(frame, arrival.time, viewer?.state.scene ?? null);
       if (viewer) showBanner(viewer.stream.connection);
@@ -408,6 +441,18 @@ async function sessionFor(wanted: Exclude<Wanted, { kind: "invalid" }>): Promise
   }
 }
 
+/** What the panel and the scenes are filled with. */
+function loadCatalogues(): void {
+  attempt(async () => strip.show(await rest.presets(), choosePreset));
+  attempt(async () => panel.choices.addMaterials(await rest.materials()));
+  attempt(async () => {
+    const [cut] = await rest.cuts(); // there is one so far
+    if (cut) panel.addCut(cut);
+  });
+  attempt(async () => panel.choices.addSkies(await rest.skies()));
+  attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
+}
+
 function asProblem(error: unknown): rest.ProblemError {
   return error instanceof rest.ProblemError ? error : new rest.ProblemError(500, String(error));
 }
@@ -467,12 +512,5 @@ expose({
 // A link that is pasted over one that could not be read is no other page to the browser.
 window.addEventListener("hashchange", () => location.reload());
 waiting.show("Connecting\u2026");
-attempt(async () => strip.show(await rest.presets(), choosePreset));
-attempt(async () => panel.choices.addMaterials(await rest.materials()));
-attempt(async () => {
-  const [cut] = await rest.cuts(); // there is one so far
-  if (cut) panel.addCut(cut);
-});
-attempt(async () => panel.choices.addSkies(await rest.skies()));
-attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
+if (embedding.ui) loadCatalogues();
 attempt(start);

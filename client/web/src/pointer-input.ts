@@ -20,6 +20,8 @@ export interface PointerWorld {
   hand: Hand;
   /** Where the picture is on the canvas, css pixels. */
   area: () => Rectangle;
+  /** Whether a turn of the wheel is the picture's, or that of the page that it stands in. */
+  zooms: (event: WheelEvent) => boolean;
 }
 
 /** A pointer that is down, and where that was, css pixels of the canvas. */
@@ -117,6 +119,7 @@ export function listenToPointers(canvas: HTMLCanvasElement, world: PointerWorld)
   canvas.addEventListener(
     "wheel",
     (event) => {
+      if (!world.zooms(event)) return;
       event.preventDefault(); // or a pinch on a touchpad would zoom the page
       add(0, 0, wheelBy(event.deltaY, event.deltaMode));
     },

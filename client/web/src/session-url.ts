@@ -1,5 +1,6 @@
 /** What the page's address says about the session, and where its stream is. */
 
+import { type Embedding, queryOf } from "./embedding";
 import { packedView } from "./view-link";
 
 /** An id as the gateway makes them; anything else in the address is treated as an unknown session. */
@@ -22,8 +23,8 @@ export function wantedSession(search: string, hash = ""): Wanted {
 }
 
 /** The address that others may watch the session at. */
-export function sessionAddress(id: string): string {
-  return `/?session=${id}`;
+export function sessionAddress(id: string, embedding?: Embedding): string {
+  return `/?session=${id}${embedding ? queryOf(embedding) : ""}`;
 }
 
 export function streamUrl(location: Pick<Location, "protocol" | "host">, id: string): string {

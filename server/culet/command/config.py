@@ -16,7 +16,7 @@ from culet.gateway.settings import GatewaySettings
 from culet.settings import Settings, variable
 
 CONFIG = "config"
-COMMANDS_OWN = frozenset({"frames", "spare", "open"})
+COMMANDS_OWN = frozenset({"control", "frames", "spare", "open"})
 """Options of `culet serve` and its like that are no settings."""
 ENDPOINTS = {"control": "", "frames": ""}
 """Those of GatewaySettings, which a command names by itself."""
@@ -34,7 +34,7 @@ def read_config(file: Path, options: Mapping[str, bool]) -> dict[str, Any]:
         raise InputError(f"{file}: cannot be read: {error.strerror}", CONFIG) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{file}: not TOML: {error}", CONFIG) from error
-    known = {*GatewaySettings.model_fields, *Limits.model_fields, *COMMANDS_OWN} - {"control"}
+    known = {*GatewaySettings.model_fields, *Limits.model_fields, *COMMANDS_OWN}
     found: dict[str, Any] = {}
     for key, value in given.items():
         name = key.replace("-", "_")

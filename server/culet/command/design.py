@@ -59,6 +59,24 @@ def convert(
         typer.echo(f"{out}: {count} facets in {len(design.tiers)} tiers; read back, planes are {apart:.1g} apart")
 
 
+@app.command()
+def diagram(
+    file: DesignFile,
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Drawing: .svg")] = Path("diagram.svg"),
+) -> None:
+    """Draw the cutting diagram on a page: four views, the index wheel, proportions and the table of tiers."""
+    from culet.geometry.designs.diagram import diagram_of
+    from culet.geometry.designs.solid import Solid
+
+    with errors_in_one_line():
+        check_place(out, "out", ["svg"])
+        design = read(file)
+        with naming(str(file)):
+            solid = Solid(design)
+        write_whole(out, diagram_of(solid).encode("utf-8", "replace"), "out")
+        typer.echo(f"{out}: {len(solid.cut.used)} facets in {len(design.tiers)} tiers")
+
+
 def read(file: Path) -> Design:
     """The design in a file; InputError names the file."""
     from culet.geometry.designs.reader import read_design

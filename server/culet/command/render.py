@@ -39,22 +39,25 @@ def render(
             "pixels and colours); from 0.004 on no difference is seen.",
         ),
     ] = None,
-    transparent: Annotated[
-        bool, typer.Option("--transparent", help="Nothing behind the stones: with alpha, but for .jpg; twice the work.")
-    ] = False,
+    background: Annotated[
+        str | None,
+        typer.Option(
+            metavar="transparent|#rrggbb", help="Nothing behind the stones, with alpha, or that colour; twice the work."
+        ),
+    ] = None,
     preset: Preset = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
 ) -> None:
     """Render a still picture into a file."""
     from culet.rendering.files import FORMATS
-    from culet.stills import cut_out, render_stage
+    from culet.stills import before, render_stage
 
     with errors_in_one_line():
         check_place(out, "out", FORMATS)
         stage = read_stage(scene, preset, mesh, sky)
-        if transparent:
-            stage = cut_out(stage)
+        if background is not None:
+            stage = before(stage, background)
         with progress_bar(f"rendering {out.name}") as advance:
             picture = render_stage(stage, width, height, samples=samples, error=error, progress=advance)
         picture.save(out)

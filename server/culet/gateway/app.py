@@ -24,6 +24,7 @@ from culet.gateway.link import EngineLink
 from culet.gateway.methods import Methods
 from culet.gateway.metrics import Metrics
 from culet.gateway.openapi import Application
+from culet.gateway.page_files import PageFiles
 from culet.gateway.quality import QUALITY_HEADERS
 from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
@@ -74,7 +75,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     app.mount("/docs", StaticFiles(directory=DOCS_FOLDER))  # its script and style: no policy allows those in a page
 
     if (settings.web / "index.html").is_file():
-        app.mount("/", StaticFiles(directory=settings.web, html=True))
+        app.mount("/", PageFiles(directory=settings.web, html=True))
     else:
 
         @app.get("/", include_in_schema=False)

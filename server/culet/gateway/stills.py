@@ -72,8 +72,12 @@ class StillQuery(Model):
     environment: Literal["dark", "light", "studio"] | None = None
     background: (
         Annotated[
-            Literal["backdrop", "transparent"],
-            Field(description="Whether nothing is behind the stones: with alpha, white in .jpg; twice the work."),
+            str,
+            Field(
+                pattern="^(backdrop|transparent|#?[0-9a-fA-F]{6})$",
+                description="Behind everything: `transparent` for nothing, with alpha (white in .jpg), or a colour "
+                "such as `f4f1ea`; both take twice the work. Not given: as the preset has it.",
+            ),
         ]
         | None
     ) = None
@@ -85,7 +89,8 @@ class StillQuery(Model):
             for stone in data["stones"]:
                 stone["material"] = self.material
         if self.background is not None:
-            data["film"]["background"] = self.background
+            is_word = self.background in ("backdrop", "transparent")
+            data["film"]["background"] = self.background if is_word else f"#{self.background.removeprefix('#')}"
         if self.environment is not None:
             data["environment"] = {"kind": self.environment}
             if self.environment != "studio":

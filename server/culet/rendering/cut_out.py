@@ -29,13 +29,15 @@ DEVELOPED = 2**16
 
 
 class CutOut(Picture):
-    """A picture of a scene in front of nothing: `linear()` and `rgb()` have a fourth channel, alpha."""
+    """A picture of a scene in front of nothing: `linear()` and `rgb()` have a fourth channel, alpha. Where the film has
+    a colour behind everything, `rgb()` is in front of that, and has three."""
 
     def __init__(self, renderer: Renderer, stage: Stage, width: int, height: int) -> None:
         """As a picture that `Renderer.picture` makes."""
         super().__init__(renderer, _before(stage, 0), width, height, None, None, Effort.PATIENT)
         self._lighter = Picture(renderer, _before(stage, 1), width, height, None, None, Effort.PATIENT)
-        self._cut_out, self._cut_out_samples = np.zeros((height, width, 4), np.uint8), 0
+        self._behind = stage.scene.film.behind
+        self._cut_out, self._cut_out_samples = np.zeros((height, width, 4 if self._behind is None else 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
 
     def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
@@ -60,7 +62,8 @@ class CutOut(Picture):
         return np.concatenate([dark, alpha], axis=-1)
 
     def rgb(self) -> NDArray[np.uint8]:
-        """(height, width, 4), tone-mapped colours, not multiplied by alpha, and alpha; 8 bits."""
+        """(height, width, 4), tone-mapped colours, not multiplied by alpha, and alpha; 8 bits. In front of a colour
+        (height, width, 3)."""
         for _ in self.develop_in_pieces():
             pass
         return self._cut_out
@@ -70,21 +73,24 @@ class CutOut(Picture):
         if self._cut_out_samples == self.samples:
             return
         linear = self.linear().reshape(-1, 4)
-        shown = np.empty((len(linear), 4), np.uint8)
+        shown = np.empty((len(linear), self._cut_out.shape[-1]), np.uint8)
         for begin in range(0, len(linear), DEVELOPED):
             part = slice(begin, begin + DEVELOPED)
             shown[part] = self._developed(linear[part])
             yield
-        self._cut_out, self._cut_out_samples = shown.reshape(self.height, self.width, 4), self.samples
+        self._cut_out, self._cut_out_samples = shown.reshape(self._cut_out.shape), self.samples
 
     def _developed(self, linear: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
-        """(N, 4): by the references of film.cl."""
+        """(N, 4), or (N, 3): by the references of film.cl."""
         film = self.scene.film
         alpha = linear[:, 3:].astype(np.float64)
         colour = np.divide(film.exposure * linear[:, :3], alpha, out=np.zeros((len(linear), 3)), where=alpha > 0)
         if film.gamut == "desaturate" and is_spectral(self.scene):
             colour = desaturate(colour)
-        return np.asarray(np.rint(255 * np.concatenate([tone_map(colour, film.tone_map), alpha], axis=-1)), np.uint8)
+        shown = tone_map(colour, film.tone_map)
+        if self._behind is None:
+            return np.asarray(np.rint(255 * np.concatenate([shown, alpha], axis=-1)), np.uint8)
+        return np.asarray(np.rint(255 * alpha * shown + (1 - alpha) * np.array(self._behind)), np.uint8)
 
 
 def _before(stage: Stage, radiance: float) -> Stage:

@@ -12,6 +12,9 @@ MOST_SAMPLES = 65536
 """Of a pixel."""
 
 
+Background = Annotated[str, Field(pattern="^(backdrop|transparent|#[0-9a-fA-F]{6})$")]
+
+
 class Sampling(Model):
     """How each pixel is sampled; the first sample is the pixel's centre."""
 
@@ -25,11 +28,11 @@ class Sampling(Model):
 class Film(Model):
     """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
 
-    background: Literal["backdrop", "transparent"] = Field(
+    background: Background = Field(
         "backdrop",
-        description="What stills have behind everything. backdrop: what the camera sees there; transparent: nothing, "
-        "with alpha in .png, .webp, .tga and .exr, white in .jpg. The light on the stones stays. Live pictures have "
-        "the backdrop.",
+        description="What stills have behind everything, apart from what lights the stones. backdrop: what the camera "
+        "sees there; transparent: nothing, with alpha in .png, .webp, .tga and .exr, white in .jpg; a colour such as "
+        "#f4f1ea: exactly that on the screen (.exr: as transparent). Live pictures have the backdrop.",
     )
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
     tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(
@@ -41,3 +44,16 @@ class Film(Model):
     gamut: Literal["desaturate", "clip"] = Field(
         "desaturate", description="What becomes of spectral colours that no screen has: towards grey, or clipped."
     )
+
+    @property
+    def cut_out(self) -> bool:
+        """Whether stills leave out what is behind everything."""
+        return self.background != "backdrop"
+
+    @property
+    def behind(self) -> tuple[int, int, int] | None:
+        """The colour that a screen shows behind everything, 0 to 255; None for nothing, or the backdrop."""
+        if not self.background.startswith("#"):
+            return None
+        red, green, blue = bytes.fromhex(self.background[1:])
+        return red, green, blue

@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 from culet.engine.governing.governor import Governor, Plan, read_ladder
 from culet.engine.painting.live_picture import SETTLE_SECONDS, LivePicture
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.still import StillQueue
+from culet.engine.painting.still import Still, StillQueue
 from culet.engine.session.session import Session
 from culet.engine.session.stepper import Stepper, Steps
 from culet.engine.session.viewpoint import orbit
+from culet.errors import TooLargeError
 from culet.optics.panoramas import Panorama
 from culet.rendering.light.effort import Effort
 from culet.rendering.target import Target
@@ -418,6 +419,28 @@ async def test_a_resting_picture_leaves_a_moving_one_nearly_all_the_time(
 
     assert used[True] > 0.9 * used[False]
     assert world.samples > 16, "it goes on meanwhile"
+
+
+async def test_a_still_is_as_good_as_its_time_allows_if_an_error_was_asked_for_and_refused_otherwise() -> None:
+    world, queue = World(0.1), StillQueue(2, 2**25)
+    world.needed = 10**6
+    with ThreadPoolExecutor(1) as thread:
+        painter = Painter(
+            world, thread, queue, send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"picture",
+            still_seconds=1, rest=REST, stepper=AtOnce(world), clock=lambda: world.now,
+        )  # fmt: skip
+        for error in (1e-6, None):
+            still = Still(world.session.stage, *WANTED, Target(1000, error), "png")
+            queue.put(still)
+            while not still.done.done():
+                if not await painter.work():
+                    await asyncio.sleep(0)
+            assert still.picture is not None
+            assert 9 <= still.picture.samples <= 11
+            if error is not None:
+                assert still.done.result() == b"picture"
+            else:
+                assert isinstance(still.done.exception(), TooLargeError)
 
 
 async def test_only_a_picture_that_can_be_refined_is_held(play: Play) -> None:

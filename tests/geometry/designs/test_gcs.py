@@ -9,8 +9,9 @@ import pytest
 from culet.errors import MeshError, TooLargeError
 from culet.geometry.designs.asc_writer import asc_of
 from culet.geometry.designs.gcs import read_gcs
+from culet.geometry.designs.measures import proportions_of
 from culet.geometry.designs.reader import read_design
-from culet.geometry.designs.solid import shape_of_design
+from culet.geometry.designs.solid import Solid, shape_of_design
 from geometry.designs.files import NAMES, apart, design, gcs_of
 
 GOOD = gcs_of(design("03_single_cut"))
@@ -25,6 +26,8 @@ def test_a_gcs_has_the_planes_tiers_and_names_of_its_asc(name: str) -> None:
     for one, other in zip(found.tiers, text.tiers, strict=True):
         assert (one.side, one.name, one.notes) == (other.side, other.name, other.notes)
         assert one.angle == pytest.approx(other.angle, abs=1e-10)
+    upright = [proportions_of(Solid(one)).girdle_percent for one in (found, text)]
+    assert upright[0] == (upright[1] if upright[1] is None else pytest.approx(upright[1], abs=1e-9))
     assert (found.wheel.teeth, found.fold, found.mirror) == (abs(text.wheel.teeth), text.fold, True)
     assert (found.refractive_index, found.title) == (text.refractive_index, text.title)
     assert found.footnotes == ("cut & polish",)

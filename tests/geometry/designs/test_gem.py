@@ -11,7 +11,9 @@ from culet.errors import MeshError, TooLargeError
 from culet.geometry.designs.asc import read_asc
 from culet.geometry.designs.asc_writer import asc_of, planes_apart
 from culet.geometry.designs.gem import read_gem
+from culet.geometry.designs.measures import proportions_of
 from culet.geometry.designs.reader import read_design
+from culet.geometry.designs.solid import Solid
 from geometry.designs.files import NAMES, apart, design, gem_of
 
 
@@ -28,6 +30,8 @@ def test_a_gem_has_the_planes_tiers_and_names_of_its_asc(name: str) -> None:
         if one.angle > 0:
             turned = [facet.index % abs(text.wheel.teeth) for facet in other.facets]
             assert [facet.index % abs(text.wheel.teeth) for facet in one.facets] == turned
+    upright = [proportions_of(Solid(one)).girdle_percent for one in (binary, text)]
+    assert upright[0] == (upright[1] if upright[1] is None else pytest.approx(upright[1], abs=1e-9))
     assert (binary.wheel, binary.fold, binary.mirror) == (text.wheel, text.fold, text.mirror)
     assert (binary.refractive_index, binary.title) == (text.refractive_index, text.title)
 

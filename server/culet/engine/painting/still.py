@@ -69,8 +69,8 @@ class Still:
 
 
 def pictures_of(scene: Scene) -> int:
-    """That a still of a scene is made of: a transparent one of two."""
-    return 2 if scene.film.background == "transparent" else 1
+    """That a still of a scene is made of: one without its backdrop of two."""
+    return 2 if scene.film.cut_out else 1
 
 
 class StillQueue:

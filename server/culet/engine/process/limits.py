@@ -93,12 +93,12 @@ class Limits(Settings):
 
 
 def check_still_size(width: int, height: int, limits: Limits, *, pictures: int = 1) -> None:
-    """InputError if it is beyond the limits. A transparent still is made of two `pictures`, held at once."""
+    """InputError if it is beyond the limits. A still without its backdrop is made of two `pictures`, held at once."""
     for field, pixels in (("width", width), ("height", height)):
         if not 1 <= pixels <= limits.max_still_edge:
             raise InputError(f"{field}: expected 1 to {limits.max_still_edge} pixels, got {pixels}", field)
     if width * height * pictures > limits.max_still_pixels:
-        twice = " of a transparent picture" if pictures > 1 else ""
+        twice = " of a picture without its backdrop" if pictures > 1 else ""
         raise InputError(
             f"width: expected at most {limits.max_still_pixels // pictures} pixels in all{twice}, "
             f"got {width} x {height} = {width * height}",
