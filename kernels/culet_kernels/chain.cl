@@ -151,10 +151,11 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
   for (; *steps > 0; --*steps) {
     const bool all_begun = work->hit >= hits->count;
     const bool last = all_begun && is_empty(&pools->inside);
+    const bool over = last && (!REENTRY || pools->towards.count == 0); // packets are not filled any more
     // Light outside goes first: it is what makes the pools grow.
-    if (pools->away.count >= LANES)
+    if (pools->away.count >= (over ? 1 : LANES))
       look_away(world, tile, pools, task);
-    else if (pools->up.count >= LANES)
+    else if (pools->up.count >= (over ? 1 : LANES))
       look_up(world, tile, pools, task);
     else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
       look_around(world, tile, pools, task);
@@ -170,11 +171,7 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
         enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
               DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
-    } else if (pools->away.count > 0)
-      look_away(world, tile, pools, task);
-    else if (pools->up.count > 0)
-      look_up(world, tile, pools, task);
-    else
+    } else
       return;
   }
 }
