@@ -114,3 +114,15 @@ def test_before_a_colour_it_is_what_programs_make_of_the_transparent_one(rendere
     over.alpha_composite(PIL.Image.fromarray(transparent))
     assert shown.shape == (HEIGHT, WIDTH, 3)
     assert np.abs(shown.astype(int) - np.asarray(over)[..., :3]).max() <= 1  # levels: Pillow rounds twice
+
+
+def test_one_that_begins_anew_forgets_the_samples_of_both_pictures(renderer: Renderer) -> None:
+    """As when its light map becomes another."""
+    picture = cut_out(renderer, Scene(), samples=2)
+    stale = picture.rgb()
+    picture.begin_anew()
+    picture.refine(2)
+    assert picture.linear().tobytes() == cut_out(renderer, Scene(), samples=2).linear().tobytes()
+    assert (picture.rgb() == stale).all()
+    picture.refine(1)
+    assert picture.linear().tobytes() == cut_out(renderer, Scene(), samples=3).linear().tobytes()

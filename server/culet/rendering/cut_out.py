@@ -35,21 +35,27 @@ class CutOut(Picture):
     def __init__(self, renderer: Renderer, stage: Stage, width: int, height: int) -> None:
         """As a picture that `Renderer.picture` makes."""
         super().__init__(renderer, _before(stage, 0), width, height, None, None, Effort.PATIENT)
-        self._lighter = Picture(renderer, _before(stage, 1), width, height, None, None, Effort.PATIENT)
+        light_map = None if self._light is None else self._light.bound
+        self._lighter = Picture(renderer, _before(stage, 1), width, height, None, light_map, None)
         self._behind = stage.scene.film.behind
         self._cut_out, self._cut_out_samples = np.zeros((height, width, 4 if self._behind is None else 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
 
-    def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
-        """As of a picture; both of them take the samples."""
-        for part in super().refine_in_pieces(samples, seconds):
+    def _one_sample(self, seconds: float) -> Iterator[float]:
+        """One of both, by the same light map."""
+        if self._lighter.samples > self.samples:  # the map has become another, and this picture has begun anew
+            self._lighter.begin_anew()
+        for part in super()._one_sample(seconds):
             yield part / 2
-        spent, on_light = self.seconds, self.light_seconds
-        while (missing := self.samples - self._lighter.samples) > 0:
-            for part in self._lighter.refine_in_pieces(missing, seconds):
-                yield (1 + part) / 2
-            spent, on_light = spent + self._lighter.seconds, on_light + self._lighter.light_seconds
-        self.seconds, self.light_seconds = spent, on_light
+        before = self._lighter.seconds
+        for part in self._lighter._one_sample(seconds):
+            yield (1 + part) / 2
+        self.seconds += self._lighter.seconds - before
+
+    def begin_anew(self) -> None:
+        """Forget all samples."""
+        super().begin_anew()
+        self._cut_out_samples = 0
 
     def segments(self) -> int:
         """Interior segments of the last sample, of both."""

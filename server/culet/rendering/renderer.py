@@ -307,14 +307,18 @@ class Picture:
             started = time.perf_counter()
         self.light_seconds += time.perf_counter() - started
         if self._light.version != self._lit_by and self.samples > 0:
-            self._sums.restart()
-            self._shown_samples = 0
-            self._light_errors.clear()
-            self._light_bounds.clear()
+            self.begin_anew()
         self._lit_by = self._light.version
         figures = self._light.figures
         self._light_errors.append(self._light.rmse)
         self._light_bounds.append(math.nan if figures is None else figures.bound)
+
+    def begin_anew(self) -> None:
+        """Forget all samples."""
+        self._sums.restart()
+        self._shown_samples = 0
+        self._light_errors.clear()
+        self._light_bounds.clear()
 
     def _one_sample(self, seconds: float) -> Iterator[float]:
         """Yields the part of the tiles that were begun, between launches, and at last 1."""

@@ -14,7 +14,8 @@ from typing import Any
 
 from culet.engine.session.edits import Edits, Moment
 from culet.engine.session.history import History, Past
-from culet.engine.session.motion import Motion, Seen
+from culet.engine.session.instants import Seen
+from culet.engine.session.motion import Motion
 from culet.engine.session.news import News
 from culet.engine.session.picking import placed, struck
 from culet.engine.session.removals import Removals
