@@ -9,7 +9,7 @@ WEB := client/web
 WEB_PACKAGES := $(WEB)/node_modules/.package-lock.json
 WEB_BUILD := $(WEB)/dist/index.html
 SOLVER := server/culet/simulation/solver
-WEB_SOURCES := $(shell find $(WEB)/src protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts)
+WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/element protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts vite.element.config.ts)
 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)

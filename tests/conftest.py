@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -21,6 +22,15 @@ LONG_FIRST = (
     "tests/simulation/", "tests/engine/", "tests/gateway/", "tests/hostile/", "tests/geometry/",
 )  # fmt: skip
 """What takes long is handed out first, by what its name begins with, so that the workers end together."""
+
+
+REST_SAMPLES = "16"
+"""A picture at rest is final with so many in the servers that tests start: tests wait for many of them."""
+
+
+def pytest_configure() -> None:
+    """What every process is told that a test starts."""
+    os.environ.setdefault("CULET_REST_SAMPLES", REST_SAMPLES)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -22,8 +22,9 @@ from culet.study.cases import CASES, FEATURE_CASES, stage_of
 from culet_protocol.watch import watch_id
 from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
+from geometry.designs.files import design, gcs_of
 
-COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record"]
+COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record", "design"]
 TINY = ("--width", "48", "--height", "27")
 ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
 """A scene of whose sky nothing is hidden."""
@@ -81,7 +82,8 @@ def test_a_linear_picture_holds_radiance_not_pixels(tmp_path: Path) -> None:
 
 def test_more_samples_are_taken_when_asked_for(tmp_path: Path) -> None:
     run = invoke("render", "-o", tmp_path / "gem.png", "--samples", "3", "--preset", "matte", *TINY)
-    assert "3 samples per pixel, mean radiance too low by at most 0." in run.stdout
+    assert "3 samples per pixel, estimated error as shown 0.0" in run.stdout
+    assert "mean radiance too low by at most 0." in run.stdout
     run = invoke("render", "-o", tmp_path / "gem.png", "--samples", "1", *TINY)
     assert "1 sample per pixel, " in run.stdout
 
@@ -93,6 +95,51 @@ def test_a_mesh_takes_the_place_of_the_stone(tmp_path: Path) -> None:
     run = invoke("render", "-o", tmp_path / "mesh.npy", "--mesh", mesh, *TINY)
     assert run.returncode == 0, run.stderr
     assert not np.array_equal(np.load(tmp_path / "cut.npy"), np.load(tmp_path / "mesh.npy"))
+
+
+def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_path: Path) -> None:
+    """What was converted is the same stone to the last bit: so is its picture."""
+    there, back = tmp_path / "stone.gcs", tmp_path / "stone.asc"
+    there.write_bytes(gcs_of(design("13_chiral_negative_wheel")))
+    run = invoke("design", "convert", there, back)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert re.fullmatch(rf"{re.escape(str(back))}: 25 facets in 4 tiers; read back, planes are \S+ apart\n", run.stdout)
+    shown = invoke("design", "show", back).stdout
+    turned = "34 22 10 94 82 70 58 46"  # 48 less those of its own wheel: a .gcs has no offset, and counts one way
+    for part in ("crown", "35.00", turned, "T/W", "0.6273", "made for a refractive index of 1.54"):
+        assert part.lower() in shown.lower()
+    assert invoke("design", "diagram", back, "-o", tmp_path / "stone.svg").returncode == 0
+    assert (tmp_path / "stone.svg").read_text().count("<polygon") > 25
+    for file in (there, back):
+        run = invoke("render", "-o", f"{file}.npy", "--mesh", file, *TINY)
+        assert run.returncode == 0, run.stderr
+        assert "25 facets in 4 tiers" in run.stderr
+    pictures = [np.load(f"{file}.npy") for file in (there, back)]
+    assert pictures[0] == pytest.approx(pictures[1], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("show", "open.asc"), "open.asc: the design is open above and below"),
+        (("show", "nowhere.gem"), "nowhere.gem: cannot be read"),
+        (("show", "stone.obj"), "stone.obj: expected a design of type asc, gem, gcs, got 'obj'"),
+        (("convert", "wrong.asc", "a.asc"), "wrong.asc: .asc: line 2: expected a distance, got 'x'"),
+        (("diagram", "open.asc", "-o", "a.svg"), "open.asc: the design is open above and below"),
+        (("diagram", "open.asc", "-o", "a.png"), "out: expected a name that ends in .svg"),
+        (("convert", "open.asc", "a.gem"), "out: expected a name that ends in .asc"),
+        (("convert", "open.asc", "missing/a.asc"), "there is no folder"),
+    ],
+)
+def test_designs_that_cannot_be_used_are_refused_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("open.asc").write_text("g 96\na 90 1 24 48 72 96\n")
+    Path("wrong.asc").write_text("g 96\na 90 x 24 48 72 96\n")
+    Path("stone.obj").write_text("v 0 0 0\n")
+    assert said in refused(invoke("design", *arguments))
+    assert not list(Path().glob("a.*"))
 
 
 def test_a_mesh_takes_the_place_of_a_stone_of_any_scale(tmp_path: Path) -> None:
@@ -132,6 +179,31 @@ def test_bad_input_is_one_line_and_exit_code_1(
     monkeypatch.chdir(tmp_path)
     assert said in refused(invoke("render", *TINY, *arguments, stdin=stdin))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_help_is_asked_for_in_short_too_and_names_the_exit_codes() -> None:
+    assert invoke("render", "-h").stdout == invoke("render", "--help").stdout
+    shown = re.sub(r"\s+", " ", invoke("-h").stdout)
+    assert "Exit codes: 0 done; 1 refused, or a check that failed" in shown
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [("culet ren", ["render"]), ("culet render --preset ru", ["ruby"]), ("culet study st", ["streaming"])],
+)
+def test_a_shell_completes_commands_and_presets(
+    words: str, completed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("_CULET_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
+    assert invoke().stdout.split() == completed
+
+
+def test_the_version_waits_for_nothing_that_commands_need() -> None:
+    script = "import sys; from culet.cli import app; app(['--version'], standalone_mode=False); print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert not {"pydantic", "numpy", "zmq", "websockets", "rich"} & set(run.stdout.split())
 
 
 @pytest.mark.parametrize("arguments", [["render", "--width", "0"], ["render", "--widht", "9"], ["view"], ["dance"]])
@@ -303,13 +375,23 @@ def test_a_folder_without_a_page_is_refused_at_once(tmp_path: Path) -> None:
 
 
 async def test_serve_runs_and_ends_with_all_its_processes(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "culet", "serve", "--port", "0"]
+    config, browser, shown = tmp_path / "culet.toml", tmp_path / "browser", tmp_path / "shown"
+    config.write_text("port = 0\nopen = true\n")
+    browser.write_text(f'#!/bin/sh\necho "$1" >{shown}\n')
+    browser.chmod(0o755)
+    command = [sys.executable, "-m", "culet", "serve", "--config", str(config)]
+    environment = os.environ | {"BROWSER": str(browser)}
     with (
         (tmp_path / "log").open("wb") as log,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as server,  # noqa: ASYNC220
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, env=environment) as server,  # noqa: ASYNC220
     ):
         try:
-            assert announced(server)
+            address = announced(server)
+
+            async def opened() -> bool:
+                return shown.is_file() and shown.read_text() == f"{address}\n"
+
+            await eventually(opened)
 
             async def complete() -> bool:
                 return len(children(server.pid)) == 4

@@ -21,6 +21,8 @@ NOT_LOADED = {
     "culet.service.serve": ("pyopencl", "culet.rendering", "culet.engine", "fastapi", "uvicorn"),
     "culet.engine.process.serve": ("fastapi", "uvicorn"),
     "culet.engine.library.upload_reader": ("pyopencl",),
+    "culet": ("numpy", "pydantic", "pyopencl", "importlib.metadata", "culet.scene", "culet.stills"),
+    "culet_client.connection": ("culet", "pyopencl", "numpy", "fastapi"),
     "culet_client.view": ("culet", "pyopencl", "numpy", "fastapi"),
     "culet_client.stream": ("culet", "pyopencl", "numpy", "fastapi"),
 }

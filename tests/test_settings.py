@@ -9,8 +9,9 @@ import pytest
 import typer.core
 import typer.main
 
-from command_line import culet
+from command_line import culet, invoke
 from culet.cli import app
+from culet.command.config import read_config
 from culet.engine.process.limits import Limits
 from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
@@ -106,5 +107,48 @@ def test_the_variables_that_compose_hands_on_are_settings_of_their_service() -> 
     for name, service, kind in (("engine", engine, Limits), ("gateway", gateway, GatewaySettings)):
         named = set(re.findall(r"CULET_\w+", service)) - of_compose_itself
         assert len(named) > 3
-        own = {parameter.envvar for parameter in commands.commands[name].params}
+        command = commands.get_command(typer.Context(commands), name)
+        assert command is not None
+        own = {parameter.envvar for parameter in command.params}
         assert named <= own | {variable(field) for field in kind.model_fields}
+
+
+def configured(folder: Path, text: str) -> dict[str, object]:
+    """What a command with three options takes from a file; one of them is repeatable."""
+    file = folder / "culet.toml"
+    file.write_text(text)
+    return read_config(file, {"max_sessions": False, "allow_host": True, "open": False})
+
+
+def test_a_file_says_what_options_say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = 'max-sessions = 20\nallow_host = ["a.example", "b.example"]\nopen = true\nmax_stills = 3'
+    whole = {"max_sessions": 20, "allow_host": ["a.example", "b.example"], "open": True}
+    assert configured(tmp_path, text) == whole, "max_stills is another command's"
+    assert configured(tmp_path, 'allow_host = "a.example, b.example"') == {"allow_host": ["a.example", "b.example"]}
+    monkeypatch.setenv("CULET_MAX_SESSIONS", "5")
+    assert "max_sessions" not in configured(tmp_path, text), "the variable counts first"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("max_sesions = 3", "max_sesions: no option of a server; did you mean `max_sessions`?"),
+        ("max_sessions = 0", "max-sessions: expected at least 1; got '0'"),
+        ("max_stills = 0", "max-stills: expected at least 1; got '0'"),
+        ("max_sessions = [1]", "max_sessions: expected a text, a number, true, false or a list of texts"),
+        ("[gateway]\nport = 1", "gateway: no option of a server"),
+        ("open = 1", "open: expected true or false; got 1"),
+        ('max-sessions = 3\nmax_sessions = "3"', "max_sessions: is there twice"),
+        ("max_sessions =", "not TOML: "),
+    ],
+)
+def test_a_file_that_cannot_be_used_says_where_and_why(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        configured(tmp_path, text)
+    assert str(refusal.value).startswith(f"{tmp_path / 'culet.toml'}: {said}")
+
+
+def test_a_server_whose_file_is_missing_does_not_start(tmp_path: Path) -> None:
+    run = invoke("serve", "--config", tmp_path / "nowhere.toml")
+    assert run.returncode == 1
+    assert run.stderr == f"culet: {tmp_path / 'nowhere.toml'}: cannot be read: No such file or directory\n"

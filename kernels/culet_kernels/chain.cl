@@ -151,9 +151,10 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
   for (; *steps > 0; --*steps) {
     const bool all_begun = work->hit >= hits->count;
     const bool last = all_begun && is_empty(&pools->inside);
+    const bool over = last && (!REENTRY || pools->towards.count == 0); // packets are not filled any more
     // Light outside goes first: it is what makes the pools grow.
     pool_t *left = larger_away(pools);
-    if (left->count >= LANES)
+    if (left->count >= (over ? 1 : LANES))
       look_away(world, tile, pools, left, task);
     else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
       look_around(world, tile, pools, task);
@@ -169,9 +170,7 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
         enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
               DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
-    } else if (left->count > 0)
-      look_away(world, tile, pools, left, task);
-    else
+    } else
       return;
   }
 }

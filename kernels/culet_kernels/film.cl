@@ -104,7 +104,17 @@ static inline float16 shown(float16 x, int tone_map) {
   return inside;
 }
 
-static inline uchar16 to_bytes(float16 x, int tone_map) { return convert_uchar16_sat_rte(255 * shown(x, tone_map)); }
+// Radiance times exposure as a screen shows it; `inside_gamut` says that no component is negative, or that those that are may
+// be clipped. What is above 1 is clipped by who takes it.
+static inline rgb16 developed(rgb16 colour, int tone_map, int inside_gamut) {
+  if (!inside_gamut) colour = desaturate(colour, 1e20f);
+  if (tone_map == TONE_FILMIC) colour = filmic(colour);
+  if (tone_map == TONE_NEUTRAL) colour = neutral(colour);
+  const rgb16 result = {shown(colour.red, tone_map), shown(colour.green, tone_map), shown(colour.blue, tone_map)};
+  return result;
+}
+
+static inline uchar16 to_bytes(float16 x) { return convert_uchar16_sat_rte(255 * x); }
 
 // The sums of four pixels, one after the other.
 static inline float16 four_pixels(__global const real4 *sums) {
@@ -151,22 +161,18 @@ static inline void store_block(uchar16 r, uchar16 g, uchar16 b, __global uchar *
 }
 
 // A work-item shows BLOCK of the pixels from `begin` to before `end`, of which `earlier` and, if `both`, `later` hold sums of
-// samples. `scale` is the exposure over the number of samples; `inside_gamut` says that no component is negative, or that
-// those that are may be clipped.
+// samples. `scale` is the exposure over the number of samples.
 __kernel void develop(__global const real4 *earlier, __global const real4 *later, int both, __global uchar *bytes,
                       int begin, int end, float scale, int tone_map, int inside_gamut) {
   const int first = begin + get_global_id(0) * BLOCK, count = min(BLOCK, end - first);
   if (count <= 0) return;
   __global const real4 *before = earlier + first, *after = later + first;
-  rgb16 colour = count == BLOCK ? block_of(before, after, both) : part_of_block(before, after, both, count);
-  colour.red *= scale;
-  colour.green *= scale;
-  colour.blue *= scale;
-  if (!inside_gamut) colour = desaturate(colour, 1e20f);
-  if (tone_map == TONE_FILMIC) colour = filmic(colour);
-  if (tone_map == TONE_NEUTRAL) colour = neutral(colour);
-  const uchar16 red = to_bytes(colour.red, tone_map), green = to_bytes(colour.green, tone_map),
-                blue = to_bytes(colour.blue, tone_map);
+  rgb16 radiance = count == BLOCK ? block_of(before, after, both) : part_of_block(before, after, both, count);
+  radiance.red *= scale;
+  radiance.green *= scale;
+  radiance.blue *= scale;
+  const rgb16 colour = developed(radiance, tone_map, inside_gamut);
+  const uchar16 red = to_bytes(colour.red), green = to_bytes(colour.green), blue = to_bytes(colour.blue);
   if (count == BLOCK) {
     store_block(red, green, blue, bytes + 3 * first);
     return;
@@ -177,4 +183,70 @@ __kernel void develop(__global const real4 *earlier, __global const real4 *later
   vstore16(blue, 0, out[2]);
   for (int i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) bytes[3 * (first + i) + k] = out[k][i];
+}
+
+// The samples of one run, times `scale`.
+static inline rgb16 scaled(__global const real4 *sums, int first, int count, float scale) {
+  __global const real4 *from = sums + first;
+  rgb16 result = count == BLOCK ? block_of(from, from, 0) : part_of_block(from, from, 0, count);
+  result.red *= scale;
+  result.green *= scale;
+  result.blue *= scale;
+  return result;
+}
+
+static inline float16 squared_difference(float16 a, float16 b) {
+  const float16 difference = clamp(a, 0.0f, 1.0f) - clamp(b, 0.0f, 1.0f);
+  return difference * difference;
+}
+
+// How far two runs of samples are apart on a screen, from pixel `begin` to before `end`: of each work-item's `block` pixels the
+// sum over pixels and components, from 0 to 1, of the squared differences. `scale` is the exposure over each run's samples.
+__kernel void apart_as_shown(__global const real4 *earlier, __global const real4 *later, __global float *apart,
+                             int block, int begin, int end, float scale, int tone_map, int inside_gamut) {
+  const int first = begin + get_global_id(0) * block, last = min(first + block, end);
+  const int16 lane = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  float16 sums = 0;
+  for (int pixel = first; pixel < last; pixel += BLOCK) {
+    const int count = min(BLOCK, last - pixel);
+    const rgb16 a = developed(scaled(earlier, pixel, count, scale), tone_map, inside_gamut);
+    const rgb16 b = developed(scaled(later, pixel, count, scale), tone_map, inside_gamut);
+    const float16 squared =
+        squared_difference(a.red, b.red) + squared_difference(a.green, b.green) + squared_difference(a.blue, b.blue);
+    sums += select((float16)(0), squared, lane < count);
+  }
+  const float8 eight = sums.lo + sums.hi;
+  const float4 four = eight.lo + eight.hi;
+  apart[get_global_id(0)] = four.x + four.y + four.z + four.w;
+}
+
+#define RGB 3
+
+// The mean of the byte at `at` and of those of the pixels beside it, 1 : 6 : 1, times 8.
+static inline ushort16 across(__global const uchar *bytes, int at) {
+  return convert_ushort16(vload16(0, bytes + at - RGB)) + convert_ushort16(vload16(0, bytes + at + RGB)) +
+         (ushort16)(6) * convert_ushort16(vload16(0, bytes + at));
+}
+
+// The same of one byte of a row; at its ends the pixel itself stands for the one that is not there.
+static inline ushort across_one(__global const uchar *row, int x, int width) {
+  return row[x < RGB ? x : x - RGB] + row[x >= width - RGB ? x : x + RGB] + 6 * row[x];
+}
+
+// A developed picture of `rows` rows of `width` bytes, filtered by (1 6 1)/8 along both axes: a work-item a row.
+__kernel void soften(__global const uchar *bytes, __global uchar *softened, int width, int rows) {
+  const int row = get_global_id(0);
+  if (row >= rows) return;
+  __global const uchar *own = bytes + (size_t)row * width;
+  __global const uchar *above = row > 0 ? own - width : own, *below = row < rows - 1 ? own + width : own;
+  __global uchar *to = softened + (size_t)row * width;
+  int x = RGB;
+  for (; x + BLOCK + RGB <= width; x += BLOCK) {
+    const ushort16 sum = across(above, x) + across(below, x) + (ushort16)(6) * across(own, x);
+    vstore16(convert_uchar16((sum + (ushort16)(32)) >> (ushort16)(6)), 0, to + x);
+  }
+  for (int k = 0; k < width; k = k == RGB - 1 ? x : k + 1) {
+    const ushort sum = across_one(above, k, width) + across_one(below, k, width) + 6 * across_one(own, k, width);
+    to[k] = (sum + 32) >> 6;
+  }
 }

@@ -17,7 +17,8 @@ from culet_protocol.messages import Condition, Message, Question, Revision, Sess
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "webp", "exr"]
-MeshType = Literal["obj", "off", "stl", "ply", "glb"]
+MeshType = Literal["obj", "off", "stl", "ply", "glb", "asc", "gem", "gcs"]
+"""Meshes, and the designs of GemCad and Gem Cut Studio."""
 SkyType = Literal["exr", "hdr", "png"]
 SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 
@@ -45,6 +46,14 @@ class GetSession(Message):
 
     type: Literal["get_session"] = "get_session"
     session: SessionId
+
+
+class GetScene(Message):
+    """The scene that a session showed at `step` (the latest if None), with camera and stones where they were."""
+
+    type: Literal["get_scene"] = "get_scene"
+    session: SessionId
+    step: int | None = None
 
 
 class ListSessions(Message):
@@ -85,6 +94,13 @@ class Demand(Message):
 class Render(Message):
     """A still: of a scene, or of what a session showed at `step` (the latest if None).
 
+    With an `error`, samples are taken until what is shown is estimated to be off by that (root mean square over pixels
+    and colours, from 0 to 1), `samples` at most; else so many samples. With neither the scene says how many; of a
+    session the still is as good as the live picture gets at rest.
+
+    The reply's result has `samples`, the `error` that is estimated (None: not known), and whether it has `met` the one
+    that was asked for (None: none was).
+
     `client` says on whose behalf, in whatever words the gateway tells clients apart: stills take turns by client.
     """
 
@@ -94,12 +110,14 @@ class Render(Message):
     step: int | None = None
     width: int | None = None
     height: int | None = None
+    samples: int | None = None
+    error: float | None = None
     format: Format = "tga"
     client: Annotated[str, Field(max_length=200)] = ""
 
 
 class PutMesh(Message):
-    """Parse the mesh in the bytes and keep it under an id; the reply is a DescribedMesh."""
+    """Parse the mesh or the design in the bytes and keep it under an id; the reply is a DescribedMesh."""
 
     type: Literal["put_mesh"] = "put_mesh"
     file_type: MeshType
@@ -159,6 +177,7 @@ Request = (
     OpenSession
     | CloseSession
     | GetSession
+    | GetScene
     | ListSessions
     | Control
     | Ask

@@ -57,6 +57,7 @@ STILL = Frame(
     samples=1024, bands=64, max_bounces=65536, cutoff=2**-20, step=2**53 + 1, simulation_time=0,
     timestamp=1_760_000_000.25, simulate_ms=0, render_ms=2048.5, encode_ms=18.25, cut=0, error=0.015625,
     payload=_png(4, 2, b"\x10\x80\xf0"), light_cut=0, light_error=0.001953125,
+    shown_error=0.00390625, rest_error=0.005859375,
 )  # fmt: skip
 """Its sequence is the last before it wraps; its step is the first integer that a double cannot hold."""
 
@@ -64,7 +65,7 @@ STILL = Frame(
 def _with(frame: Frame, field: str, value: bytes | int) -> bytes:
     """The frame's bytes with one field of the header overwritten."""
     packed = frame.pack()
-    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (101, "I")}[field]
+    offset, form = {"magic": (16, "4s"), "version": (20, "B"), "codec": (21, "B"), "length": (109, "I")}[field]
     return packed[:offset] + struct.pack("<" + form, value) + packed[offset + struct.calcsize(form) :]
 
 
@@ -82,7 +83,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
         "truncated_payload": (marked[:-1], f"{len(JPEG)} bytes", f"{len(JPEG) - 1}"),
         "trailing_byte": (marked + b"\0", f"{len(JPEG)} bytes", f"{len(JPEG) + 1}"),
         "wrong_magic": (_with(MOVING, "magic", b"NOPE"), "CULT", "NOPE"),
-        "wrong_version": (_with(MOVING, "version", 3), "version 5", "3"),
+        "wrong_version": (_with(MOVING, "version", 3), "version 6", "3"),
         "wrong_codec": (_with(MOVING, "codec", 9), "1 (JPEG)", "9"),
         "wrong_length": (_with(MOVING, "length", 5), "5 bytes", f"{len(JPEG)}"),
     }
@@ -95,9 +96,9 @@ def _fields(frame: Frame) -> dict[str, Any]:
     values = {field.name: getattr(frame, field.name) for field in fields(frame)}
     values["watch"] = frame.watch.hex()
     values["step"] = str(frame.step)  # JSON readers turn numbers into doubles
-    values["error"] = None if math.isnan(frame.error) else frame.error  # JSON has no NaN
     values["payload"] = len(frame.payload)
-    return values
+    # JSON has no NaN.
+    return {name: None if isinstance(value, float) and math.isnan(value) else value for name, value in values.items()}
 
 
 CONTROL_EVENTS: tuple[messages.Message, ...] = (
@@ -112,6 +113,9 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.ResetStone(),
     messages.ResetStone(stone="stone-2"),
     messages.Push(x=0.25, y=-0.125, right=0.5, up=1.5),
+    messages.MoveStone(stone="ruby", right=0.25, up=-0.5, forward=1),
+    messages.DragStone(stone="ruby", right=0.125, up=-0.25),
+    messages.TurnStone(stone="ruby", yaw=0.25, pitch=-0.125, roll=0.5),
     messages.ToggleMirror(),
     messages.ToggleEnvironment(),
     messages.ToggleWalls(),

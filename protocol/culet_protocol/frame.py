@@ -14,7 +14,7 @@ from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
 MAGIC = b"CULT"
-HEADER_VERSION = 5
+HEADER_VERSION = 6
 
 REFUSED = 0
 """In place of a codec: the payload is a sentence in UTF-8 about why there are no frames by this topic."""
@@ -34,7 +34,8 @@ class Flags(IntFlag):
     MOVING = 1
     """A stone is falling."""
     FINAL = 2
-    """The picture has all its samples: nothing better will come until something changes."""
+    """The picture is as good as pictures at rest become, by its error or at the limit of samples: nothing better will
+    come until something changes."""
     POLARISED = 4
     """Light was followed with its polarisation."""
     FRONTIER = 8
@@ -96,6 +97,8 @@ FIELDS = (
     HeaderField("error", "f", "root mean square error of radiance: estimated, or the frontier's (bit 3), or NaN"),
     HeaderField("light_cut", "f", "part of the stones' light that floor and walls miss, at most; NaN without a map"),
     HeaderField("light_error", "f", "root mean square error of the light map, estimated; NaN without a map"),
+    HeaderField("shown_error", "f", "root mean square error of what is shown, 0 to 1, estimated; NaN if not known"),
+    HeaderField("rest_error", "f", "that it is refined to while nothing changes; NaN of a first sample"),
     HeaderField("length", "I", "bytes of payload that follow"),
 )
 
@@ -129,6 +132,8 @@ class Frame:
     depends_on: int = 0
     light_cut: float = math.nan
     light_error: float = math.nan
+    shown_error: float = math.nan
+    rest_error: float = math.nan
 
     def pack(self) -> bytes:
         """The message: header, then payload."""
@@ -139,7 +144,7 @@ class Frame:
             self.depends_on & 0xFFFFFFFF, self.width, self.height, self.samples,
             self.bands, self.max_bounces, self.cutoff, self.step, self.simulation_time,
             self.timestamp, self.simulate_ms, self.render_ms, self.encode_ms, self.cut, self.error,
-            self.light_cut, self.light_error, len(self.payload),
+            self.light_cut, self.light_error, self.shown_error, self.rest_error, len(self.payload),
         )  # fmt: skip
         return header + self.payload
 
@@ -151,7 +156,8 @@ class Frame:
         (
             watch, magic, version, codec, flags, sequence, depends_on, width, height, samples,
             bands, max_bounces, cutoff, step,
-            simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, light_cut, light_error, length,
+            simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, light_cut, light_error,
+            shown_error, rest_error, length,
         ) = LAYOUT.unpack_from(message)  # fmt: skip
         if magic != MAGIC:
             raise FrameError(f"a frame is marked {MAGIC!r}, got {magic!r}")
@@ -169,7 +175,7 @@ class Frame:
         return cls(
             watch, codec, Flags(flags), sequence, width, height, samples, bands, max_bounces, cutoff, step,
             simulation_time, timestamp, simulate_ms, render_ms, encode_ms, cut, error, payload,
-            depends_on, light_cut, light_error,
+            depends_on, light_cut, light_error, shown_error, rest_error,
         )  # fmt: skip
 
 

@@ -105,6 +105,41 @@ class Push(Message):
     up: Blow
 
 
+class MoveStone(Message):
+    """Move a stone by hand, along the camera's right, up and line of sight, as far as there is room: floor, walls and
+    other stones turn it aside. It rests where it is put, held if time goes on for others, and starts from there."""
+
+    type: Literal["move_stone"] = "move_stone"
+    stone: StoneId
+    right: Distance = 0.0
+    up: Distance = 0.0
+    forward: Distance = 0.0
+
+
+class DragStone(Message):
+    """As MoveStone, by so much of the picture: in halves of its height, where the stone is."""
+
+    type: Literal["drag_stone"] = "drag_stone"
+    stone: StoneId
+    right: PicturePoint
+    up: PicturePoint
+
+
+class TurnStone(Message):
+    """Turn a stone by hand about its centre, as MoveStone moves one: about the camera's `up`, the picture's right, and
+    the line of sight.
+
+    A positive yaw is counter-clockwise seen from above, a positive pitch takes the side towards the viewer up, a
+    positive roll is counter-clockwise as seen in the picture.
+    """
+
+    type: Literal["turn_stone"] = "turn_stone"
+    stone: StoneId
+    yaw: Angle = 0.0
+    pitch: Angle = 0.0
+    roll: Angle = 0.0
+
+
 class ToggleMirror(Message):
     """Switch floor and walls between matte and mirror."""
 
@@ -212,8 +247,8 @@ class Ping(Message):
 
 
 SessionEvent = (
-    Orbit | Translate | Dolly | ResetCamera | LookAtStone | ToggleFall | ResetStone | Push | ToggleMirror
-    | ToggleEnvironment | ToggleWalls | PatchScene | SetScene | Undo | Redo | Balance
+    Orbit | Translate | Dolly | ResetCamera | LookAtStone | ToggleFall | ResetStone | Push | MoveStone | DragStone
+    | TurnStone | ToggleMirror | ToggleEnvironment | ToggleWalls | PatchScene | SetScene | Undo | Redo | Balance
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 

@@ -102,6 +102,49 @@ export interface Push {
   up: number;
 }
 
+/**
+ * Move a stone by hand, along the camera's right, up and line of sight, as far as there is room: floor, walls and
+ * other stones turn it aside. It rests where it is put, held if time goes on for others, and starts from there.
+ */
+export interface MoveStone {
+  type: "move_stone";
+  stone: string;
+  /** -1000000 to 1000000 */
+  right?: number;
+  /** -1000000 to 1000000 */
+  up?: number;
+  /** -1000000 to 1000000 */
+  forward?: number;
+}
+
+/** As MoveStone, by so much of the picture: in halves of its height, where the stone is. */
+export interface DragStone {
+  type: "drag_stone";
+  stone: string;
+  /** -100 to 100 */
+  right: number;
+  /** -100 to 100 */
+  up: number;
+}
+
+/**
+ * Turn a stone by hand about its centre, as MoveStone moves one: about the camera's `up`, the picture's right, and
+ * the line of sight.
+ *
+ * A positive yaw is counter-clockwise seen from above, a positive pitch takes the side towards the viewer up, a
+ * positive roll is counter-clockwise as seen in the picture.
+ */
+export interface TurnStone {
+  type: "turn_stone";
+  stone: string;
+  /** -1000 to 1000 */
+  yaw?: number;
+  /** -1000 to 1000 */
+  pitch?: number;
+  /** -1000 to 1000 */
+  roll?: number;
+}
+
 /** Switch floor and walls between matte and mirror. */
 export interface ToggleMirror {
   type: "toggle_mirror";
@@ -218,6 +261,9 @@ export type ControlEvent =
   | ToggleFall
   | ResetStone
   | Push
+  | MoveStone
+  | DragStone
+  | TurnStone
   | ToggleMirror
   | ToggleEnvironment
   | ToggleWalls

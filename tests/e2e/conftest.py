@@ -38,6 +38,8 @@ ARGUMENTS = (
     "--disable-component-update",
     "--disable-sync",
     "--no-first-run",
+    # A shop on the internet, which a test makes up, has no other server here than one of this machine.
+    "--disable-features=LocalNetworkAccessChecks,BlockInsecurePrivateNetworkRequests",
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )
 
@@ -47,9 +49,12 @@ ViewOf = Callable[..., View]
 @pytest.fixture(scope="session")
 def built_client() -> None:
     """The web client's build, made if there is none or a source is newer."""
-    folders = (WEB / "src", REPOSITORY / "protocol" / "typescript")
+    folders = (WEB / "src", WEB / "element", REPOSITORY / "protocol" / "typescript")
     sources = [file for folder in folders for file in folder.rglob("*") if file.is_file()]
-    sources += [WEB / name for name in ("index.html", "package-lock.json", "tsconfig.json", "vite.config.ts")]
+    sources += [
+        WEB / name
+        for name in ("index.html", "package-lock.json", "tsconfig.json", "vite.config.ts", "vite.element.config.ts")
+    ]
     built = WEB / "dist" / "index.html"
     if built.exists() and built.stat().st_mtime >= max(source.stat().st_mtime for source in sources):
         return

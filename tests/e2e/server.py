@@ -16,6 +16,9 @@ import httpx
 
 PATIENCE = 60.0
 """Seconds until a condition that should come true counts as failed; machines can be slow, kernels must be built."""
+SHOP = "http://shop.example"
+"""A site that may show the page and its pictures."""
+EMBEDDING = ("--frame-ancestor", SHOP, "--allow-embedding")
 STOPPING = 20.0
 """Seconds that the server may take to end when told to."""
 
@@ -30,7 +33,9 @@ class Server:
     def __enter__(self) -> Server:
         with self._messages.open("wb") as messages:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "culet", "serve", "--port", "0"], stdout=subprocess.PIPE, stderr=messages
+                [sys.executable, "-m", "culet", "serve", "--port", "0", *EMBEDDING],
+                stdout=subprocess.PIPE,
+                stderr=messages,
             )
         self.url = self._announced()
         self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)

@@ -121,8 +121,10 @@ def test_the_two_kinds_of_error_are_explained_where_they_are_shown(view_of: View
     for name, meaning in (("frontier's, moving", "the default scene"), ("estimated, at rest", "two halves")):
         view.page.locator("#meter li", has_text=name).hover()  # nothing lies over it
         assert meaning in (view.page.locator("#meter li", has_text=name).get_attribute("title") or "")
-        view.page.locator("#status").hover()
-        assert meaning in (view.page.locator("#status").get_attribute("title") or "")
+    view.page.locator("#status").hover()
+    status = view.page.locator("#status").get_attribute("title") or ""
+    assert "the default scene" in status, "of the error while things move"
+    assert "no difference is seen" in status, "of that at rest"
 
 
 def test_on_a_phone_panel_and_plots_take_turns_and_leave_the_stone_in_sight(view_of: ViewOf) -> None:

@@ -59,7 +59,7 @@ def test_a_mesh_becomes_the_stone_and_its_findings_are_shown(wide_view: View, se
         pytest.param(
             "stone.jpg",
             "no mesh at all",
-            "expected a name that ends with one of .obj, .off, .stl, .ply, .glb",
+            "expected a name that ends with one of .obj, .off, .stl, .ply, .glb, .asc, .gem, .gcs",
             id="ending",
         ),
     ],

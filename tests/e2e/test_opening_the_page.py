@@ -7,6 +7,7 @@ import re
 import signal
 
 import pytest
+from playwright.sync_api import Request
 
 from e2e.conftest import SMALL, ViewOf
 from e2e.server import Server
@@ -33,6 +34,21 @@ def test_the_canvas_shows_what_the_server_renders(view_of: ViewOf, server: Serve
     assert still.shape == (SMALL["height"], SMALL["width"], 3)
     assert still.std() > 5, "a picture of something"
     assert difference(seen.pixels, still) < JPEG
+
+
+def test_the_first_picture_needs_less_than_60_kilobytes_of_script(view_of: ViewOf) -> None:
+    """As they come over the line, compressed. Measured: 31."""
+    view = view_of()
+    requests: list[Request] = []
+
+    def finished(request: Request) -> None:
+        requests.append(request)
+
+    view.page.on("requestfinished", finished)
+    view.open()
+    scripts = [request for request in requests if request.resource_type == "script"]
+    sizes = {script.url: script.sizes()["responseBodySize"] for script in scripts}
+    assert 10_000 < sum(sizes.values()) < 60_000, sizes
 
 
 def test_a_page_opened_while_the_engine_is_away_opens_by_itself_once_it_is_back(

@@ -26,6 +26,12 @@ PRESS_S_AND_LOOK = """() => {
 }"""
 """In one go, so that no frame comes between."""
 
+READ_THE_CLIPBOARD = """async () => {
+  const [item] = await navigator.clipboard.read();
+  const bytes = new Uint8Array(await (await item.getType("image/png")).arrayBuffer());
+  return btoa(Array.from(bytes, byte => String.fromCharCode(byte)).join(""));
+}"""
+
 
 def contents(download: Download) -> bytes:
     """The bytes of a download."""
@@ -52,10 +58,12 @@ def test_the_panel_offers_png_first_and_the_same_picture_as_targa(view_of: ViewO
     offered = view.page.get_by_role("button", name="Save the picture")
     assert [text.split("[")[0].strip() for text in offered.all_inner_texts()] == [
         "Save the picture (.png)",
+        "Save the picture (.webp)",
         "Save the picture (.tga)",
+        "Save the picture's light (.exr)",
     ]
     saved = []
-    for button in (offered.first, offered.last):
+    for button in (offered.first, offered.nth(2), offered.nth(1)):
         with view.page.expect_download() as started:
             button.click()
         saved.append(contents(started.value))
@@ -66,6 +74,45 @@ def test_the_panel_offers_png_first_and_the_same_picture_as_targa(view_of: ViewO
     )  # fmt: skip
     assert (width, height, depth) == (BESIDE_PANEL["width"], BESIDE_PANEL["height"], 24)
     assert difference(pixels_of(saved[0]), pixels_of(saved[1])) == 0
+    assert (saved[2][:4], saved[2][8:12]) == (b"RIFF", b"WEBP")
+    assert difference(pixels_of(saved[0]), pixels_of(saved[2])) < JPEG
+
+
+def test_a_copied_link_shows_the_same_view_to_another_browser_and_a_broken_one_says_so(
+    view_of: ViewOf, server: Server
+) -> None:
+    """After a fall and a turn of the camera: the link has both, and another session."""
+    view = view_of()
+    view.page.context.grant_permissions(["clipboard-read", "clipboard-write"], origin=server.url)
+    view.open()
+    view.page.keyboard.press("p")
+    view.until("() => culet.lastFrame.simulationTime > 0.1")
+    view.page.keyboard.press("p")
+    view.until("() => !culet.state.falling")
+    view.page.keyboard.press("ArrowLeft")
+    view.settle_messages()
+    seen = view.at_rest(view.look().frame["step"] - 1)
+    view.page.keyboard.press("k")
+    view.page.locator(".toast").get_by_text("The link to this view is on the clipboard.").wait_for()
+    link = view.page.evaluate("() => navigator.clipboard.readText()")
+    other = view_of()
+    other.page.goto(link)
+    other.until("() => window.culet && culet.framesShown > 0")
+    assert other.session != view.session
+    assert difference(other.at_rest().pixels, seen.pixels) == 0
+    broken = view_of()
+    broken.page.goto(link[:-20])
+    assert "This link is damaged" in broken.page.get_by_role("alertdialog").inner_text()
+
+
+def test_the_picture_is_copied_as_png(view: View, server: Server) -> None:
+    view.page.context.grant_permissions(["clipboard-read", "clipboard-write"], origin=server.url)
+    step = view.at_rest().frame["step"]
+    view.page.keyboard.press("x")
+    view.page.locator(".toast").get_by_text("The picture is on the clipboard.").wait_for()
+    copied = pixels_of(base64.b64decode(view.page.evaluate(READ_THE_CLIPBOARD)))
+    saved = server.http.get(f"/api/sessions/{view.session}/frame.png", params={"step": step}).content
+    assert difference(copied, pixels_of(saved)) == 0
 
 
 def test_s_while_falling_saves_the_frame_that_was_seen_then(view: View) -> None:

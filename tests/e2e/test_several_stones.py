@@ -17,6 +17,8 @@ STONES = [
     {"id": "right", "position": [2, 0, 0], "material": "sapphire"},
 ]
 SCENE: dict[str, Any] = {"stones": STONES, "camera": CAMERA, "simulation": {"gravity": 0}}
+HALF_HEIGHT = 12 * np.tan(np.radians(20))
+"""R of the picture where the stones are."""
 PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 LEFT_OF_THE_MIDDLE, RIGHT_OF_THE_MIDDLE, ABOVE = -0.46, 0.46, 0.8
 """Halves of the picture's height: 2 R are 0.458 of what is seen at 12 R."""
@@ -180,6 +182,30 @@ def test_a_finger_chooses_adds_removes_and_scatters_on_a_phone(view_of: ViewOf, 
     page.get_by_role("button", name="Scatter all").tap()
     view.until("() => culet.state.falling && culet.state.scene.stones.every(({ position }) => position[1] > 0)")
     assert ids(view) == ["left", "right"]
+    assert view.problems == []
+
+
+def test_ctrl_and_drag_moves_a_stone_under_the_pointer_and_keys_turn_it_as_edits(view: View) -> None:
+    half, mouse, keyboard = BESIDE_PANEL["height"] / 2, view.page.mouse, view.page.keyboard
+    x = BESIDE_PANEL["width"] / 2 + half * LEFT_OF_THE_MIDDLE
+    before = view.scene["stones"]
+    mouse.move(x, half)
+    keyboard.down("Control")
+    mouse.down()
+    mouse.move(x + 10, half - 40, steps=4)
+    view.until("y => culet.state.scene.stones[0].position[1] > y", 40 / half * HALF_HEIGHT * 0.95)
+    mouse.up()
+    keyboard.up("Control")
+    chosen(view, "left")
+    view.until("y => document.querySelector('#outline polygon').getBBox().y < y", half - 50)
+    middle = (outline(view).min(axis=0) + outline(view).max(axis=0)) / 2
+    assert middle == pytest.approx([x + 10, half - 40], abs=12), "the stone is where the pointer is"
+    keyboard.press("3")
+    keyboard.press("Shift+ArrowLeft")
+    view.until("turn => String(culet.state.scene.stones[0].orientation) !== turn", ",".join(map(str, [1, 0, 0, 0])))
+    keyboard.press("Control+z")
+    view.until("() => !culet.state.canUndo")
+    assert view.scene["stones"] == before
     assert view.problems == []
 
 

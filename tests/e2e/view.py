@@ -135,7 +135,7 @@ class View:
     def at_rest(self, after: int = -1) -> Seen:
         """The canvas once it shows the finished picture of a step later than that."""
         self.until(
-            "([step, final]) => culet.lastFrame && culet.lastFrame.step > step && culet.lastFrame.flags & final",
+            "([step, final]) => culet.lastFrame?.step > step && culet.lastFrame.flags & final && !culet.fading",
             [after, int(Flags.FINAL)],
         )
         return self.look()

@@ -54,6 +54,21 @@ async def test_pages_of_other_sites_cannot_make_their_visitors_render(alone: Gat
         assert answer.headers["Cross-Origin-Resource-Policy"] == "cross-origin"
 
 
+async def test_caches_that_many_share_are_told_what_a_picture_depends_on() -> None:
+    """Or a page would be shown what is refused to that page, or refused what another was shown."""
+    origin = "https://shop.example"
+    for settings, varies in (
+        ({}, "Sec-Fetch-Site"),
+        ({"allow_origin": (origin,)}, "Sec-Fetch-Site, Origin"),
+        ({"allow_embedding": True}, None),
+    ):
+        async with gateway_alone(**settings) as asked:
+            for headers in ({}, {"Sec-Fetch-Site": "cross-site"}):
+                answer = await asked.http.get("/api/render.png", headers=headers)
+                assert answer.headers.get("Vary") == varies, settings
+            assert "Sec-Fetch-Site" not in (await asked.http.get("/api/presets")).headers.get("Vary", "")
+
+
 async def test_every_answer_tells_browsers_to_be_careful(alone: Gateway) -> None:
     for path in ("/healthz", "/docs", "/docs/docs.js", "/api/presets", "/nowhere", "/", "/metrics"):
         check_careful((await alone.http.get(path)).headers)

@@ -318,6 +318,27 @@ async def test_the_frame_of_a_step_is_the_picture_that_was_shown_then(gateway: G
     assert_problem(await gateway.http.get(path, params={"step": 10**9}), 404)
 
 
+async def test_the_scene_of_a_step_makes_another_session_that_shows_the_same_picture(gateway: Gateway) -> None:
+    scene = {"sampling": {"samples_per_pixel": 1}, "simulation": {"gravity": 0}, "stones": [{"velocity": [2, 0, 0]}]}
+    session = await gateway.session(scene)
+    path = f"/api/sessions/{session}"
+    async with gateway.viewer(session) as viewer:
+        start = (await gateway.http.get(f"{path}/scene")).json()
+        assert start == (await gateway.http.get(path)).json()["scene"]
+        await gateway.http.post(f"{path}/events", json={"type": "toggle_fall"})
+        await viewer.until(lambda: bool(viewer.frames) and viewer.frames[-1].simulation_time > 0.1)
+        step = viewer.frames[-1].step
+        await gateway.http.patch(path, json={"camera": {"position": [3, 2, 3]}})
+    shown = (await gateway.http.get(f"{path}/scene", params={"step": step})).json()
+    assert shown["camera"] == start["camera"]
+    assert shown["stones"][0]["position"][0] > start["stones"][0]["position"][0] + 0.15
+    seen = await gateway.http.get(f"{path}/frame.tga", params=SMALL | {"step": step})
+    another = await gateway.http.get(f"/api/sessions/{await gateway.session(shown)}/frame.tga", params=SMALL)
+    assert another.content == seen.content
+    assert_problem(await gateway.http.get(f"{path}/scene", params={"step": 10**9}), 404)
+    assert_problem(await gateway.http.get(f"{path}/scene", params={"step": -1}), 422, "step")
+
+
 async def test_the_frame_of_a_session_is_the_same_picture_as_png_and_as_tga(gateway: Gateway) -> None:
     path = f"/api/sessions/{await gateway.session({'sampling': {'samples_per_pixel': 1}})}/frame"
     targa, png = [await gateway.http.get(f"{path}.{ending}", params=SMALL) for ending in ("tga", "png")]
@@ -340,7 +361,35 @@ async def test_the_description_says_of_what_kind_every_picture_is(gateway: Gatew
         (paths[f"{session}.tga"]["get"], {"image/x-tga"}),
         (paths[f"{session}.png"]["get"], {"image/png"}),
     ):
-        assert set(operation["responses"]["200"]["content"]) == kinds
+        content = operation["responses"]["200"]["content"]
+        assert set(content) == kinds
+        assert all(answer["schema"] == {"type": "string", "format": "binary"} for answer in content.values())
+
+
+async def test_a_transparent_picture_has_alpha(gateway: Gateway) -> None:
+    query = SMALL | {"preset": "ruby", "background": "transparent"}
+    alphas = []
+    for ending, mode in (("png", "RGBA"), ("webp", "RGBA"), ("jpg", "RGB")):
+        answer = await gateway.http.get(f"/api/render.{ending}", params=query)
+        assert answer.status_code == 200, answer.text
+        image = Image.open(io.BytesIO(answer.content))
+        assert (image.mode, image.size) == (mode, (64, 36))
+        alphas.append(image.getextrema()[-1])
+    assert alphas[0] == alphas[1] == (0, 255)
+    brand = await gateway.http.get("/api/render.png", params=query | {"background": "f4f1ea"})
+    assert Image.open(io.BytesIO(brand.content)).convert("RGB").getpixel((0, 0)) == (0xF4, 0xF1, 0xEA)
+    assert_problem(await gateway.http.get("/api/render.png", params=query | {"background": "blue"}), 422, "background")
+    session = await gateway.session({"film": {"background": "transparent"}})
+    frame = await gateway.http.get(f"/api/sessions/{session}/frame.png", params=SMALL | {"samples": 1})
+    assert Image.open(io.BytesIO(frame.content)).mode == "RGBA"
+
+
+async def test_generated_clients_get_names_that_can_be_read(gateway: Gateway) -> None:
+    paths = (await gateway.http.get("/openapi.json")).json()["paths"]
+    names = [operation["operationId"] for operations in paths.values() for operation in operations.values()]
+    assert len(set(names)) == len(names)
+    assert {"render_png", "frame_exr", "create_session", "post_event", "upload_mesh"} <= set(names)
+    assert [name for name in names if "api" in name] == []
 
 
 async def test_sessions_are_capped(engine: Endpoints, tmp_path: Path) -> None:
@@ -430,3 +479,25 @@ async def test_other_pages_may_read_but_not_change(gateway: Gateway) -> None:
 
 async def test_an_unknown_path_is_a_problem_too(gateway: Gateway) -> None:
     assert_problem(await gateway.http.get("/api/nothing"), 404)
+
+
+async def test_a_picture_is_refined_to_the_error_asked_for_and_says_so(gateway: Gateway) -> None:
+    path = f"/api/sessions/{await gateway.session()}/frame.png"
+    query: dict[str, str | int | float] = {**SMALL, "error": 0.02}
+    answers = [
+        await gateway.http.get("/api/render.png", params=query),
+        await gateway.http.post("/api/render", json=query),
+        await gateway.http.get(path, params=query),
+    ]
+    for answer in answers:
+        assert answer.headers["culet-target"] == "met"
+        assert 0.01 < float(answer.headers["culet-error"]) <= 0.02
+        assert 2 < int(answer.headers["culet-samples"]) < 100  # measured 11
+    limited = await gateway.http.get("/api/render.png", params=query | {"samples": 2})
+    assert (limited.headers["culet-samples"], limited.headers["culet-target"]) == ("2", "missed")
+    assert "etag" not in limited.headers, "with more time it might be another"
+    plain = await gateway.http.get("/api/render.png", params=SMALL | {"samples": 1})
+    assert plain.headers["culet-samples"] == "1"
+    assert {"culet-error", "culet-target"}.isdisjoint(plain.headers)
+    for error in (0, -1, 1.5, "much"):
+        assert_problem(await gateway.http.get("/api/render.png", params={"error": error}), 422, "error")

@@ -13,7 +13,11 @@ import numpy as np
 import trimesh
 from PIL import Image
 
+from culet.geometry.designs.asc_writer import asc_of
+from geometry.designs.files import design, gcs_of, gem_of
+
 MESHES = ("obj", "off", "stl", "ply", "glb")
+DESIGNS = ("asc", "gem", "gcs")
 SKIES = ("png", "hdr")
 
 
@@ -47,6 +51,8 @@ def seeds() -> dict[str, bytes]:
     picture = io.BytesIO()
     Image.fromarray(np.random.default_rng(1).integers(0, 255, (8, 16, 3), np.uint8)).save(picture, "PNG")
     made = {ending: data.encode() if isinstance(data, str) else bytes(data) for ending, data in files.items()}
+    single = design("03_single_cut")
+    made |= {"asc": asc_of(single)[1], "gem": gem_of(single), "gcs": gcs_of(single)}
     return made | {"png": picture.getvalue(), "hdr": hdr_bomb(16, 8)}
 
 
@@ -54,7 +60,7 @@ def mutated(count: int, seed: int) -> Iterator[tuple[str, bytes]]:
     """So many files, each with its ending: bytes changed, doubled, cut out or cut off."""
     dice = random.Random(seed)  # noqa: S311 - which bytes
     good = seeds()
-    for _, ending in zip(range(count), cycle([*MESHES, *SKIES]), strict=False):
+    for _, ending in zip(range(count), cycle([*MESHES, *DESIGNS, *SKIES]), strict=False):
         data = bytearray(good[ending])
         for _ in range(dice.choice((1, 1, 2, 5, 20))):
             at = dice.randrange(len(data))

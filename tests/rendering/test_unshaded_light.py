@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from culet.optics.panoramas import STUDIO as PICTURES
-from culet.optics.panoramas import Panorama, directions
+from culet.optics.panoramas import Panorama, directions, panorama_of
 from culet.rendering.light.lamp_field import lamp_field
 from culet.rendering.light.open_sky import open_sky
 from culet.rendering.light.panorama_light import panorama_light
@@ -16,6 +16,7 @@ from culet.rendering.light.unshaded import lamps_of, sky_light
 from culet.rendering.surfaces import shown
 from culet.scene import PRESETS, Scene
 from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, legacy
+from culet.scene.sky import ImageEnvironment
 from culet.stage import Stage
 from rendering.room_reference import SURFACES, lamp_share, sky
 from rendering.views import Array
@@ -189,6 +190,13 @@ def test_a_panoramas_sun_is_a_lamp_of_the_same_light() -> None:
 @pytest.mark.parametrize("name", PICTURES)
 def test_an_instruments_sky_has_no_spots(name: str) -> None:
     assert panorama_light(PICTURES[name]()).spots == ()
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_an_instruments_sky_is_summed_once(name: str) -> None:
+    """Every pass of a light map asks for it: that took longer than the passes."""
+    environment = ImageEnvironment(kind="image", image=name)
+    assert panorama_light(panorama_of(environment, {})) is panorama_light(panorama_of(environment, {}))
 
 
 @pytest.mark.parametrize("name", ["box", "round 6", "half set", "behind a wall, half"])

@@ -19,7 +19,9 @@ test("names are unique, and an unknown one is an error that lists them", () => {
   expect(() => actionNamed("jump")).toThrow(/expected one of camera, .*, got jump/);
 });
 
+const TURNS = ["turn_left", "turn_right", "turn_up", "turn_down"];
+
 test("only moves repeat while a key is held", () => {
   const repeating = ACTIONS.filter(({ repeats }) => repeats).map(({ name }) => name);
-  expect(repeating).toEqual(["left", "right", "up", "down", "in", "out"]);
+  expect(repeating).toEqual(["left", "right", "up", "down", "in", "out", ...TURNS]);
 });

@@ -2,17 +2,23 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import type { SessionEvent, Target } from "./events";
+import type { Move } from "./moves";
 import type { Format } from "./rest";
 import { type Wording, worded } from "./wording";
 
 /** R a key press, as in the report. */
 export const STEP = 0.5;
 
+/** Radians a key press: 24 of them are half a turn. */
+const TURN = Math.PI / 24;
+
 export type Effect =
   | { kind: "select"; target: Target }
-  | { kind: "send"; event: (target: Target) => SessionEvent }
+  | { kind: "send"; event: SessionEvent }
+  | { kind: "move"; move: Move }
   | { kind: "download"; format: Format }
-  | { kind: "stones"; command: "remove" | "putBack" }
+  | { kind: "copy"; what: "picture" | "link" }
+  | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
   | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
 export interface Action {
@@ -31,8 +37,8 @@ function letter(name: string, key: string, label: Action["label"], effect: Effec
   return { name, label, key: key.toLowerCase(), code: `Key${key}`, repeats, effect };
 }
 
-function move(name: string, code: string, label: string, event: (target: Target) => SessionEvent): Action {
-  return { name, label, key: code.toLowerCase(), code, repeats: true, effect: { kind: "send", event } };
+function move(name: string, code: string, label: string, move: Move): Action {
+  return { name, label, key: code.toLowerCase(), code, repeats: true, effect: { kind: "move", move } };
 }
 
 function select(target: Target, key: string, code: string, label: string): Action {
@@ -40,12 +46,12 @@ function select(target: Target, key: string, code: string, label: string): Actio
 }
 
 function plain(name: string, key: string, label: Action["label"], type: Plain): Action {
-  return letter(name, key, label, { kind: "send", event: () => ({ type }) });
+  return letter(name, key, label, { kind: "send", event: { type } });
 }
 
 /** By a key with Ctrl, which `keys.ts` knows: no key has such a name or place. */
 function edit(type: "undo" | "redo", key: string, label: string): Action {
-  return { name: type, label, key, code: key, repeats: false, effect: { kind: "send", event: () => ({ type }) } };
+  return { name: type, label, key, code: key, repeats: false, effect: { kind: "send", event: { type } } };
 }
 
 /** The events that say all by their type. */
@@ -60,22 +66,29 @@ type Plain =
   | "redo";
 
 function dolly(forward: number): Effect {
-  return { kind: "send", event: (target) => ({ type: "dolly", target, forward }) };
+  return { kind: "move", move: { forward } };
 }
 
+const LOOK = { one: "Look at the stone", several: "Look at the chosen stone, or all" };
 const PUT_BACK = { one: "Put the stone back", several: "Put the stones back" };
 
 export const ACTIONS: readonly Action[] = [
   select("camera", "c", "KeyC", "Move the camera"),
   select("light_1", "1", "Digit1", "Move the red light"),
   select("light_2", "2", "Digit2", "Move the blue light"),
-  move("left", "ArrowLeft", "Left", (target) => ({ type: "translate", target, right: -STEP, up: 0 })),
-  move("right", "ArrowRight", "Right", (target) => ({ type: "translate", target, right: STEP, up: 0 })),
-  move("up", "ArrowUp", "Up", (target) => ({ type: "translate", target, right: 0, up: STEP })),
-  move("down", "ArrowDown", "Down", (target) => ({ type: "translate", target, right: 0, up: -STEP })),
+  select("stone", "3", "Digit3", "Move the chosen stone"),
+  move("left", "ArrowLeft", "Left", { right: -STEP }),
+  move("right", "ArrowRight", "Right", { right: STEP }),
+  move("up", "ArrowUp", "Up", { up: STEP }),
+  move("down", "ArrowDown", "Down", { up: -STEP }),
   letter("in", "I", "In", dolly(STEP), true),
   letter("out", "O", "Out", dolly(-STEP), true),
+  move("turn_left", "Shift+ArrowLeft", "Turn left", { yaw: -TURN }),
+  move("turn_right", "Shift+ArrowRight", "Turn right", { yaw: TURN }),
+  move("turn_up", "Shift+ArrowUp", "Turn up", { pitch: TURN }),
+  move("turn_down", "Shift+ArrowDown", "Turn down", { pitch: -TURN }),
   plain("reset_camera", "F", "Reset the camera", "reset_camera"),
+  letter("look", "V", LOOK, { kind: "stones", command: "lookAround" }),
   plain("fall", "P", "Fall or pause", "toggle_fall"),
   plain("reset_stone", "R", PUT_BACK, "reset_stone"),
   plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
@@ -93,6 +106,8 @@ export const ACTIONS: readonly Action[] = [
   edit("undo", "ctrl+z", "Undo"),
   edit("redo", "ctrl+shift+z", "Redo"),
   letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
+  letter("copy_picture", "X", "Copy the picture", { kind: "copy", what: "picture" }),
+  letter("copy_link", "K", "Copy a link to this view", { kind: "copy", what: "link" }),
   {
     name: "keys",
     label: "All keys",
@@ -113,6 +128,10 @@ const KEY_NAMES: Record<string, string> = {
   delete: "Del",
   "ctrl+z": "Ctrl Z",
   "ctrl+shift+z": "Ctrl Shift Z",
+  "shift+arrowleft": "Shift \u2190",
+  "shift+arrowright": "Shift \u2192",
+  "shift+arrowup": "Shift \u2191",
+  "shift+arrowdown": "Shift \u2193",
 };
 
 /** A key as it is printed. */

@@ -11,12 +11,19 @@ export class Bareness {
     this.tell = tell;
   }
 
+  /** For good, as the address asks: nothing says how to come back. */
+  stay(): void {
+    this.main.classList.add("bare", "embedded");
+  }
+
+  /** Until a key or a tap brings everything back. */
   get on(): boolean {
-    return this.main.classList.contains("bare");
+    return this.main.classList.contains("bare") && !this.main.classList.contains("embedded");
   }
 
   toggle(): void {
     this.forget();
+    if (this.main.classList.contains("embedded")) return;
     this.main.classList.toggle("bare");
     this.forget = this.on ? this.tell() : () => {};
   }

@@ -26,6 +26,14 @@ describe("a click", () => {
     expect(chosen).toEqual(["ruby", null]);
   });
 
+  it("tells whoever asked what was there, once, unless there was another", () => {
+    const told: unknown[] = [];
+    stone.pick(0, 0, (id) => told.push(["first", id]));
+    stone.pick(1, 0, (id) => told.push(["second", id]));
+    for (const number of [1, 2, 2]) stone.heard({ type: "picked", number, stone: "ruby" });
+    expect(told).toEqual([["second", "ruby"]]);
+  });
+
   it("counts no more after the next one", () => {
     stone.pick(0, 0);
     stone.pick(1, 0);

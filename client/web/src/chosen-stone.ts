@@ -18,6 +18,7 @@ export class ChosenStone {
   private stone: string | null = null;
   private ids: readonly string[] = [];
   private number = 0;
+  private told: ((id: string | null) => void) | undefined;
   /** Of the picture that is shown. */
   private step: number | null = null;
   private known: { stone: string; step: number } | null = null;
@@ -31,9 +32,11 @@ export class ChosenStone {
     return this.stone;
   }
 
-  /** A click or tap: x to the right and y up from the picture's centre, in halves of its height. */
-  pick(x: number, y: number): void {
+  /** A click or tap: x to the right and y up from the picture's centre, in halves of its height. Whoever asks may be
+   *  told what was there, unless something else is picked meanwhile. */
+  pick(x: number, y: number, told?: (id: string | null) => void): void {
     this.number += 1;
+    this.told = told;
     this.listener.ask({ type: "pick", number: this.number, x, y });
   }
 
@@ -65,7 +68,10 @@ export class ChosenStone {
   }
 
   private picked({ number, stone }: Picked): void {
-    if (number === this.number) this.choose(stone); // an earlier click's answer comes too late
+    if (number !== this.number) return; // an earlier click's answer comes too late
+    this.choose(stone);
+    this.told?.(stone);
+    this.told = undefined;
   }
 
   private outlined({ stone, step, points }: Outlined): void {

@@ -2,7 +2,9 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 
-export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb";
+export const SCENE_TYPES = ".json,application/json";
+/** Of meshes and of cutters' designs. */
+export const MESH_TYPES = ".obj,.off,.stl,.ply,.glb,.asc,.gem,.gcs";
 export const SKY_TYPES = ".exr,.hdr,.png";
 
 /** Save a blob under a name, as a click on a link would. */

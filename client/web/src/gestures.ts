@@ -1,7 +1,7 @@
 /** Drag, pinch and wheel as motions of the target. */
 
 import { STEP } from "./actions";
-import type { Dolly, Orbit, Push, Target } from "./events";
+import type { Push, Target } from "./events";
 import type { Rectangle } from "./picture-size";
 
 /** What fingers did since the last look: css pixels dragged, and the ratio of a pinch. */
@@ -48,12 +48,12 @@ export class Fingers {
 
 /**
  * A drag over the picture's shorter side (css pixels) is half a turn. The camera goes against the finger, so that the
- * scene seems to be held; a light goes with it.
+ * scene seems to be held; a light goes with it, and so does the near side of a stone.
  */
-export function orbitBy(dx: number, dy: number, side: number, target: Target): Orbit {
+export function turnBy(dx: number, dy: number, side: number, target: Target): { yaw: number; pitch: number } {
   const radians = Math.PI / Math.max(side, 1);
   const sign = target === "camera" ? -1 : 1;
-  return { type: "orbit", target, yaw: sign * dx * radians, pitch: -sign * dy * radians };
+  return { yaw: sign * dx * radians, pitch: -sign * dy * radians };
 }
 
 /** R/s for a drag over half the picture's height. */
@@ -77,8 +77,9 @@ export function pushBy(x: number, y: number, dx: number, dy: number, area: Recta
 /** R for a doubling of the distance between two fingers. */
 const PINCH = 2;
 
-export function pinchBy(spread: number, target: Target): Dolly {
-  return { type: "dolly", target, forward: PINCH * Math.log2(spread) };
+/** R forward. */
+export function pinchBy(spread: number): number {
+  return PINCH * Math.log2(spread);
 }
 
 /** Css pixels in a notch of most wheels, and in the line and page of WheelEvent.deltaMode 1 and 2. */
@@ -87,7 +88,8 @@ const UNIT = [1, 16, 800];
 /** R: the most that one wheel event moves, since some mice report bursts. */
 const WHEEL_LIMIT = 2;
 
-export function wheelBy(deltaY: number, deltaMode: number, target: Target): Dolly {
+/** R forward. */
+export function wheelBy(deltaY: number, deltaMode: number): number {
   const forward = (-deltaY * (UNIT[deltaMode] ?? 1) * STEP) / NOTCH;
-  return { type: "dolly", target, forward: Math.max(-WHEEL_LIMIT, Math.min(WHEEL_LIMIT, forward)) };
+  return Math.max(-WHEEL_LIMIT, Math.min(WHEEL_LIMIT, forward));
 }

@@ -5,10 +5,11 @@ import { worded } from "./wording";
 
 /** What is done without a key. */
 export const GESTURES: readonly (readonly [string, string])[] = [
-  ["Drag", "Turn the view; of a light that is chosen, move the light around"],
+  ["Drag", "Turn the view; of a light that is chosen, move the light around; turn a stone that is to be moved"],
   ["Wheel, pinch", "Nearer, farther"],
   ["Click, tap", "Choose a stone, where there are several"],
   ["Shift and drag", "Throw the stone under the pointer"],
+  ["Ctrl and drag", "Move the stone under the pointer; with Shift turn it"],
   ["Esc", "Close this card, leave the full screen, or show all again"],
 ];
 

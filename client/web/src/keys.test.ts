@@ -1,6 +1,7 @@
 import { describe, expect, it, test } from "vitest";
 import { ACTIONS } from "./actions";
 import { actionOf, type KeyPress, keepsKey } from "./keys";
+import { movesOf } from "./moves";
 
 function press(code: string, key: string, more: Partial<KeyPress> = {}): string | undefined {
   const plain = { repeat: false, ctrlKey: false, metaKey: false, altKey: false, shiftKey: false };
@@ -56,6 +57,12 @@ describe("a key press", () => {
     expect(press("KeyC", "\u0441")).toBe("camera"); // Cyrillic es
   });
 
+  it("that moves, with shift turns", () => {
+    expect(press("ArrowLeft", "ArrowLeft", { shiftKey: true })).toBe("turn_left");
+    expect(press("ArrowUp", "ArrowUp", { shiftKey: true, repeat: true })).toBe("turn_up");
+    expect(press("KeyI", "I", { shiftKey: true })).toBe("in");
+  });
+
   it("counts with shift or caps lock, and on the keypad", () => {
     expect(press("KeyM", "M")).toBe("mirror");
     expect(press("Numpad2", "2")).toBe("light_2");
@@ -82,7 +89,7 @@ test("no two actions share a key", () => {
 });
 
 test("moves are sent for the chosen target, half a radius a press", () => {
-  const sent = ACTIONS.flatMap(({ effect }) => (effect.kind === "send" ? [effect.event("light_2")] : []));
+  const sent = ACTIONS.flatMap(({ effect }) => (effect.kind === "move" ? movesOf(effect.move, "light_2", "") : []));
   expect(sent).toContainEqual({ type: "translate", target: "light_2", right: -0.5, up: 0 });
   expect(sent).toContainEqual({ type: "dolly", target: "light_2", forward: 0.5 });
 });

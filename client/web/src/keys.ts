@@ -17,7 +17,8 @@ const BY_CODE = new Map(ACTIONS.map((action) => [action.code, action]));
 export function actionOf(press: KeyPress): Action | null {
   if (press.altKey || press.isComposing) return null;
   if (press.ctrlKey || press.metaKey) return editOf(press);
-  const action = BY_KEY.get(press.key.toLowerCase()) ?? BY_CODE.get(press.code);
+  const key = press.key.toLowerCase();
+  const action = (press.shiftKey && BY_KEY.get(`shift+${key}`)) || BY_KEY.get(key) || BY_CODE.get(press.code);
   return action && (action.repeats || !press.repeat) ? action : null;
 }
 

@@ -1,5 +1,6 @@
 /** The page: finds or makes a session, then connects keys, fingers, panel and picture to it. */
 
+import { Flag } from "@culet/protocol/frame";
 import { CloseCode, type Outline, type Pick } from "@culet/protocol/messages";
 import { type Action, actionNamed } from "./actions";
 import {
@@ -16,15 +17,19 @@ import {
 import { Bareness } from "./bareness";
 import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
-import type { SessionEvent } from "./events";
+import { type Embedding, embeddingOf, queryOf, SHOWN, Turntable } from "./embedding";
+import type { SessionEvent, Target } from "./events";
 import { FallButton } from "./fall-button";
-import { chooseFile, download, MESH_TYPES, parseScene, SKY_TYPES } from "./files";
+import { listenToDrops } from "./file-drop";
+import { chooseFile, MESH_TYPES, parseScene, SCENE_TYPES, SKY_TYPES } from "./files";
 import { Findings } from "./findings";
 import { framed, framingPatch } from "./framing";
 import { placeOf } from "./gestures";
+import { Hand } from "./hand";
 import { KeyCard } from "./key-card";
 import { listenToKeys } from "./keys";
 import { Meter } from "./meter";
+import { type Move, movesOf } from "./moves";
 import { OutlineView } from "./outline-view";
 import { element } from "./page";
 import { Panel } from "./panel";
@@ -32,15 +37,17 @@ import { listenToPointers } from "./pointer-input";
 import { expose, header } from "./probe";
 import { OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
+import { Saving } from "./saving";
 import { SceneStrip } from "./scene-strip";
 import { Screen } from "./screen";
-import { sessionAddress, streamUrl, wantedSession } from "./session-url";
+import { sessionAddress, streamUrl, type Wanted, wantedSession } from "./session-url";
 import { imageSky } from "./sky-choice";
 import { ERROR_MEANINGS, statusText } from "./status-text";
-import { StoneCommands } from "./stone-commands";
+import { CHOOSE_FIRST, StoneCommands } from "./stone-commands";
 import { idsOf, stonePatch, stonesOf } from "./stones";
 import { type Connection, pauseBefore } from "./stream";
 import { Toasts } from "./toasts";
+import { fitted, LinkError, unpackedView } from "./view-link";
 import { describeChange, INITIAL, inVain, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
 import { Welcome } from "./welcome";
@@ -63,6 +70,9 @@ const toasts = new Toasts(element("toasts", HTMLElement));
 const announcement = element("announcement", HTMLElement);
 const statusLine = element("status", HTMLElement);
 const PROBLEMS_KEPT = 100;
+const VIEW_REFUSED = "This server cannot show the view of this link.";
+/** What is left to do, beside moves, where a page shows nothing but the picture. */
+const VIEWING = new Set(["reset_camera", "look", "full"]);
 const COME_BACK = "H, Esc or a tap on the picture brings everything back.";
 const problems: string[] = [];
 const files = new OpenedFiles();
@@ -88,22 +98,33 @@ const stones = new StoneCommands({
   tell: problem,
 });
 
+const saving = new Saving({
+  seen: () => (session && viewer?.lastFrame ? { ...viewer.lastFrame, session } : null),
+  scene: () => viewer?.state.scene ?? null,
+  note: (text) => toasts.note(text),
+});
+
 /** Of one stone all was told when its mesh was opened. */
 const findings = new Findings(
   async () => (session === null ? [] : (await rest.findSession(session)).findings),
   (text) => toasts.finding(text),
 );
 
+const open = {
+  scene: (file: File) => attempt(() => openScene(file)),
+  mesh: (file: File) => attempt(() => openMesh(file)),
+  sky: (file: File) => attempt(() => openSky(file)),
+};
 const screen = new Screen(canvas, (size) => viewer?.resize(size));
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
   stones,
   removals: () => stones.removals,
-  saveTarga: () => attempt(() => savePicture("tga")),
-  saveScene: () => attempt(saveScene),
-  openScene: () => chooseFile(".json,application/json", (file) => attempt(() => openScene(file))),
-  openMesh: () => chooseFile(MESH_TYPES, (file) => attempt(() => openMesh(file))),
-  openSky: () => chooseFile(SKY_TYPES, (file) => attempt(() => openSky(file))),
+  savePicture: (format) => attempt(() => saving.picture(format)),
+  saveScene: () => attempt(() => saving.scene()),
+  openScene: () => chooseFile(SCENE_TYPES, open.scene),
+  openMesh: () => chooseFile(MESH_TYPES, open.mesh),
+  openSky: () => chooseFile(SKY_TYPES, open.sky),
   patch: (patch) => viewer?.send({ type: "patch_scene", patch }),
   newSession: startAnew,
   clamped,
@@ -117,13 +138,35 @@ const keyCard = new KeyCard(
 );
 const welcome = new Welcome(element("welcome", HTMLElement));
 const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(COME_BACK));
+const embedding = embeddingAsked();
+if (!embedding.ui) bareness.stay();
 const meter = new Meter(element("meter", HTMLElement), (balance) => viewer?.send(balance), clamped);
+const turntable = new Turntable(matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : embedding.rotate, (turn) =>
+  viewer?.stream.send(turn),
+);
+function turnOn(now: number): void {
+  if (viewer?.lastFrame) turntable.turn(now, viewer.player.shown);
+  requestAnimationFrame(turnOn);
+}
+if (embedding.rotate !== 0) requestAnimationFrame(turnOn);
 listenToKeys(window, perform);
-listenToPointers(
-  canvas,
-  () => viewer?.state.target ?? INITIAL.target,
-  (event) => viewer?.send(event),
-  (x, y) => {
+listenToDrops(window, open, problem);
+const hand = new Hand({
+  ids: () => idsOf(viewer?.state.scene ?? null),
+  pick: (x, y, told) => {
+    const at = placeOf(x, y, screen.area);
+    chosen.pick(at.x, at.y, told);
+  },
+  send: (event) => viewer?.send(event),
+  size: () => ({ height: screen.area.height, side: Math.min(canvas.clientWidth, canvas.clientHeight) }),
+});
+listenToPointers(canvas, {
+  target: () => viewer?.state.target ?? INITIAL.target,
+  move,
+  push: (push) => viewer?.send(push),
+  click: (x, y) => {
+    turntable.toggle();
+    if (!embedding.ui) return;
     if (bareness.on) {
       bareness.toggle();
       return;
@@ -131,16 +174,29 @@ listenToPointers(
     const at = placeOf(x, y, screen.area);
     if (idsOf(viewer?.state.scene ?? null).length > 1) chosen.pick(at.x, at.y);
   },
-  () => screen.area,
-);
+  hand,
+  area: () => screen.area,
+  zooms: (event) => embedding.ui || event.ctrlKey, // a pinch of a touchpad counts as with Ctrl
+});
 
-function perform({ effect }: Action): void {
-  if (effect.kind === "download") attempt(() => savePicture(effect.format));
+function perform({ effect, name }: Action): void {
+  if (!embedding.ui && effect.kind !== "move" && !VIEWING.has(name)) return;
+  if (effect.kind === "download") attempt(() => saving.picture(effect.format));
+  else if (effect.kind === "copy") attempt(() => copy[effect.what]());
   else if (effect.kind === "page") onPage[effect.command]();
   else if (!viewer) problem("There is no session yet.");
   else if (effect.kind === "stones") stones[effect.command]();
   else if (effect.kind === "select") viewer.select(effect.target);
-  else send(viewer, effect.event(viewer.state.target));
+  else if (effect.kind === "move") move(effect.move, viewer.state.target);
+  else send(viewer, effect.event);
+}
+
+/** Move the target: a stone only if it is known which. */
+function move(by: Move, target: Target): void {
+  turntable.rest(performance.now());
+  const stone = stones.chosen();
+  if (target === "stone" && stone === null) problem(CHOOSE_FIRST);
+  else for (const event of movesOf(by, target, stone ?? "")) viewer?.send(event);
 }
 
 function send(to: Viewer, event: SessionEvent): void {
@@ -148,6 +204,8 @@ function send(to: Viewer, event: SessionEvent): void {
   if (vain) toasts.note(vain);
   else to.send(event);
 }
+
+const copy = { picture: () => saving.copyPicture(), link: () => saving.copyLink() };
 
 /** What changes the page alone. */
 const onPage = {
@@ -167,6 +225,16 @@ function clamped(typed: number, taken: number): void {
   toasts.note(`${typed} is beyond the slider: ${taken} is taken.`);
 }
 
+/** What the address asks for; the whole page, and words about it, if that cannot be. */
+function embeddingAsked(): Embedding {
+  try {
+    return embeddingOf(location.search);
+  } catch (error) {
+    problem(error instanceof Error ? error.message : String(error));
+    return embeddingOf("");
+  }
+}
+
 /** Run what may be refused, and tell the user why. */
 function attempt(work: () => Promise<void>): void {
   work().catch((error: unknown) => problem(error instanceof Error ? error.message : String(error)));
@@ -175,23 +243,6 @@ function attempt(work: () => Promise<void>): void {
 function problem(text: string, about?: string): void {
   if (problems.push(text) > PROBLEMS_KEPT) problems.shift();
   toasts.problem(text, about);
-}
-
-async function savePicture(format: rest.Format): Promise<void> {
-  const frame = viewer?.lastFrame;
-  if (!session || !frame) throw new Error("There is no picture yet.");
-  const clear = toasts.note("Rendering the picture at full quality\u2026");
-  try {
-    download(await rest.picture(session, frame.step, format), `culet-${frame.step}.${format}`);
-  } finally {
-    clear();
-  }
-}
-
-async function saveScene(): Promise<void> {
-  const scene = viewer?.state.scene;
-  if (!scene) throw new Error("There is no scene yet.");
-  download(new Blob([`${JSON.stringify(scene, null, 2)}\n`], { type: "application/json" }), "scene.json");
 }
 
 async function openScene(file: File): Promise<void> {
@@ -244,7 +295,7 @@ function aspect(): number {
 }
 
 function startAnew(): void {
-  location.assign("/");
+  location.assign(`/?${queryOf(embedding).slice(1)}`);
 }
 
 function connectionChanged(connection: Connection): void {
@@ -310,17 +361,24 @@ function stateChanged(before: ViewState, after: ViewState): void {
   if (viewer) showBanner(viewer.stream.connection);
 }
 
+function firstShown(): void {
+  if (embedding.ui) welcome.show();
+  if (window.parent !== window) window.parent.postMessage(SHOWN, "*");
+}
+
 function watch(id: string): void {
   session = id;
-  history.replaceState(null, "", sessionAddress(id));
+  history.replaceState(null, "", sessionAddress(id, embedding));
   waiting.show(WAITING);
   const timer = setTimeout(() => waiting.show(WAITING_LONG), WAITING_LONG_MS);
   const whereabouts = new Whereabouts();
+  let shownStep: bigint | null = null;
   viewer = new Viewer(streamUrl(location, id), {
     show: (picture, frame, arrival) => {
-      screen.show(picture);
+      screen.show(picture, shownStep === frame.step && !(frame.flags & Flag.MOVING));
+      shownStep = frame.step;
       clearTimeout(timer);
-      if (viewer?.player.shown === 0) welcome.show();
+      if (viewer?.player.shown === 0) firstShown();
       waiting.show(null);
       elsewhere = whereabouts.after(frame, arrival.time, viewer?.state.scene ?? null);
       if (viewer) showBanner(viewer.stream.connection);
@@ -339,8 +397,8 @@ function watch(id: string): void {
 }
 
 /** The id of a session that is made for this window. */
-async function newSession(preset?: string): Promise<string> {
-  const { id, scene } = await rest.createSession(preset);
+async function newSession(preset: string | undefined): Promise<string> {
+  const { id, scene } = await rest.createSession(preset === undefined ? {} : { preset });
   const patch = framingPatch(scene, aspect());
   if (patch) await rest.patchSession(id, patch);
   return id;
@@ -348,23 +406,51 @@ async function newSession(preset?: string): Promise<string> {
 
 /** Find or make the session; after `tries` that failed, since the server was not ready. */
 async function start(tries = 0): Promise<void> {
-  const wanted = wantedSession(location.search);
+  const wanted = wantedSession(location.search, location.hash);
   if (wanted.kind === "invalid") {
     return obstacle.show(`${wanted.id} is not the id of a session.`, "Start a new session", startAnew);
   }
   try {
-    if (wanted.kind === "session") await rest.findSession(wanted.id);
-    watch(wanted.kind === "session" ? wanted.id : await newSession(wanted.preset));
+    watch(await sessionFor(wanted));
     obstacle.hide();
   } catch (error) {
-    const known = asProblem(error);
     banner.show(null);
+    if (error instanceof LinkError) return obstacle.show(error.message, "Start a new session", startAnew);
+    const known = asProblem(error);
+    if (wanted.kind === "view" && known.status === 422) {
+      return obstacle.show(`${VIEW_REFUSED}\n${known.message}`, "Start a new session", startAnew);
+    }
     if (wanted.kind === "session" && known.status === 404) {
       return obstacle.show(obstacleText(CloseCode.UNKNOWN_SESSION, ""), "Start a new session", startAnew);
     }
     if (rest.isPassing(known)) later(known.message, tries, start);
     else obstacle.show(known.message, "Try again", () => attempt(start));
   }
+}
+
+/** The id of the session that is there, or of the one that is made. */
+async function sessionFor(wanted: Exclude<Wanted, { kind: "invalid" }>): Promise<string> {
+  switch (wanted.kind) {
+    case "session":
+      await rest.findSession(wanted.id);
+      return wanted.id;
+    case "view":
+      return (await rest.createSession({ scene: fitted(await unpackedView(wanted.packed), aspect()) })).id;
+    case "new":
+      return newSession(wanted.preset);
+  }
+}
+
+/** What the panel and the scenes are filled with. */
+function loadCatalogues(): void {
+  attempt(async () => strip.show(await rest.presets(), choosePreset));
+  attempt(async () => panel.choices.addMaterials(await rest.materials()));
+  attempt(async () => {
+    const [cut] = await rest.cuts(); // there is one so far
+    if (cut) panel.addCut(cut);
+  });
+  attempt(async () => panel.choices.addSkies(await rest.skies()));
+  attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
 }
 
 function asProblem(error: unknown): rest.ProblemError {
@@ -382,7 +468,7 @@ function later(why: string, tries: number, work: (tries: number) => Promise<void
   obstacle.show(`${why}\n${tryingAgainText(delay)}`, "Try now", again);
 }
 
-statusLine.title = `error: ${ERROR_MEANINGS.estimated}\nfrontier's error: ${ERROR_MEANINGS.frontier}`;
+statusLine.title = `error as shown: ${ERROR_MEANINGS.shown}\nfrontier's error: ${ERROR_MEANINGS.frontier}`;
 setInterval(() => {
   const now = performance.now();
   statusLine.textContent = statusText({
@@ -399,6 +485,9 @@ expose({
   },
   get lastFrame() {
     return viewer?.lastFrame ? header(viewer.lastFrame) : null;
+  },
+  get fading() {
+    return screen.fading;
   },
   get framesShown() {
     return viewer?.player.shown ?? 0;
@@ -420,13 +509,8 @@ expose({
   },
   problems,
 });
+// A link that is pasted over one that could not be read is no other page to the browser.
+window.addEventListener("hashchange", () => location.reload());
 waiting.show("Connecting\u2026");
-attempt(async () => strip.show(await rest.presets(), choosePreset));
-attempt(async () => panel.choices.addMaterials(await rest.materials()));
-attempt(async () => {
-  const [cut] = await rest.cuts(); // there is one so far
-  if (cut) panel.addCut(cut);
-});
-attempt(async () => panel.choices.addSkies(await rest.skies()));
-attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
+if (embedding.ui) loadCatalogues();
 attempt(start);

@@ -13,6 +13,8 @@ import { CutPanel } from "./cut-panel";
 import { EditButtons } from "./edit-buttons";
 import type { Target } from "./events";
 import { FallPanel } from "./fall-panel";
+import type { Format } from "./rest";
+import { FORMATS } from "./saving";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { withFirst } from "./stones";
 import { SurfacePanel } from "./surface-panel";
@@ -24,7 +26,7 @@ export interface PanelActions {
   stones: StoneActions;
   /** How many stones this viewer may put back. */
   removals: () => number;
-  saveTarga: () => void;
+  savePicture: (format: Format) => void;
   saveScene: () => void;
   openScene: () => void;
   openMesh: () => void;
@@ -35,8 +37,8 @@ export interface PanelActions {
   clamped: (typed: number, taken: number) => void;
 }
 
-const MOVES = ["left", "right", "up", "down", "in", "out"];
-const TARGETS = ["camera", "light_1", "light_2"] as const;
+const MOVES = ["left", "right", "up", "down", "in", "out", "turn_left", "turn_right", "turn_up", "turn_down"];
+const TARGETS = ["camera", "light_1", "light_2", "stone"] as const;
 const STONE = { one: "Stone", several: "Stones" };
 const NARROW = 640;
 
@@ -120,6 +122,7 @@ export class Panel {
     const target = section.add(new Choice<Target>("What", options, "camera"));
     target.onInput((name) => this.actions.perform(actionNamed(name)));
     for (const name of MOVES) this.addButton(section, actionNamed(name)).element.classList.add("half");
+    this.addButton(section, actionNamed("look"));
     this.addButton(section, actionNamed("reset_camera"));
     return target;
   }
@@ -127,10 +130,12 @@ export class Panel {
   private addFiles(section: Section): void {
     const button = (label: string, act: () => void) => section.add(new Command(label, act));
     this.addButton(section, actionNamed("download"));
-    button("Save the picture (.tga)", () => this.actions.saveTarga());
+    for (const [format, label] of FORMATS) button(label, () => this.actions.savePicture(format));
+    this.addButton(section, actionNamed("copy_picture"));
+    this.addButton(section, actionNamed("copy_link"));
     button("Save the scene (.json)", () => this.actions.saveScene());
     button("Open a scene\u2026", () => this.actions.openScene());
-    button("Open a mesh\u2026", () => this.actions.openMesh());
+    button("Open a mesh or a design\u2026", () => this.actions.openMesh());
     button("Open a sky\u2026", () => this.actions.openSky());
     button("New session", () => this.actions.newSession());
   }

@@ -12,6 +12,8 @@ export interface Probe {
   readonly session: string | null;
   readonly lastFrame: FrameHeader | null;
   readonly framesShown: number;
+  /** The last frame is still coming up over the one before. */
+  readonly fading: boolean;
   readonly outOfOrder: number;
   readonly state: ViewState;
   readonly target: Target;

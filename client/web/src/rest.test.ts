@@ -35,7 +35,7 @@ describe("a new session", () => {
   it("is of the default scene, or of a preset", async () => {
     const calls = answering(201, { id: "abc", scene: {} });
     expect(await createSession()).toEqual({ id: "abc", scene: {} });
-    await createSession("classic");
+    await createSession({ preset: "classic" });
     expect(calls.map(({ path }) => path)).toEqual(["/api/sessions", "/api/sessions"]);
     expect(calls.map(({ init }) => init?.body)).toEqual(["{}", '{"preset":"classic"}']);
     expect(calls[0]?.init?.method).toBe("POST");

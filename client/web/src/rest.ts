@@ -24,7 +24,7 @@ export function isPassing({ status }: ProblemError): boolean {
 }
 
 /** What a picture is saved as. */
-export type Format = "png" | "tga";
+export type Format = "png" | "webp" | "tga" | "exr";
 
 async function request(path: string, init?: RequestInit): Promise<Response> {
   let response: Response;
@@ -64,9 +64,11 @@ function post(body: JsonObject): RequestInit {
   return { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
 }
 
-/** A new session, of the default scene or of a preset. */
-export async function createSession(preset?: string): Promise<{ id: string; scene: JsonObject }> {
-  const response = await request("/api/sessions", post(preset === undefined ? {} : { preset }));
+/** What a new session shows; nothing: the default scene. */
+export type Beginning = { preset?: string } | { scene: JsonObject };
+
+export async function createSession(beginning: Beginning = {}): Promise<{ id: string; scene: JsonObject }> {
+  const response = await request("/api/sessions", post(beginning));
   const { id, scene } = (await response.json()) as JsonObject;
   if (typeof id !== "string") throw new ProblemError(response.status, "expected the id of a session, got none");
   return { id, scene: object(scene) };
@@ -94,6 +96,11 @@ export async function findSession(id: string): Promise<{ findings: string[] }> {
   const response = await request(`/api/sessions/${encodeURIComponent(id)}`);
   const { findings } = object(await response.json());
   return { findings: Array.isArray(findings) ? findings.map(String) : [] };
+}
+
+/** The scene as the picture of that step shows it: with its camera, and the stones where they were. */
+export async function sceneShown(session: string, step: bigint): Promise<JsonObject> {
+  return object(await (await request(`/api/sessions/${session}/scene?step=${step}`)).json());
 }
 
 /** All that there is of something, under the name that the answer gives it too. */

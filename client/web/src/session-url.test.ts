@@ -13,6 +13,11 @@ describe("the address", () => {
     expect(wantedSession("")).toEqual({ kind: "new", preset: undefined });
   });
 
+  it("names a view by what follows its hash, unless it names a session", () => {
+    expect(wantedSession("", "#view=1.AB-_")).toEqual({ kind: "view", packed: "1.AB-_" });
+    expect(wantedSession(`?session=${ID}`, "#view=1.AB")).toEqual({ kind: "session", id: ID });
+  });
+
   it.each(["", "zz", ID.toUpperCase(), `${ID}0`, "../../etc"])("does not take %j for a session", (id) => {
     expect(wantedSession(`?session=${encodeURIComponent(id)}`)).toEqual({ kind: "invalid", id });
   });

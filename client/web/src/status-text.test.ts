@@ -37,6 +37,17 @@ test("a picture at rest tells what a sample takes, not the sum over all of them"
   expect(statusText({ ...status, frame: finished })).toMatch(/^still picture \u00b7 render 25\.0 ms/);
 });
 
+test("a picture at rest tells how good it is as shown, and whether that is what it was to be", () => {
+  const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
+  const resting = { ...frame, flags: 0, samples: 16, error: 0.03, shownError: 0.0071, restError: 0.004 };
+  const text = (changes: Partial<typeof resting>) => statusText({ ...status, frame: { ...resting, ...changes } });
+  expect(text({})).toContain("refining \u00b7");
+  expect(text({})).toContain(" \u00b7 error 0.0071 as shown, to be 0.004 \u00b7 ");
+  expect(text({ flags: Flag.FINAL })).toContain(" \u00b7 error 0.0071 as shown, 0.004 not reached \u00b7 ");
+  expect(text({ flags: Flag.FINAL, shownError: 0.00398 })).toContain(" \u00b7 error 0.004 as shown \u00b7 ");
+  expect(text({ restError: Number.NaN })).toContain(" \u00b7 error 0.0071 as shown \u00b7 ");
+});
+
 test("what is known of the error is said", () => {
   const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
   const still = { ...frame, flags: 0, error: 0.01234 };

@@ -26,7 +26,12 @@ export const ERROR_MEANINGS = {
     "What settings like this moving frame's miss of the default scene at 1280\u00d7720, as measured beforehand: " +
     "a single sample does not show its own error.",
   estimated: "What this picture at rest still misses, estimated from the two halves of its samples.",
+  shown:
+    "How far this picture is from a perfect one as a screen shows it, from 0 to 1, root mean square over pixels and " +
+    "colours: what more samples would take away. From 0.004 on no difference is seen.",
 } as const;
+
+type RestingFrame = Pick<Frame, "flags" | "shownError" | "restError">;
 
 /** A moving picture's error is not its own: it is what the measured front says of its settings. */
 function errorName({ flags }: Pick<Frame, "flags">): string {
@@ -37,6 +42,15 @@ function errorName({ flags }: Pick<Frame, "flags">): string {
 function lightText({ flags, lightCut }: Pick<Frame, "flags" | "lightCut">): string {
   if (flags & Flag.SHADOWS_ONLY) return "shadows without caustics";
   return `caustics lack at most ${significant(100 * lightCut)} %`;
+}
+
+/** How good a picture at rest is, and, if that is another thing, how good it was to be. */
+function shownErrorText({ flags, shownError, restError }: RestingFrame): string {
+  const error = `error ${significant(shownError)} as shown`;
+  if (!(shownError > restError)) return error; // also if there is no such aim
+  return flags & Flag.FINAL
+    ? `${error}, ${significant(restError)} not reached`
+    : `${error}, to be ${significant(restError)}`;
 }
 
 export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
@@ -56,7 +70,8 @@ export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Sta
   } else parts.push("waiting for the first picture");
   if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
   if (frame) {
-    if (!Number.isNaN(frame.error)) parts.push(`${errorName(frame)} ${significant(frame.error)}`);
+    if (!Number.isNaN(frame.shownError)) parts.push(shownErrorText(frame));
+    else if (!Number.isNaN(frame.error)) parts.push(`${errorName(frame)} ${significant(frame.error)}`);
     if (frame.lightCut > 0 || frame.flags & Flag.SHADOWS_ONLY) parts.push(lightText(frame)); // NaN without a map
     parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
   }

@@ -36,6 +36,17 @@ it("adds another like the chosen one, or like the first, and chooses that", () =
   expect(sent[1]).toMatchObject({ type: "patch_scene", patch: { stones: { "glass-2": { id: "glass-2" } } } });
 });
 
+it("looks at the chosen stone, at all if none is, and says if there is none", () => {
+  commands.lookAround();
+  state = { ...state, stone: "glass" };
+  commands.lookAround();
+  expect(sent).toEqual([{ type: "look_at_stone" }, { type: "look_at_stone", stone: "glass" }]);
+  scene();
+  commands.lookAround();
+  expect(told).toEqual([NO_STONE]);
+  expect(sent).toHaveLength(2);
+});
+
 it("removes the chosen stone, and takes removals back one by one", () => {
   for (const id of ["ruby", "glass"]) {
     state = { ...state, stone: id };

@@ -34,12 +34,26 @@ export class StoneCommands {
     return this.away().length;
   }
 
+  /** The stone that is chosen, or the only one; null if it is not known which. */
+  chosen(): string | null {
+    const { scene, stone } = this.world.state();
+    const [only, ...others] = idsOf(scene);
+    return stone ?? (others.length === 0 ? (only ?? null) : null);
+  }
+
   choose(id: string | null): void {
     this.world.choose(id);
   }
 
   look(): void {
     this.toChosen("look_at_stone");
+  }
+
+  /** At the chosen stone, or at all. */
+  lookAround(): void {
+    const { scene, stone } = this.world.state();
+    if (stonesOf(scene).length === 0) this.world.tell(NO_STONE);
+    else this.world.send(stone === null ? { type: "look_at_stone" } : { type: "look_at_stone", stone });
   }
 
   reset(): void {
@@ -57,11 +71,10 @@ export class StoneCommands {
   }
 
   remove(): void {
-    const { scene, stone } = this.world.state();
-    const ids = idsOf(scene);
-    const id = stone ?? (ids.length === 1 ? ids[0] : undefined);
-    if (id === undefined) {
-      this.world.tell(ids.length > 0 ? CHOOSE_FIRST : NO_STONE);
+    const { scene } = this.world.state();
+    const id = this.chosen();
+    if (id === null) {
+      this.world.tell(stonesOf(scene).length > 0 ? CHOOSE_FIRST : NO_STONE);
       return;
     }
     this.removed.push(stoneOf(scene, id));

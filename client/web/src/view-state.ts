@@ -95,7 +95,12 @@ export function inVain({ canUndo, canRedo }: ViewState, event: SessionEvent): st
   return null;
 }
 
-export const TARGET_NAMES: Record<Target, string> = { camera: "camera", light_1: "red light", light_2: "blue light" };
+export const TARGET_NAMES: Record<Target, string> = {
+  camera: "camera",
+  light_1: "red light",
+  light_2: "blue light",
+  stone: "chosen stone",
+};
 
 /** What changed, in words for those who cannot see it; empty if nothing worth saying. */
 export function describeChange(before: ViewState, after: ViewState): string {

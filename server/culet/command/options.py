@@ -13,9 +13,23 @@ SceneFile = Annotated[
     Path | None,
     typer.Argument(metavar="[SCENE.json]", help="Scene to read; - for standard input. Without it, the default scene."),
 ]
-Preset = Annotated[str | None, typer.Option(help=f"Start from a named scene instead: {', '.join(PRESETS)}.")]
+
+
+def _presets_that_begin(incomplete: str) -> list[tuple[str, str]]:
+    """For completion by the shell."""
+    return [(name, each.summary) for name, each in PRESETS.items() if name.startswith(incomplete)]
+
+
+Preset = Annotated[
+    str | None,
+    typer.Option(help=f"Start from a named scene instead: {', '.join(PRESETS)}.", autocompletion=_presets_that_begin),
+]
 MeshFile = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Mesh (.obj .off .stl .ply .glb) that takes the place of the stone.")
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Mesh (.obj .off .stl .ply .glb) or design (.asc .gem .gcs) that takes the place of the stone.",
+    ),
 ]
 SkyFile = Annotated[
     Path | None,

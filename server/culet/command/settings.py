@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -13,6 +14,8 @@ from annotated_types import Ge, Gt, Le, Lt
 from pydantic import ByteSize
 from pydantic.fields import FieldInfo
 
+from culet.command.config import CONFIG, read_config
+from culet.command.terminal import errors_in_one_line
 from culet.settings import Settings, option, shown, variable
 
 Command = Callable[..., None]
@@ -22,7 +25,8 @@ def options_of(**panels: type[Settings]) -> Callable[[Command], Command]:
     """Give a command the options of settings, under these titles of its help.
 
     The command gets those that its user gave as `given`, by field: `Settings.read` checks them and adds the
-    environment's. A field that several settings share is one option. Its own parameters keep their names.
+    environment's. A field that several settings share is one option. Its own parameters keep their names. All of them
+    can be said by a file too, which the option `--config` names.
     """
 
     def decorate(command: Command) -> Command:
@@ -36,16 +40,44 @@ def options_of(**panels: type[Settings]) -> Callable[[Command], Command]:
 
         @functools.wraps(command)
         def run(**arguments: Any) -> None:  # noqa: ANN401 - typer gives what the signature below says
+            arguments.pop(CONFIG)  # read when it was parsed
             given = {name: arguments.pop(name) for name in generated}
             command(**arguments, given={name: value for name, value in given.items() if value not in (None, [])})
 
-        parameters = [*own.values(), *generated.values()]
+        parameters = [*own.values(), _config_parameter(), *generated.values()]
         keyword_only = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in parameters]
         vars(run)["__signature__"] = inspect.Signature(keyword_only)  # where inspect.signature looks first
         run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
         return run
 
     return decorate
+
+
+def _read_config(ctx: typer.Context, file: Path | None) -> None:
+    """What the file says becomes the defaults of this command."""
+    if file is None:
+        return
+    options = {
+        word[2:].replace("-", "_"): each for each in ctx.command.params for word in each.opts if word[:2] == "--"
+    }
+    with errors_in_one_line():
+        found = read_config(file, {name: getattr(each, "multiple", False) for name, each in options.items()})
+        ctx.default_map = {str(options[name].name): value for name, value in found.items()}
+    os.environ.pop(variable(CONFIG), None)  # processes that this one starts are told all by their command lines
+
+
+def _config_parameter() -> inspect.Parameter:
+    default = typer.Option(
+        None,
+        "--config",
+        metavar="FILE",
+        envvar=variable(CONFIG),
+        is_eager=True,
+        callback=_read_config,
+        help='Options in a file, as TOML: `max_sessions = 20`, `allow_host = ["gems.example"]`. The command line '
+        "counts first, then variables, then the file.",
+    )
+    return inspect.Parameter(CONFIG, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Path | None)
 
 
 def _parameters(title: str, settings: type[Settings]) -> Iterator[tuple[str, inspect.Parameter]]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import sys
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
@@ -27,20 +25,6 @@ def errors_in_one_line() -> Iterator[None]:
     except (CuletError, ClientError) as error:
         typer.echo(f"culet: {error}", err=True)
         raise typer.Exit(1) from None
-
-
-@contextlib.contextmanager
-def libraries_silenced() -> Iterator[None]:
-    """What C libraries print by themselves, such as libpng, does not reach the terminal: the error says it."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    with open(os.devnull, "wb") as nowhere:  # noqa: PTH123 - a device
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 @contextlib.contextmanager

@@ -29,3 +29,9 @@ def url_of(listening: socket.socket, host: str) -> str:
     """Where a browser finds it."""
     shown = f"[{host}]" if listening.family == socket.AF_INET6 else host
     return f"http://{shown}:{listening.getsockname()[1]}/"
+
+
+def local_url_of(listening: socket.socket, host: str) -> str:
+    """Where a browser of this machine finds it: nobody can go to the address that stands for all of them."""
+    anywhere = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}  # noqa: S104 - what was asked for
+    return url_of(listening, anywhere.get(host, host))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from starlette.datastructures import Headers
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -70,6 +70,8 @@ class Admission:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
+        if scope["type"] == "http" and not self._settings.allow_embedding and _PICTURES.fullmatch(scope["path"]):
+            send = _varying_by_site(send)
         refusal = self._refusal(scope)
         if refusal is not None:
             await refusal(scope, receive, send)
@@ -150,3 +152,15 @@ class Admission:
 
 def _too_large(limit: int) -> str:
     return f"expected a body of at most {limit} bytes"
+
+
+def _varying_by_site(send: Send) -> Send:
+    """With a word to caches that many share (RFC 9110, 12.5.5): what one page is shown another one is refused. What
+    depends on the origin, CORSMiddleware says."""
+
+    async def varying(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            MutableHeaders(scope=message).add_vary_header("Sec-Fetch-Site")
+        await send(message)
+
+    return varying

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from fastapi import FastAPI
 from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
+from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 
-from culet import __version__
 from culet.gateway import catalogue, health, problems, session_routes, stills, upload_routes
 from culet.gateway.access_log import AccessLog
 from culet.gateway.admission import Admission
@@ -24,12 +24,15 @@ from culet.gateway.link import EngineLink
 from culet.gateway.methods import Methods
 from culet.gateway.metrics import Metrics
 from culet.gateway.openapi import Application
+from culet.gateway.page_files import PageFiles
+from culet.gateway.quality import QUALITY_HEADERS
 from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
 from culet.gateway.still_places import StillPlaces
 from culet.gateway.uploads import Uploads
+from culet.version import __version__
 
 log = logging.getLogger(__name__)
 
@@ -49,6 +52,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         openapi_url=None,  # FastAPI would make the document on the loop, which takes longer than a frame
         docs_url=None,  # its pages load their scripts from the network
         redoc_url=None,
+        generate_unique_id_function=_operation_id,
         lifespan=_lifespan,
     )
     app.state.gateway = _gateway(settings)
@@ -71,7 +75,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     app.mount("/docs", StaticFiles(directory=DOCS_FOLDER))  # its script and style: no policy allows those in a page
 
     if (settings.web / "index.html").is_file():
-        app.mount("/", StaticFiles(directory=settings.web, html=True))
+        app.mount("/", PageFiles(directory=settings.web, html=True))
     else:
 
         @app.get("/", include_in_schema=False)
@@ -87,12 +91,17 @@ def create_app(settings: GatewaySettings) -> FastAPI:
             CORSMiddleware,
             allow_origins=settings.allow_origin,
             allow_methods=("GET", "HEAD", "POST", "PATCH", "DELETE"),
-            expose_headers=("Location", "Retry-After", "Content-Disposition"),
+            expose_headers=("Location", "Retry-After", "Content-Disposition", "ETag", *QUALITY_HEADERS),
             allow_private_network=True,
         )
     app.add_middleware(SecurityHeaders, settings=settings)
     app.add_middleware(AccessLog, metrics=app.state.gateway.metrics)
     return app
+
+
+def _operation_id(route: APIRoute) -> str:
+    """What generated clients call a route: `create_session`, `render_png`."""
+    return route.name
 
 
 @contextlib.asynccontextmanager

@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from fastapi import APIRouter, Response
 
+from culet.gateway.picture_response import picture_answers
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
@@ -174,7 +175,7 @@ async def presets() -> Presets:
     )
 
 
-@router.get("/api/presets/{name}/thumbnail.webp", response_class=Response, responses={200: {"content": {WEBP: {}}}})
+@router.get("/api/presets/{name}/thumbnail.webp", response_class=Response, responses=picture_answers(WEBP))
 async def thumbnail(name: str) -> Response:
     """A small picture of a preset."""
     return Response(thumbnail_of(name), media_type=WEBP, headers={"Cache-Control": "max-age=3600"})

@@ -7,14 +7,15 @@ import re
 
 from pydantic import BaseModel
 
-from culet import __version__
+from culet.version import __version__
 
 _TAG = re.compile(r'(?:W/)?("[^"]*")')
 
 
-def entity_tag(scene: BaseModel, width: int, height: int, file_format: str) -> str:
-    """Of the picture of a scene by this version of culet. Weak, since another processor may round otherwise."""
-    described = f"{__version__} {width}x{height} {file_format} {scene.model_dump_json()}"
+def entity_tag(scene: BaseModel, asked: str) -> str:
+    """Of a scene's picture as it is asked for, by this version of culet. Weak, since another processor may round
+    otherwise."""
+    described = f"{__version__} {asked} {scene.model_dump_json()}"
     return f'W/"{hashlib.sha256(described.encode()).hexdigest()[:32]}"'
 
 

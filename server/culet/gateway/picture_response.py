@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
+
+from culet.gateway.quality import QUALITY_HEADERS
 
 PIECE_BYTES = 256 * 1024
 """What waits for a slow reader, besides the picture itself."""
@@ -21,3 +25,19 @@ class PictureResponse(Response):
                 piece = bytes(body[at : at + PIECE_BYTES])
                 await send({"type": "http.response.body", "body": piece, "more_body": True})
         await send({"type": "http.response.body"})
+
+
+BINARY = {"type": "string", "format": "binary"}
+"""What OpenAPI calls bytes."""
+
+
+def picture_answers(*media_types: str, headers: tuple[str, ...] = ()) -> dict[int | str, dict[str, Any]]:
+    """What OpenAPI should say about the answer of a route: a picture of one of these kinds, with these headers, and
+    those that say how good the picture is."""
+    return {
+        200: {
+            "description": "The picture.",
+            "content": {kind: {"schema": BINARY} for kind in media_types},
+            "headers": {name: {"schema": {"type": "string"}} for name in headers} | QUALITY_HEADERS,
+        }
+    }

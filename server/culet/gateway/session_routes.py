@@ -11,11 +11,12 @@ from culet.gateway import stream as streaming
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
-from culet.gateway.picture_response import PictureResponse
+from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers, check_numbers, finite
+from culet.gateway.quality import quality_headers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
-from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Height, Width, response_class_of
+from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Error, Height, Samples, Width, response_class_of
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
 from culet_protocol.engine import Format, Render
@@ -78,14 +79,17 @@ class SessionAnswer(Model):
     stream: Annotated[str, Field(description="Path of the WebSocket; see the protocol's specification.")]
 
 
+Step = Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")]
+
+
 class FrameQuery(Model):
     """Which state, and how large."""
 
-    step: Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")] | None = (
-        None
-    )
+    step: Step | None = None
     width: Width | None = None
     height: Height | None = None
+    samples: Samples | None = None
+    error: Error | None = None
 
 
 @router.post("/api/sessions", status_code=201, responses=answers(404, 413, 422, 429, 503))
@@ -115,6 +119,18 @@ async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
     session = gateway.sessions.get(session_id)
     await gateway.sessions.describe(session)
     return _answer(session)
+
+
+@router.get("/api/sessions/{session_id}/scene", responses=answers(404, 422, 429, 503))
+async def get_scene(
+    session_id: str, gateway: ThisGateway, step: Annotated[Step | None, Query()] = None
+) -> dict[str, Any]:
+    """The scene that a session shows, or showed at `step`: with the camera as it was, and every stone where it was.
+
+    A session that is made of this scene shows the same picture. The scene of the session itself, `GET
+    /api/sessions/{id}`, has the stones where they start.
+    """
+    return await gateway.sessions.scene_shown(gateway.sessions.get(session_id), step)
 
 
 @router.patch("/api/sessions/{session_id}", responses=answers(404, 413, 422, 429, 503))
@@ -174,11 +190,15 @@ def _offer_frame(ending: str, file_format: Format) -> None:
         f"{FRAME}.{ending}",
         frame,
         methods=["GET"],
+        name=f"frame_{ending}",
         summary=f"Frame as {ending.upper()}",
-        description="What a session shows, or showed at `step`, rendered anew at full quality: at least 16 samples a "
-        "pixel.",
+        description="What a session shows, or showed at `step`, rendered anew at full quality: with as many "
+        "samples as are asked for, or to the `error` asked for; with neither as good as the live picture gets at rest.",
         response_class=response_class_of(file_format),
-        responses=answers(404, 422, 429, 503),
+        responses={
+            **picture_answers(MEDIA_TYPES[file_format], headers=("Content-Disposition",)),
+            **answers(404, 422, 429, 503),
+        },
     )
 
 
@@ -203,14 +223,17 @@ async def _frame(
         step=query.step,
         width=query.width,
         height=query.height,
+        samples=query.samples,
+        error=query.error,
         format=file_format,
         client=client,
     )
     with gateway.stills.place(client):
         result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
     kind = "attachment" if file_format in {"tga", "exr"} else "inline"  # which no browser shows
-    disposition = f'{kind}; filename="culet-{result["step"]}.{ending}"'
-    return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers={"Content-Disposition": disposition})
+    headers = quality_headers(result)
+    headers["Content-Disposition"] = f'{kind}; filename="culet-{result["step"]}.{ending}"'
+    return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers=headers)
 
 
 def _answer(session: SessionRecord) -> SessionAnswer:

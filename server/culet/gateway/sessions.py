@@ -160,6 +160,12 @@ class Sessions:
         """What the engine answers to a question about the session's picture."""
         return answer.validate_python(await self._ask(session, to_engine.Ask(session=session.id, question=question)))
 
+    async def scene_shown(self, session: SessionRecord, step: int | None) -> dict[str, Any]:
+        """The scene that a session showed at a step, the latest if None; raises like `Link.request`."""
+        result, _ = await self._link.request(to_engine.GetScene(session=session.id, step=step))
+        scene: dict[str, Any] = result["scene"]
+        return scene
+
     async def describe(self, session: SessionRecord) -> dict[str, Any]:
         """What the engine says of the session now."""
         described = await self._ask(session, to_engine.GetSession(session=session.id))

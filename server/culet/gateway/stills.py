@@ -11,10 +11,12 @@ from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.entity_tag import entity_tag, names
 from culet.gateway.parts import ThisGateway
-from culet.gateway.picture_response import PictureResponse
+from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers
+from culet.gateway.quality import MISSED, TARGET, quality_headers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
+from culet.scene.film import MOST_SAMPLES
 from culet.scene.patch import patched
 from culet.scene.sky_seen import under
 from culet.scene.stone import MaterialName
@@ -38,6 +40,21 @@ FRESHNESS = "max-age=3600"
 
 Width = Annotated[int, Field(ge=1, le=8192, description="Pixels; width x height is at most 33.5 million.")]
 Height = Annotated[int, Field(ge=1, le=8192, description="Pixels.")]
+Samples = Annotated[
+    int,
+    Field(
+        ge=1, le=MOST_SAMPLES, description="Per pixel, with an `error` at most; without either the scene says how many."
+    ),
+]
+Error = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=1,
+        description="Take samples until what is shown, from 0 to 1, is estimated to be off by this: root mean square "
+        "over pixels and colours. From 0.004 on no difference is seen. The answer's headers say what was reached.",
+    ),
+]
 Kind = Literal["none", "matte", "mirror"]
 
 
@@ -47,20 +64,33 @@ class StillQuery(Model):
     preset: Annotated[str, Field(description="A name from /api/presets.")] = "default"
     width: Width = DEFAULT_WIDTH
     height: Height = DEFAULT_HEIGHT
-    samples: Annotated[int, Field(ge=1, le=65536, description="Per pixel; the preset's if not given.")] | None = None
+    samples: Samples | None = None
+    error: Error | None = None
     material: MaterialName | None = None
     floor: Kind | None = None
     walls: Kind | None = None
     environment: Literal["dark", "light", "studio"] | None = None
+    background: (
+        Annotated[
+            str,
+            Field(
+                pattern="^(backdrop|transparent|#?[0-9a-fA-F]{6})$",
+                description="Behind everything: `transparent` for nothing, with alpha (white in .jpg), or a colour "
+                "such as `f4f1ea`; both take twice the work. Not given: as the preset has it.",
+            ),
+        ]
+        | None
+    ) = None
 
     def scene(self) -> Scene:
         """The preset's scene with the changes."""
         data: dict[str, Any] = preset(self.preset).model_dump(mode="json")
-        if self.samples is not None:
-            data["sampling"]["samples_per_pixel"] = self.samples
         if self.material is not None:
             for stone in data["stones"]:
                 stone["material"] = self.material
+        if self.background is not None:
+            is_word = self.background in ("backdrop", "transparent")
+            data["film"]["background"] = self.background if is_word else f"#{self.background.removeprefix('#')}"
         if self.environment is not None:
             data["environment"] = {"kind": self.environment}
             if self.environment != "studio":
@@ -78,6 +108,8 @@ class StillRequest(Model):
     scene: Scene = Scene()
     width: Width = DEFAULT_WIDTH
     height: Height = DEFAULT_HEIGHT
+    samples: Samples | None = None
+    error: Error | None = None
     format: Annotated[Format, Field(description="EXR is linear radiance; the others are tone-mapped.")] = "tga"
 
     model_config = Model.model_config | {
@@ -99,24 +131,34 @@ def _offer(ending: str, file_format: Format) -> None:
 
     async def render_preset(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
         scene = query.scene()
-        tag = entity_tag(scene, query.width, query.height, file_format)
-        headers = {"ETag": tag, "Cache-Control": FRESHNESS}
+        asked = f"{query.width}x{query.height} {file_format} {query.samples} {query.error}"
+        headers = {"ETag": (tag := entity_tag(scene, asked)), "Cache-Control": FRESHNESS}
         if names(http.headers.get("If-None-Match"), tag):
             return Response(status_code=304, headers=headers)
-        picture = await _picture(http, gateway, scene, query.width, query.height, file_format)
-        picture.headers.update(headers)
+        message = Render(
+            scene=scene.model_dump(mode="json"), width=query.width, height=query.height, samples=query.samples,
+            error=query.error, format=file_format, client=client_of(http.scope),
+        )  # fmt: skip
+        picture = await _picture(http, gateway, message)
+        if picture.headers.get(TARGET) != MISSED:  # for want of time, which there may be more of next time
+            picture.headers.update(headers)
         return picture
 
     router.add_api_route(
         f"/api/render.{ending}",
         render_preset,
         methods=["GET"],
+        name=f"render_{ending}",
         summary=f"Render Preset as {ending.upper()}",
         description="A preset, rendered"
         + (" as linear radiance" if file_format == "exr" else "")
         + ". `If-None-Match` with the `ETag` of an earlier answer asks whether the picture would be another.",
         response_class=response_class_of(file_format),
-        responses={304: {"description": "The picture is as it was."}, **answers(404, 422, 429, 503)},
+        responses={
+            **picture_answers(MEDIA_TYPES[file_format], headers=("ETag", "Cache-Control", "Vary")),
+            304: {"description": "The picture is as it was."},
+            **answers(404, 422, 429, 503),
+        },
     )
 
 
@@ -127,21 +169,18 @@ for _ending, _format in ENDINGS.items():
 @router.post(
     "/api/render",
     response_class=Response,
-    responses={
-        200: {"description": "The picture", "content": {kind: {} for kind in MEDIA_TYPES.values()}},
-        **answers(413, 422, 429, 503),
-    },
+    responses={**picture_answers(*MEDIA_TYPES.values()), **answers(413, 422, 429, 503)},
 )
 async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> Response:
     """Render a scene in the format asked for."""
-    return await _picture(http, gateway, request.scene, request.width, request.height, request.format)
+    message = Render(
+        scene=request.scene.model_dump(mode="json"), width=request.width, height=request.height,
+        samples=request.samples, error=request.error, format=request.format, client=client_of(http.scope),
+    )  # fmt: skip
+    return await _picture(http, gateway, message)
 
 
-async def _picture(
-    http: Request, gateway: ThisGateway, scene: Scene, width: int, height: int, file_format: Format
-) -> Response:
-    client = client_of(http.scope)
-    message = Render(scene=scene.model_dump(mode="json"), width=width, height=height, format=file_format, client=client)
-    with gateway.stills.place(client):
-        _, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
-    return PictureResponse(data, media_type=MEDIA_TYPES[file_format])
+async def _picture(http: Request, gateway: ThisGateway, message: Render) -> Response:
+    with gateway.stills.place(message.client):
+        result, data = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+    return PictureResponse(data, media_type=MEDIA_TYPES[message.format], headers=quality_headers(result))

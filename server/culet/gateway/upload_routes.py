@@ -55,7 +55,8 @@ class SkyAnswer(Model):
 
 @router.post(MESHES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
 async def upload_mesh(request: Request, gateway: ThisGateway) -> MeshAnswer:
-    """Upload a mesh as the form field `file`: .obj, .off, .stl, .ply or .glb. The answer says what was found in it."""
+    """Upload a mesh as the form field `file`, .obj, .off, .stl, .ply or .glb, or a cutter's design, .asc and .gem of
+    GemCad or .gcs of Gem Cut Studio. The answer says what was found in it."""
     name, described = await _taken(MESH, request, gateway)
     return MeshAnswer(id=name, description=DescribedMesh.model_validate(described))
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from culet.errors import MeshError
 from culet.geometry.mass import solid_integrals
-from culet.geometry.shape import MassProperties, Shape
+from culet.geometry.shape import FacetName, MassProperties, Shape
 
 Centre = Literal["mass", "vertex_mean"]
 """What becomes the origin: the centre of mass, or the mean of the vertices as in the report's program."""
@@ -26,6 +26,7 @@ def assemble(
     convex: bool,
     centre: NDArray[np.float64] | None = None,
     findings: Sequence[str] = (),
+    names: Sequence[FacetName] = (),
 ) -> Shape:
     """The shape of a closed, outward wound surface in any position and size.
 
@@ -49,4 +50,4 @@ def assemble(
     for array in (*arrays, inertia):
         array.setflags(write=False)  # shapes are shared: a cache gives the same one to every session
     mass = MassProperties(volume=integrals.volume / radius**3, inertia=inertia)
-    return Shape(name, *arrays, convex=convex, mass=mass, findings=tuple(findings))
+    return Shape(name, *arrays, convex=convex, mass=mass, findings=tuple(findings), names=tuple(names))

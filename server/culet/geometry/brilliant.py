@@ -14,10 +14,16 @@ from numpy.typing import NDArray
 
 from culet.errors import MeshError
 from culet.geometry.half_spaces import shape_from_half_spaces
-from culet.geometry.shape import Shape
+from culet.geometry.shape import FacetName, Shape
 from culet.scene.stone import BrilliantCut
 
 FACETS, VERTICES = 73, 57
+
+_TIERS = ("table", "star", "kite", "upper half", "girdle", "lower half", "main")
+"""From the table down."""
+_OF_A_MAIN = ("kite", "star", "main", *2 * ("upper half", "lower half", "girdle"))
+NAMES = tuple(FacetName(_TIERS.index(name) + 1, name) for name in ("table", *8 * _OF_A_MAIN))
+"""Of each facet, in the order of `brilliant_planes`."""
 
 _COS_HALF_STEP = math.cos(math.pi / 8)
 """Of 22.5 degrees, between a main's azimuth and a star's."""
@@ -67,7 +73,7 @@ def brilliant_planes(cut: BrilliantCut) -> NDArray[np.float64]:
 @lru_cache(maxsize=64)
 def brilliant(cut: BrilliantCut) -> Shape:
     """The shape of these proportions: 73 facets, 57 vertices. MeshError, naming the proportion, if there is none."""
-    shape = shape_from_half_spaces("brilliant", brilliant_planes(cut))
+    shape = shape_from_half_spaces("brilliant", brilliant_planes(cut), NAMES)
     if (len(shape.planes), len(shape.vertices)) != (FACETS, VERTICES):
         raise MeshError(
             f"brilliant: these proportions leave {len(shape.planes)} of {FACETS} facets and {len(shape.vertices)} of "

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
@@ -12,7 +15,7 @@ from scipy.spatial import ConvexHull, QhullError
 from culet.errors import MeshError
 from culet.geometry.assembly import assemble
 from culet.geometry.polygons import fan, loops
-from culet.geometry.shape import Shape
+from culet.geometry.shape import FacetName, Shape
 
 SAME_VERTEX = 1e-9
 """Corners nearer than this, in units of the stone's extent, and joined by an edge are one. Rounding places the corners
@@ -21,12 +24,46 @@ of a needle of 1000:1 to about 1e-13; much larger would swallow real edges of a 
 LARGEST_NUMBER_OF_HALF_SPACES = 100_000
 
 
-def shape_from_half_spaces(name: str, planes: NDArray[np.float64]) -> Shape:
+@dataclass(frozen=True, eq=False)
+class Intersection:
+    """A closed convex solid, where its half-spaces have it."""
+
+    planes: NDArray[np.float64]
+    """(F, 4) unit normals and offsets, as they were given."""
+    vertices: NDArray[np.float64]
+    """(V, 3)."""
+    polygons: list[list[int]]
+    """Of each half-space its corners, counter-clockwise seen from outside; none if it bounds nothing."""
+
+    @property
+    def used(self) -> list[int]:
+        """The half-spaces that bound something."""
+        return [k for k, polygon in enumerate(self.polygons) if len(polygon) >= 3]
+
+    def shape(self, name: str, findings: Sequence[str] = (), names: Sequence[FacetName] = ()) -> Shape:
+        """Centred at its centre of mass and scaled to circumradius 1; `names` has one for each half-space, or none."""
+        used = self.used
+        triangles, facet = fan([self.polygons[k] for k in used])
+        return assemble(
+            name, self.vertices, triangles, facet, self.planes[used],
+            convex=True, findings=findings, names=[names[k] for k in used] if names else (),
+        )  # fmt: skip
+
+
+def shape_from_half_spaces(name: str, planes: NDArray[np.float64], names: Sequence[FacetName] = ()) -> Shape:
     """The intersection of half-spaces n.x <= d, centred at its centre of mass and scaled to circumradius 1.
 
     `planes` is (F, 4): outward normal n (of any length) and offset d. The shape's facets keep that order; half-spaces
     that bound nothing are left out and counted in the findings. MeshError if the intersection is empty, flat or open.
     """
+    found = intersection(name, planes)
+    left_out = len(found.planes) - len(found.used)
+    findings = [f"{left_out} half-spaces bound nothing and were left out."] if left_out else []
+    return found.shape(name, findings, names)
+
+
+def intersection(name: str, planes: NDArray[np.float64]) -> Intersection:
+    """The solid n.x <= d of (F, 4) outward normals n, of any length, and offsets d; MeshError as above."""
     given = np.asarray(planes, np.float64)
     if given.ndim != 2 or given.shape[1:] != (4,) or not 4 <= len(given) <= LARGEST_NUMBER_OF_HALF_SPACES:
         raise MeshError(
@@ -40,12 +77,7 @@ def shape_from_half_spaces(name: str, planes: NDArray[np.float64]) -> Shape:
     unit = given / length[:, None]
     inside = _deepest_point(name, unit)
     vertices, polygons = _corners(name, unit, inside)
-    used = [k for k, polygon in enumerate(polygons) if len(polygon) >= 3]
-    findings = (
-        [f"{len(unit) - len(used)} half-spaces bound nothing and were left out."] if len(used) < len(unit) else []
-    )
-    triangles, facet = fan([polygons[k] for k in used])
-    return assemble(name, vertices, triangles, facet, unit[used], convex=True, findings=findings)
+    return Intersection(unit, vertices, polygons)
 
 
 def _deepest_point(name: str, unit: NDArray[np.float64]) -> NDArray[np.float64]:

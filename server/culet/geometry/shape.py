@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,15 @@ class MassProperties:
     """R^3."""
     inertia: NDArray[np.float64]
     """(3, 3) tensor per unit of mass, R^2, in the shape's own axes."""
+
+
+class FacetName(NamedTuple):
+    """What a facet is called where the shape comes from."""
+
+    tier: int
+    """Counted from 1: facets of one angle and distance, cut one after the other."""
+    name: str
+    """May be empty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,3 +46,5 @@ class Shape:
     mass: MassProperties
     findings: tuple[str, ...] = ()
     """What was found in the source and what was done about it, a sentence each."""
+    names: tuple[FacetName, ...] = ()
+    """Of each facet, in the order of `planes`; none if they have no names, as in a mesh."""

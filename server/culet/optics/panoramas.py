@@ -106,7 +106,9 @@ def check_panorama(pixels: Panorama) -> None:
 
 @lru_cache(maxsize=4)
 def _studio(name: str) -> Panorama:
-    return STUDIO[name]()
+    pixels = STUDIO[name]()
+    pixels.flags.writeable = False  # so that what is derived from them is kept, too
+    return pixels
 
 
 def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, Panorama]) -> Panorama:

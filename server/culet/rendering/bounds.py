@@ -34,6 +34,9 @@ def largest_radiance(stage: Stage, thrown: float = 0) -> float:
         brightest = max(brightest, *scene.floor.colour)
     points = np.sum([light.colour for light in scene.points], axis=0).max(initial=0) + thrown
     classic = scene.optics.estimator == "classic"
+    surfaces = [surface for surface in (scene.floor, scene.walls) if isinstance(surface, Plane)]
+    if all(surface.kind == "none" for surface in surfaces):
+        return brightest  # without the time that the sky's light on surfaces takes
     for surface, light in zip((scene.floor, scene.walls), _sky_light(stage), strict=True):
         if isinstance(surface, Plane) and surface.kind != "none":
             albedo = 1.0 if surface.kind == "mirror" else float(np.max(surface.albedos))

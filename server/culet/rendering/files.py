@@ -3,86 +3,96 @@
 from __future__ import annotations
 
 import io
-import os
-import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import OpenEXR
 import PIL.Image
+from numpy.typing import NDArray
 
 from culet.errors import InputError
 from culet.memory_file import path_in_memory
-from culet.rendering.renderer import Picture
+from culet.places import check_place, write_whole
 
 JPEG_QUALITY = 95
 
+Developed = NDArray[np.uint8]
+"""(height, width, 3), as a screen shows it; of a transparent picture (height, width, 4), alpha last."""
+Linear = NDArray[np.floating[Any]]
+"""(height, width, 3), linear radiance; (height, width, 4), multiplied by alpha, and alpha."""
 
-def _pillow(picture: Picture, name: str, **options: object) -> bytes:
+
+def _pillow(rgb: Developed, name: str, **options: object) -> bytes:
     buffer = io.BytesIO()
-    PIL.Image.fromarray(picture.rgb()).save(buffer, name, **options)
+    PIL.Image.fromarray(rgb).save(buffer, name, **options)
     return buffer.getvalue()
 
 
-def _tga(picture: Picture) -> bytes:
-    """24 bits, uncompressed, bottom row first, with the footer of TGA 2.0."""
-    return _pillow(picture, "TGA")
+def _tga(rgb: Developed) -> bytes:
+    """24 bits, with alpha 32, uncompressed, bottom row first, with the footer of TGA 2.0."""
+    return _pillow(rgb, "TGA")
 
 
-def _png(picture: Picture) -> bytes:
-    return _pillow(picture, "PNG", compress_level=6)
+def _png(rgb: Developed) -> bytes:
+    return _pillow(rgb, "PNG", compress_level=6)
 
 
-def _jpeg(picture: Picture) -> bytes:
-    return _pillow(picture, "JPEG", quality=JPEG_QUALITY, subsampling=0)  # 4:2:0 would blur the fire's colours
+def _jpeg(rgb: Developed) -> bytes:
+    """On white where it is transparent."""
+    if rgb.shape[-1] > 3:
+        colour, alpha = rgb[..., :3].astype(np.float32), rgb[..., 3:] / np.float32(255)
+        rgb = np.rint(alpha * colour + (1 - alpha) * 255).astype(np.uint8)
+    return _pillow(rgb, "JPEG", quality=JPEG_QUALITY, subsampling=0)  # 4:2:0 would blur the fire's colours
 
 
-def _webp(picture: Picture) -> bytes:
+def _webp(rgb: Developed) -> bytes:
     """Without loss: with it, WebP always keeps colours at half the size."""
-    return _pillow(picture, "WEBP", lossless=True, quality=40)  # of the effort, not of the picture
+    return _pillow(rgb, "WEBP", lossless=True, quality=40)  # of the effort, not of the picture
 
 
-def _exr(picture: Picture) -> bytes:
+def _exr(linear: Linear) -> bytes:
     """Linear radiance, single precision. The library writes to paths only."""
-    pixels = np.ascontiguousarray(picture.linear(), np.float32)
+    pixels = np.ascontiguousarray(linear, np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with path_in_memory(ending="exr") as path:
-        OpenEXR.File(header, {"RGB": pixels}).write(str(path))
+        OpenEXR.File(header, {"RGBA"[: pixels.shape[-1]]: pixels}).write(str(path))
         return path.read_bytes()
 
 
-def _npy(picture: Picture) -> bytes:
-    """(height, width, 3) float32, linear radiance."""
+def _npy(linear: Linear) -> bytes:
+    """float32, linear radiance."""
     buffer = io.BytesIO()
-    np.save(buffer, np.ascontiguousarray(picture.linear(), np.float32))
+    np.save(buffer, np.ascontiguousarray(linear, np.float32))
     return buffer.getvalue()
 
 
-ENCODERS: dict[str, Callable[[Picture], bytes]] = {
-    "tga": _tga, "png": _png, "jpeg": _jpeg, "jpg": _jpeg, "webp": _webp, "exr": _exr, "npy": _npy,
-}  # fmt: skip
-"""By format, which is also the file's ending."""
+DEVELOPED_ENCODERS: Mapping[str, Callable[[Developed], bytes]] = MappingProxyType(
+    {"tga": _tga, "png": _png, "jpeg": _jpeg, "jpg": _jpeg, "webp": _webp}
+)
+LINEAR_ENCODERS: Mapping[str, Callable[[Linear], bytes]] = MappingProxyType({"exr": _exr, "npy": _npy})
+FORMATS = (*DEVELOPED_ENCODERS, *LINEAR_ENCODERS)
+"""Each is also the ending of a file's name."""
 
 
-def encode(picture: Picture, format: str) -> bytes:  # noqa: A002 - the field is called so on the wire
-    """The picture as a file of that format; InputError names the formats that exist."""
-    try:
-        encoder = ENCODERS[format]
-    except KeyError:
-        raise InputError(f"expected a format of {', '.join(ENCODERS)}; got {format!r}", "format") from None
-    return encoder(picture)
+def encode(format: str, rgb: Callable[[], Developed], linear: Callable[[], Linear]) -> bytes:  # noqa: A002 - so on the wire
+    """A picture as a file of that format, which takes one of the two alone: making either may take time.
+
+    InputError names the formats that exist.
+    """
+    if format in LINEAR_ENCODERS:
+        return LINEAR_ENCODERS[format](linear())
+    if format in DEVELOPED_ENCODERS:
+        return DEVELOPED_ENCODERS[format](rgb())
+    raise InputError(f"expected a format of {', '.join(FORMATS)}; got {format!r}", "format")
 
 
-def write(picture: Picture, path: Path) -> None:
-    """Encode by the path's ending and put the file there whole, or not at all."""
-    data = encode(picture, path.suffix.lstrip(".").lower())
-    descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+def write(path: Path, rgb: Callable[[], Developed], linear: Callable[[], Linear]) -> None:
+    """Encode by the path's ending and put the file there whole, or not at all.
+
+    InputError for an ending that no format has, and for a place that cannot be written to.
+    """
+    check_place(path, "path", FORMATS)
+    write_whole(path, encode(path.suffix.lstrip(".").lower(), rgb, linear), "path")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 from culet.optics.panoramas import Panorama
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.build import OF_ITEMS, TILES_DEALT, Kernel, Variant, build, progress_size, tile_of
-from culet.rendering.chains import is_spectral
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.features import Features, Geometry, by_half_spaces, features_of
 from culet.rendering.inputs import Inputs
@@ -24,7 +24,10 @@ from culet.rendering.light.light_map import BoundMap
 from culet.rendering.light.lighting import Lighting, Maker
 from culet.rendering.pace import Pace
 from culet.rendering.program import Programs
+from culet.rendering.shown_difference import ShownDifference, film_arguments
+from culet.rendering.softening import Softening
 from culet.rendering.sums import Fold, Sums
+from culet.rendering.target import Target
 from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene
 from culet.stage import Stage
@@ -42,7 +45,6 @@ DEVELOPED = 2**19
 KEPT = 2**24
 """Bytes that are kept beyond what pictures had at most at a time: frames that change their sizes would else leave some
 of each size. Less would free, and have cleared by the system anew, what the next frame needs."""
-TONE_MAPS = {"none": 0, "srgb": 1, "classic": 2, "filmic": 3, "neutral": 4}
 
 
 class Renderer:
@@ -68,7 +70,10 @@ class Renderer:
         self.fold = Fold(self.device, self.variant)
         self.lighting = Lighting(self.device, self.pool)
         self._paces: dict[tuple[Any, int], Pace] = {}
-        self.develop = cl.Kernel(build(self.device, "film.cl", self.variant.options), "develop")
+        film = build(self.device, "film.cl", self.variant.options)
+        self.develop = cl.Kernel(film, "develop")
+        self.shown_difference = ShownDifference(self.device, film)
+        self.softening = Softening(self.device, film, self.allocate)
         self._warm_up()
 
     def prepare(self) -> None:
@@ -123,6 +128,8 @@ class Renderer:
             np.float32(0), none, none,
         )  # fmt: skip
         self.fold.warm_up(scratch)
+        self.shown_difference.warm_up(scratch)
+        self.softening.warm_up(scratch)
         self.device.queue.finish()
 
     def pace_of(self, kernel: Kernel, triangles: int) -> Pace:
@@ -253,6 +260,41 @@ class Picture:
             for part in self._one_sample(seconds):
                 yield max(0.0, done + part) / samples
 
+    def refine_until(
+        self, target: Target, seconds: float, *, pause: Callable[[], bool] = lambda: False
+    ) -> Iterator[float]:
+        """Add samples until the target is reached, in launches of about so many seconds; yields the part that is done,
+        as far as that can be told.
+
+        After each sample `pause` is asked whether to leave it at that for now. The picture that reaches the target is
+        the same to the last bit however often it was left, as long as its first two samples were not made otherwise.
+        """
+        pixels = self.width * self.height
+        self._sums.compare_shown = partial(self._renderer.shown_difference.pieces, self.scene, pixels)
+        spent = spent_on_light = 0.0
+        while not self.reached(target):
+            before = self.samples
+            for part in self.refine_in_pieces(1, seconds):
+                yield min((before + part) / self._needed(target), 1.0)
+            spent, spent_on_light = spent + self.seconds, spent_on_light + self.light_seconds
+            if pause():
+                break
+        self.seconds, self.light_seconds = spent, spent_on_light
+
+    def reached(self, target: Target) -> bool:
+        """Whether there is nothing left to do for it: its error is met, or its samples are there."""
+        return self.samples >= self._needed(target)
+
+    def meets(self, target: Target) -> bool:
+        """Whether it has the error that the target asks for, if it asks for one."""
+        needed = 0 if target.error is None else self._sums.shown.samples_for(target.error)
+        return needed is not None and self.samples >= needed
+
+    def _needed(self, target: Target) -> int:
+        """Samples, as far as is known."""
+        expected = None if target.error is None else self._sums.shown.samples_for(target.error)
+        return target.samples if expected is None else min(max(expected, target.least), target.samples)
+
     def _lit(self, seconds: float) -> Iterator[None]:
         """See to the light map before the next sample; yields between launches. If the map becomes another, so do all
         samples."""
@@ -265,14 +307,18 @@ class Picture:
             started = time.perf_counter()
         self.light_seconds += time.perf_counter() - started
         if self._light.version != self._lit_by and self.samples > 0:
-            self._sums.restart()
-            self._shown_samples = 0
-            self._light_errors.clear()
-            self._light_bounds.clear()
+            self.begin_anew()
         self._lit_by = self._light.version
         figures = self._light.figures
         self._light_errors.append(self._light.rmse)
         self._light_bounds.append(math.nan if figures is None else figures.bound)
+
+    def begin_anew(self) -> None:
+        """Forget all samples."""
+        self._sums.restart()
+        self._shown_samples = 0
+        self._light_errors.clear()
+        self._light_bounds.clear()
 
     def _one_sample(self, seconds: float) -> Iterator[float]:
         """Yields the part of the tiles that were begun, between launches, and at last 1."""
@@ -347,12 +393,16 @@ class Picture:
             pass
         return self._shown
 
+    def softened(self) -> NDArray[np.uint8]:
+        """`rgb()`, filtered as a single sample of each pixel should be that is seen but for a moment."""
+        return self._renderer.softening.softened(self.rgb())
+
     def develop_in_pieces(self) -> Iterator[None]:
         """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""
         if self._shown_samples == self.samples:
             return
         shown = np.empty((self.height, self.width, 3), np.uint8)
-        film, pixels, sums = self.scene.film, self.width * self.height, self._sums
+        pixels, sums = self.width * self.height, self._sums
         queue, target = self._renderer.device.queue, self._allocate(shown.nbytes)
         flat = shown.reshape(-1)
         for begin in range(0, pixels, DEVELOPED):
@@ -360,9 +410,7 @@ class Picture:
             items = math.ceil((end - begin) / DEVELOP_BLOCK / DEVELOP_GROUP) * DEVELOP_GROUP
             self._renderer.develop(
                 queue, (items,), (DEVELOP_GROUP,), *sums.buffers, np.int32(sums.later > 0), target,
-                np.int32(begin), np.int32(end),
-                np.float32(film.exposure / max(1, self.samples)), np.int32(TONE_MAPS[film.tone_map]),
-                np.int32(film.gamut == "clip" or not is_spectral(self.scene)),
+                np.int32(begin), np.int32(end), *film_arguments(self.scene, self.samples),
             )  # fmt: skip
             cl.enqueue_copy(queue, flat[3 * begin : 3 * end], target, src_offset=3 * begin)
             yield
@@ -379,8 +427,13 @@ class Picture:
     def error_estimate(self) -> float:
         """Root mean square error of `linear()` that its samples and its light map let expect, in radiance; NaN below
         two samples."""
-        light = self.light_error()
-        return self._sums.error() if math.isnan(light) else math.hypot(self._sums.error(), light)
+        light, own = self.light_error(), self._sums.radiance.error(self.samples)
+        return own if math.isnan(light) else math.hypot(own, light)
+
+    def shown_error(self) -> float:
+        """Root mean square error of what is shown, over pixels and colours from 0 (black) to 1 (white), that its
+        samples let expect: what more of them would take away. NaN below two samples, and without `refine_until`."""
+        return self._sums.shown.error(self.samples)
 
     def light_error(self) -> float:
         """The light map's part of that, as on a white surface; NaN without a map, or before its passes tell."""

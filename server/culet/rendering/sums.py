@@ -12,16 +12,12 @@ from numpy.typing import NDArray
 
 from culet.rendering.build import Variant, build
 from culet.rendering.device import Device, Real
+from culet.rendering.doublings import Doublings
 
 BLOCK = 1024
 """Pixels of a work-item that folds."""
 PIECE = 2**21
 """Pixels that are folded at a time: some 15 ms, which is 64 MiB read and 32 MiB written."""
-RATE = 0.75
-"""An edge through a pixel, sampled n times by well spread points, is known to n^-3/4 (D. Mitchell, Consequences of
-stratified sampling in graphics, SIGGRAPH 1996): halfway between random samples and smooth pictures."""
-LEVELS = 2
-"""Doublings that an estimate is the mean of: a sequence is luckier with some numbers of samples than with others."""
 
 
 class Fold:
@@ -53,10 +49,8 @@ class Fold:
 class Sums:
     """Sums of linear radiance in two runs: the first 1, 2, 4, 8 ... samples, and those since.
 
-    Whenever the later run is as long as the earlier, the two are compared and made one. Any run of the sequence of
-    samples is as well spread as another of its length, so the errors of the two are alike and as good as independent:
-    half their difference is the error of their mean, whatever the rate of convergence is. (The even samples against
-    the odd ones are worse spread than all of them, and said up to 2.7 times too much.)
+    Whenever the later run is as long as the earlier, the two are compared and made one. (The even samples against the
+    odd ones are worse spread than all of them, and said up to 2.7 times too much.)
     """
 
     def __init__(self, fold: Fold, allocate: Callable[[int], Any], width: int, height: int, real: Real) -> None:
@@ -66,8 +60,13 @@ class Sums:
         self._width, self._height = width, height
         self._earlier: Any = allocate(self._size)
         self._later: Any = None
-        self._errors: list[float] = []
-        """Of 2, 4, 8 ... samples."""
+        self.radiance = Doublings()
+        """Of linear colours."""
+        self.shown = Doublings()
+        """Of what a screen shows, while `compare_shown` is given."""
+        self.compare_shown: Callable[[Any, Any, int], Iterator[float]] | None = None
+        """Of two runs of so many samples each: yields, of a part of the picture each time, the sum of the squared
+        differences of their means as shown."""
 
     @property
     def earlier(self) -> int:
@@ -88,7 +87,8 @@ class Sums:
     def restart(self) -> None:
         """Without samples, as at first."""
         self.samples = 0
-        self._errors.clear()
+        self.radiance.clear()
+        self.shown.clear()
 
     def target(self) -> tuple[Any, bool]:
         """Where the next sample goes, and whether it is added to what is there."""
@@ -100,11 +100,18 @@ class Sums:
         """The sample is there, in all pixels. To be run to its end; yields between pieces of work."""
         self.samples += 1
         if self.samples > 1 and self.samples == self.earlier:
-            pixels, squared = self._width * self._height, 0.0
+            pixels, half = self._width * self._height, self.samples // 2
+            if self.compare_shown is not None:
+                squared = 0.0
+                for piece in self.compare_shown(*self.buffers, half):
+                    squared += piece
+                    yield
+                self.shown.add(self.samples, squared, 3 * pixels)
+            squared = 0.0
             for piece in self._fold.pieces(*self.buffers, pixels):
                 squared += piece
                 yield
-            self._errors.append(math.sqrt(squared / (3 * pixels)) / self.samples)
+            self.radiance.add(self.samples, squared / half**2, 3 * pixels)
 
     def mean(self) -> NDArray[np.floating[Any]]:
         """(height, width, 4) of all samples; zeros without any."""
@@ -112,15 +119,6 @@ class Sums:
             self._read(buffer) for buffer, count in zip(self.buffers, (self.samples, self.later), strict=True) if count
         ]
         return sum(runs, np.zeros((self._height, self._width, 4), self._real)) / self._real(max(1, self.samples))
-
-    def error(self) -> float:
-        """Root mean square error of the mean's colours; NaN below two samples. From the last LEVELS doublings, each
-        taken on to the present number of samples by RATE."""
-        if not self._errors:
-            return math.nan
-        counts = [2 ** (number + 1) for number in range(len(self._errors))]
-        taken_on = [error * (count / self.samples) ** RATE for count, error in zip(counts, self._errors, strict=True)]
-        return float(np.sqrt(np.mean(np.square(taken_on[-LEVELS:]))))
 
     @property
     def _size(self) -> int:

@@ -8,6 +8,12 @@ from pydantic import Field
 
 from culet.scene.fields import Model
 
+MOST_SAMPLES = 65536
+"""Of a pixel."""
+
+
+Background = Annotated[str, Field(pattern="^(backdrop|transparent|#[0-9a-fA-F]{6})$")]
+
 
 class Sampling(Model):
     """How each pixel is sampled; the first sample is the pixel's centre."""
@@ -16,12 +22,18 @@ class Sampling(Model):
         "box", description="Reconstruction: box averages the pixel, tent reaches to its neighbours' centres."
     )
 
-    samples_per_pixel: Annotated[int, Field(ge=1, le=65536)] = 1
+    samples_per_pixel: Annotated[int, Field(ge=1, le=MOST_SAMPLES)] = 1
 
 
 class Film(Model):
     """From linear radiance to what a screen shows: radiance x exposure, then the tone map."""
 
+    background: Background = Field(
+        "backdrop",
+        description="What stills have behind everything, apart from what lights the stones. backdrop: what the camera "
+        "sees there; transparent: nothing, with alpha in .png, .webp, .tga and .exr, white in .jpg; a colour such as "
+        "#f4f1ea: exactly that on the screen (.exr: as transparent). Live pictures have the backdrop.",
+    )
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
     tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(
         "neutral",
@@ -32,3 +44,16 @@ class Film(Model):
     gamut: Literal["desaturate", "clip"] = Field(
         "desaturate", description="What becomes of spectral colours that no screen has: towards grey, or clipped."
     )
+
+    @property
+    def cut_out(self) -> bool:
+        """Whether stills leave out what is behind everything."""
+        return self.background != "backdrop"
+
+    @property
+    def behind(self) -> tuple[int, int, int] | None:
+        """The colour that a screen shows behind everything, 0 to 255; None for nothing, or the backdrop."""
+        if not self.background.startswith("#"):
+            return None
+        red, green, blue = bytes.fromhex(self.background[1:])
+        return red, green, blue

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import signal
+import threading
+import webbrowser
 from pathlib import Path
 
 from culet.notify import Notice, notify
 from culet.service.supervisor import Part, Supervisor
 
+log = logging.getLogger(__name__)
+
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-async def keep(folder: Path, *parts: Part, ready_line: str = "") -> None:
+async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | None = None) -> None:
     """Keep all of them running until SIGINT or SIGTERM; the first one is stopped first. `folder` is for their sockets.
 
-    Once the first one is ready, whoever supervises this process is told, and a line, if there is one, is printed.
+    Once the first one is ready, whoever supervises this process is told, a line, if there is one, is printed, and the
+    user's browser is shown the page, if there is one.
     EngineUnavailableError if one dies again and again before it was ever ready.
     """
     ready, stopping = asyncio.Event(), asyncio.Event()
@@ -25,7 +31,7 @@ async def keep(folder: Path, *parts: Part, ready_line: str = "") -> None:
     first, *others = parts
     supervisors = [Supervisor(first, folder, ready.set), *(Supervisor(part, folder) for part in others)]
     running = [asyncio.create_task(supervisor.run()) for supervisor in supervisors]
-    announcement = asyncio.create_task(_announce(ready, ready_line))
+    announcement = asyncio.create_task(_announce(ready, ready_line, page))
     stop = asyncio.create_task(stopping.wait())
     try:
         await asyncio.wait([*running, stop], return_when=asyncio.FIRST_COMPLETED)
@@ -41,8 +47,15 @@ async def keep(folder: Path, *parts: Part, ready_line: str = "") -> None:
             raise result
 
 
-async def _announce(ready: asyncio.Event, line: str) -> None:
+async def _announce(ready: asyncio.Event, line: str, page: str | None) -> None:
     await ready.wait()
     if line:
         print(line, flush=True)
     notify(Notice.READY)
+    if page is not None:  # in a thread of its own that nobody waits for: a browser may run in the terminal
+        threading.Thread(target=_show, args=(page,), daemon=True).start()
+
+
+def _show(page: str) -> None:
+    if not webbrowser.open(page):
+        log.warning("no browser could be started; open %s", page)

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from culet.endpoints import check_free, reachable
-from culet.gateway.address import listening_socket, url_of
+from culet.gateway.address import listening_socket, local_url_of, url_of
 from culet.gateway.settings import settings_of
 from culet.service.keeping import keep
 from culet.service.parts import engine_part, gateway_part
@@ -25,8 +25,10 @@ def serve(
     frames: str | None = None,
     engine_options: Sequence[str] = (),
     spare: bool = True,
+    open_page: bool = False,
 ) -> None:
-    """Run engine and gateway until SIGINT or SIGTERM; print the URL once both are ready.
+    """Run engine and gateway until SIGINT or SIGTERM; print the URL once both are ready, and with `open_page` have a
+    browser show the page.
 
     `given` are the gateway's settings by field, `engine_options` words of the engine's command line. `frames`, such as
     `tcp://127.0.0.1:5556`, is where the engine publishes frames for native viewers too; without it they stay on this
@@ -47,7 +49,8 @@ def serve(
         with listening_socket(settings.host, settings.port) as listening:
             gateway = gateway_part(listening, settings, spare=spare)
             url = url_of(listening, settings.host)
-            asyncio.run(keep(folder, gateway, engine, ready_line=f"culet is ready: {url}"))
+            page = local_url_of(listening, settings.host) if open_page else None
+            asyncio.run(keep(folder, gateway, engine, ready_line=f"culet is ready: {url}", page=page))
 
 
 def serve_engine(control: str, frames: Sequence[str], options: Sequence[str] = ()) -> None:

@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import math
-import os
 import pathlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError, SceneError, TooLargeError
+from culet.places import write_whole
 from culet.simulation.simulation import Simulation
 from culet.stage import Stage
 
@@ -195,23 +195,7 @@ def write(path: Table, file: pathlib.Path) -> None:
     encode = _ENCODERS.get(file.suffix.lower())
     if encode is None:
         raise InputError(f"out: a path is written as {', '.join(_ENCODERS)}; got {file.name!r}", "out")
-    try:
-        _replace(file, encode(path))
-    except OSError as error:
-        raise InputError(f"out: {file} cannot be written: {error.strerror}", "out") from error
-
-
-def _replace(file: pathlib.Path, content: bytes) -> None:
-    part = file.with_name(f".{file.name}.{os.getpid()}.part")  # the same folder: renaming is atomic in one file system
-    stream = part.open("xb")
-    try:
-        with stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        part.replace(file)
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(file, encode(path), "out")
 
 
 def _csv(path: Table) -> bytes:

@@ -170,15 +170,18 @@ class Together:
             self._library.culet_world_touches(self._world, found)
         return tuple(Touch(each.contacts, each.penetration, 0.0) for each in found)
 
-    def separation(self, one: str, other: str, enough: float = math.inf) -> float:
-        """Signed distance of two bodies' hulls along the best axis, R: negative is how deep they overlap.
+    def separation(self, one: str, other: str, enough: float = math.inf) -> tuple[float, Triple]:
+        """Signed distance of two bodies' hulls along the best axis, R: negative is how deep they overlap. And that
+        axis, of length 1, in the world, from the one towards the other.
 
         Above `enough` a lower bound of it.
         """
+        axis = (ctypes.c_double * 3)()
         with self._lock:
             first, second = self._number(one), self._number(other)
-            distance: float = self._library.culet_world_separation(self._world, first, second, enough)
-        return distance
+            distance: float = self._library.culet_world_separation(self._world, first, second, enough, axis)
+        x, y, z = axis
+        return distance, (x, y, z)
 
     def _number(self, name: str) -> int:
         return next(number for number, body in enumerate(self._bodies) if body.name == name)

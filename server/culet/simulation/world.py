@@ -290,7 +290,7 @@ class World:
         """Signed distance of two stones' hulls, R; negative: how deep they overlap. InputError for one and the same."""
         if self.number(one) == self.number(other) or not isinstance(self._mover, Together):
             raise InputError(f"expected two stones; got {one!r} and {other!r}", "stone")
-        return self._mover.separation(one, other)
+        return self._mover.separation(one, other)[0]
 
     def snapshot(self) -> dict[str, Any]:
         """Everything that the future depends on besides law, surfaces and bodies, as JSON's types."""

@@ -15,13 +15,13 @@ from typing import NamedTuple
 import numpy as np
 import pyopencl as cl
 
-from culet import __version__
 from culet.rendering.build import FLAGS
 from culet.rendering.features import Features, features_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.model import Scene
 from culet.study.cases import CASES, FEATURE_CASES, stage_of
 from culet.study.provenance import commit, processor
+from culet.version import __version__
 
 EXACT_CUTOFF, EXACT_BOUNCES = 1e-5, 65536
 

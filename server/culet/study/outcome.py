@@ -8,7 +8,7 @@ from pathlib import Path
 
 from culet.errors import InputError
 from culet.rendering.device import Device
-from culet.study import caustics, race, rendering, simulation, streaming
+from culet.study import caustics, growth, race, rendering, simulation, streaming
 from culet.study.knobs import Knobs
 from culet.study.page import page
 from culet.study.pareto import frontier
@@ -219,6 +219,25 @@ def _caustics_headlines(points: Sequence[Point], races: Sequence[Race]) -> Itera
     if bounded:
         value = max((p.figures["missing"] or 0.0) / (p.figures["bound"] or 1.0) for p in bounded)
         yield Headline(name="light that is missing over its strict bound, most of all maps", value=value, unit="")
+
+
+def growth_report(
+    settings: dict[str, Knob], facts: dict[str, str | int], points: Sequence[Point], extent: growth.Extent
+) -> Report:
+    """Of `culet study growth`."""
+    fits = growth.fits_of(points, extent)
+    return Report(
+        study="growth",
+        made=_now(),
+        provenance=provenance(facts),
+        settings=settings,
+        scene={},
+        figures=growth.FIGURES,
+        points=tuple(points),
+        fits=tuple(fits),
+        headlines=tuple(Headline(name=f"exponent of {fit.label}", value=fit.order, unit="") for fit in fits),
+        notes=tuple(growth.steeper_than_they_should_be(fits, extent)),
+    )
 
 
 def write(report: Report, folder: Path) -> None:

@@ -17,6 +17,7 @@ TITLES = {
     "simulation": "Error against run time: the simulation",
     "streaming": "Size, time and likeness: the stream",
     "caustics": "Error against run time: the light that stones throw",
+    "growth": "What grows, and how fast its cost does",
 }
 
 SHORTER = (("integrator ", ""), ("time step", "step"), ("contact step", "contact"), ("polarised yes", "polarised"))
@@ -40,6 +41,7 @@ def page(report: Report, pictures: Path) -> str:
     """The whole page; `pictures` is the folder of those that were made while measuring."""
     sections = {
         "rendering": _rendering, "simulation": _simulation, "streaming": _streaming, "caustics": _caustics,
+        "growth": _growth,
     }[report.study]  # fmt: skip
     body = [*_opening(report), *sections(report, pictures), *_closing(report)]
     return document(TITLES[report.study], body)
@@ -116,6 +118,19 @@ def _race_table(report: Report, first: str) -> Iterator[str]:
         rows.append([race.name, *seconds, race.note])
     yield table([first, *(f"RMSE {target}" for target in report.races[0].seconds), ""], rows)
     yield paragraph("~ was not waited for: taken on from the last measured point along 1 / sqrt(time).")
+
+
+def _growth(report: Report, pictures: Path) -> Iterator[str]:
+    del pictures
+    for fit in report.fits:
+        own = [point for point in report.points if point.group == fit.label]
+        marks = [Mark(float(point.knobs[fit.step] or 0), point.figures[fit.error] or 0.0, point.label) for point in own]
+        yield heading(fit.label.capitalize())
+        yield figure(
+            log_log([Series("measured", marks, line=True)], fit.label, _axis(report, fit.error)),
+            f"Grows as the number to the {fit.order:.2f}, by the larger {fit.points}.",
+        )
+        yield _table(own, [name for name in report.figures if any(p.figures[name] is not None for p in own)], "")
 
 
 def _caustics(report: Report, pictures: Path) -> Iterator[str]:

@@ -11,8 +11,8 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-import culet
 import culet_kernels
+from culet.version import __version__
 
 IMAGE_CODE = ("geometry", "optics", "rendering", "scene", "stage.py")
 """Packages and modules whose code decides what a picture looks like, besides the kernels."""
@@ -21,6 +21,7 @@ REFERENCE_CODE = (*IMAGE_CODE, "study/shot.py", "study/knobs.py", "study/referen
 RENDERING_STUDY = (*IMAGE_CODE, "study")
 """What the points of each study depend on."""
 CAUSTICS_STUDY = RENDERING_STUDY
+GROWTH_STUDY = (*RENDERING_STUDY, "engine", "gateway", "service", "simulation")
 SIMULATION_STUDY = ("geometry", "scene", "simulation", "stage.py", "study")
 STREAMING_STUDY = (*RENDERING_STUDY, "simulation")
 
@@ -58,7 +59,7 @@ def code_digest(names: tuple[str, ...]) -> str:
     digest = hashlib.sha256()
     for name in culet_kernels.NAMES:
         digest.update(culet_kernels.source(name).encode())
-    root = Path(culet.__file__).parent
+    root = Path(__file__).parents[1]
     for name in names:
         place = root / name
         for path in sorted(p for p in place.rglob("*") if p.suffix in SOURCES) if place.is_dir() else [place]:
@@ -78,7 +79,7 @@ def peer_versions() -> str:
 def provenance(device: Mapping[str, str | int]) -> dict[str, str | int]:
     """Version, commit, machine and what the device says of itself."""
     return {
-        "version": culet.__version__,
+        "version": __version__,
         "commit": commit(),
         "processor": processor(),
         "system": platform.platform(),

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from platformdirs import user_cache_path
 
 from culet.rendering.device import Device
-from culet.rendering.sums import RATE
+from culet.rendering.doublings import RATE
 from culet.study.knobs import Knobs
 from culet.study.provenance import REFERENCE_CODE, code_digest
 from culet.study.renderers import Renderers

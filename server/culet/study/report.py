@@ -76,7 +76,7 @@ class Report(Model):
     """All of a study."""
 
     schema_version: Literal[1] = 1
-    study: Literal["rendering", "simulation", "streaming", "caustics"]
+    study: Literal["rendering", "simulation", "streaming", "caustics", "growth"]
     made: str = Field(description="ISO 8601, UTC.")
     provenance: dict[str, str | int]
     settings: dict[str, Knob]

@@ -11,14 +11,16 @@ from typing import NamedTuple
 
 from culet.rendering.device import Device, open_device
 from culet.rendering.renderer import Renderer
+from culet.scene.model import Scene
 from culet.stage import Stage
-from culet.study import caustics, race, rendering, simulation, streaming
+from culet.study import caustics, growth, race, rendering, simulation, streaming
 from culet.study.journal import Journal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.mitsuba import SAMPLERS, find_llvm
 from culet.study.outcome import (
     caustics_report,
     device_facts,
+    growth_report,
     rendering_report,
     simulation_report,
     streaming_report,
@@ -27,6 +29,7 @@ from culet.study.outcome import (
 from culet.study.pictures import write_pictures
 from culet.study.provenance import (
     CAUSTICS_STUDY,
+    GROWTH_STUDY,
     RENDERING_STUDY,
     SIMULATION_STUDY,
     STREAMING_STUDY,
@@ -231,6 +234,19 @@ def study_caustics(stage: Stage, out: Path, progress: Progress, *, quick: bool, 
     settings: dict[str, Knob] = {"quick": quick}
     facts = device_facts(renderer.device)
     report = caustics_report(stage.scene.model_dump(mode="json"), settings, facts, points, notes)
+    write(report, out)
+    return report
+
+
+def study_growth(out: Path, progress: Progress, *, quick: bool, fresh: bool = False) -> Report:
+    """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers."""
+    renderer, extent = Renderer(), growth.QUICK if quick else growth.FULL
+    identity = _identity("growth", Stage.of(Scene()), quick, code_digest(GROWTH_STUDY), renderer.device)
+    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+        with progress("growth", len(extent.sweeps)) as advance:
+            growth.measure_all(renderer, extent, journal, advance)
+        points = list(journal.points.values())
+    report = growth_report({"quick": quick}, device_facts(renderer.device), points, extent)
     write(report, out)
     return report
 

@@ -79,6 +79,26 @@ def steady(cost: float, frames: int) -> list[float]:
     return [cost] * frames
 
 
+@pytest.mark.parametrize(("optics", "dearer"), [({}, 1), ({"bands": 24}, 8), ({"polarised": True}, 1.1)])
+@pytest.mark.parametrize("seconds", [0.01, 0.05, 2.0])
+def test_the_first_moving_frame_is_as_good_as_the_picture_at_rest_says_that_there_is_time_for(
+    seconds: float, optics: dict[str, object], dearer: float
+) -> None:
+    governor = Governor(MEASURED)
+    governor.rested(Scene.read({"optics": optics}), WANTED, dearer * seconds, RATE)
+    first, *_, last = play(governor, steady(seconds, 6 * PATIENCE))
+    assert first.seconds <= SHARE / RATE or seconds == 2.0, "of which even the smallest take longer"
+    assert (first.plan.setting, first.plan.size) == (last.plan.setting, last.plan.size)
+
+
+def test_what_a_moving_frame_has_told_holds_at_rest_too() -> None:
+    governor = Governor(MEASURED)
+    play(governor, steady(0.05, PATIENCE))
+    before = governor.setting
+    governor.rested(Scene(), WANTED, 5.0, RATE)
+    assert governor.setting == before
+
+
 def test_an_easy_scene_keeps_the_best_setting() -> None:
     assert set(settings(play(Governor(LADDER), steady(0.02, 100)))) == {LADDER[0]}
 

@@ -12,14 +12,18 @@ import pytest
 
 from culet.engine.library.upload_answer import LENGTH, Answer, AnswerError, TooLittleMemoryError, taken
 from culet.errors import InputError, MeshError, TooLargeError
+from culet.geometry.designs.limits import MOST_FACETS
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
+from culet.geometry.stone_file import shape_from_file
 from culet.memory_file import memory_file
 from culet.optics.sky_files.picture import SkyPicture
 from engine.peer import TETRAHEDRON
 
 STONE = shape_from_mesh(TETRAHEDRON, "off", name="t\udcff")
 """Its name has half a character, as a file's may."""
+LETTER = "\N{MATHEMATICAL BOLD CAPITAL A}"
+"""Outside the plane of 16 bits."""
 
 
 @pytest.fixture
@@ -38,6 +42,20 @@ def test_a_stone_arrives_as_it_was_told(file: int) -> None:
         assert getattr(stone, name).dtype == getattr(STONE, name).dtype
     assert (stone.mass.inertia == STONE.mass.inertia).all()
     assert (stone.convex, stone.mass.volume, stone.findings) == (True, STONE.mass.volume, STONE.findings)
+
+
+def test_a_designs_names_arrive_with_its_facets(file: int) -> None:
+    """As many as a design may have, each as long as it may be and in letters of four bytes, are not too much."""
+    facets = MOST_FACETS // 2
+    records = [f"a {angle} 0.5 " + " ".join(f"{96 * k / facets} n {32 * LETTER}" for k in range(facets))
+               for angle in (40, -40)]  # fmt: skip
+    stone = shape_from_file("\n".join(["g 96", *records]).encode(), "asc")
+    assert len(stone.names) > 1.9 * facets
+    Answer(file).tell_mesh(stone)
+    arrived = taken(file, "mesh")
+    assert isinstance(arrived, Shape)
+    assert arrived.names == stone.names
+    assert arrived.names[0] == (1, 32 * LETTER)
 
 
 def told_sky(file: int, value: float = 0.5) -> None:
@@ -101,6 +119,8 @@ MESH_LIES: dict[str, Callable[[dict[str, Any]], object]] = {
         [h.pop(name) for name in list(h)] and h.update(kind="refusal", error="OSError", message="")
     ),
     "a volume that is no number": lambda h: h.update(volume=float("nan")),
+    "names of other facets": lambda h: h.update(names=[{"tier": 1, "name": "table"}]),
+    "a name without end": lambda h: h.update(names=4 * [{"tier": 1, "name": 33 * "x"}]),
     "something more": lambda h: h.update(run="os.system"),
 }
 

@@ -11,6 +11,7 @@ from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
 from culet.geometry.mesh import shape_from_mesh
 from culet.rendering.renderer import Renderer
+from culet.rendering.target import Target
 from culet.scene import PointLight, Scene
 from engine.peer import TETRAHEDRON
 from shared.stages import staged
@@ -137,7 +138,7 @@ def test_of_two_frames_the_one_of_who_has_had_less_goes_on() -> None:
 async def test_refinements_and_stills_get_their_smaller_share_beside_a_moving_picture() -> None:
     moving, refining = in_work(live()), painted(live(), final=False)
     stills, shares, now = StillQueue(4, 2**25), Shares(), 100.0
-    still = Still(STAGE, 16, 16, 1, "tga")
+    still = Still(STAGE, 16, 16, Target(1), "tga")
     stills.put(still)
     had: dict[int, float] = {}
     for _ in range(7000):

@@ -2,6 +2,7 @@ import pytest
 
 from culet.engine.painting.still import Still, StillQueue
 from culet.errors import BusyError
+from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 
@@ -9,7 +10,7 @@ LARGEST = 2**20
 
 
 def still(client: str = "", pixels: int = 16) -> Still:
-    return Still(Stage.of(Scene(stones=())), pixels, 1, 1, "tga", client=client)
+    return Still(Stage.of(Scene(stones=())), pixels, 1, Target(1), "tga", client=client)
 
 
 def begun(queue: StillQueue) -> Still | None:

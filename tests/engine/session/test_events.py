@@ -55,6 +55,38 @@ def test_the_camera_orbits_moves_and_goes_home() -> None:
     assert after(subject, messages.ResetCamera()).camera == start
 
 
+def test_the_camera_is_kept_out_of_stones_by_moves_and_refused_in_them_by_patches() -> None:
+    subject = session(
+        stones=[{"id": "gem", "position": [0, 1, 0]}], camera={"position": [0, 1, 5], "target": [0, 1, 0]}
+    )
+    near = after(subject, messages.Dolly(forward=100)).camera.position
+    assert 1 - 0.7 < near[2] < 1.1, "before the stone, on its girdle or its crown"
+    assert after(subject, messages.Dolly(forward=1)).camera.position == pytest.approx(near, abs=1e-9)
+    before = subject.scene
+    with pytest.raises(InputError, match=r"outside of the stones.*'gem'") as refused:
+        after(subject, messages.PatchScene(patch={"camera": {"position": [0, 1.1, 0.1]}}))
+    assert refused.value.field == "camera.position"
+    assert subject.scene == before
+    after(subject, messages.PatchScene(patch={"camera": {"position": [0, 1.1, 0.1]}, "stones": {"gem": None}}))
+    with_stone = {"stones": {"gem": {"cut": "brilliant", "position": [0, 1, 0]}}}
+    inside = after(subject, messages.PatchScene(patch=with_stone)).camera.position
+    assert inside == pytest.approx((0, 1.1, 0.1)), "a stone may come about the camera"
+    after(subject, messages.PatchScene(patch={"camera": {"fov_degrees": 20}}))
+    assert after(subject, messages.Dolly(forward=-3)).camera.position != inside
+
+
+def test_a_patch_of_the_camera_minds_stones_where_they_are_now() -> None:
+    subject = falling(session(stones=[{"id": "gem", "position": [0, 8, 0], "velocity": [0, -20, 0]}]))
+    x, y, z = subject.shown.scene.stones[0].position
+    assert y < 7
+    with pytest.raises(InputError, match="outside of the stones"):
+        after(subject, messages.PatchScene(patch={"camera": {"position": [x + 0.05, y, z + 0.05]}}))
+    after(subject, messages.PatchScene(patch={"camera": {"position": [0, 8.1, 0.05]}}))
+    moved = {"camera": {"position": [3, 8, 0.1]}, "stones": {"gem": {"position": [3, 8, 0]}}}
+    with pytest.raises(InputError, match="outside of the stones"):
+        after(subject, messages.PatchScene(patch=moved))
+
+
 def test_the_camera_looks_at_the_stone_where_that_is_now_and_goes_home_again() -> None:
     subject = falling(session(stones=[{"position": [5, 8, 0]}]))
     start, shown = subject.scene.camera, subject.shown.scene.stones[0].position

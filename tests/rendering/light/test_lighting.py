@@ -17,6 +17,7 @@ from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import Effort
 from culet.rendering.light.light_map import frame_of
 from culet.rendering.light.lighting import Illumination, Maker
+from culet.rendering.light.panorama_light import is_summed
 from culet.rendering.light.sources import rays_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
@@ -56,6 +57,16 @@ def test_an_orbiting_camera_costs_the_map_nothing(renderer: Renderer) -> None:
     assert after is before
     assert after.passes == 1
     assert picture.light_bound() == before.figures.bound if before.figures else False
+
+
+def test_a_panorama_is_summed_before_a_picture_is_begun(renderer: Renderer) -> None:
+    pixels = np.ones((64, 128, 3), np.float32)
+    pixels.flags.writeable = False
+    stage = staged(scene_of(floor={"kind": "mirror"}), panorama=pixels)
+    assert not renderer.is_ready(stage)
+    renderer.make_ready(stage)
+    assert renderer.is_ready(stage)
+    assert is_summed(pixels)
 
 
 @pytest.mark.parametrize(
@@ -182,7 +193,7 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
 
 
 def test_a_stone_that_is_not_convex_is_lit_by_photons(renderer: Renderer) -> None:
-    stage = staged(scene_of(stones=[{}]), ring())
+    stage = staged(scene_of(stones=[{}], optics={"caustics_cutoff": 0.02}), ring())
     picture, found = lit(renderer, stage, Effort.RESTING, 2)
     assert found.maker is Maker.PHOTONS
     assert found.figures is not None
@@ -207,7 +218,7 @@ def test_where_photons_would_take_too_long_a_moving_picture_says_that_it_has_sha
 
 
 def test_a_stone_of_triangles_gets_the_light_that_one_of_half_spaces_gets(renderer: Renderer, brilliant: Shape) -> None:
-    scene = scene_of(stones=[{}], optics={"caustics_cutoff": 1e-4})
+    scene = scene_of(stones=[{}], optics={"caustics_cutoff": 0.02})
     by_beams = lit(renderer, staged(scene, brilliant), Effort.PATIENT)[1]
     by_photons = lit(renderer, staged(scene, replace(brilliant, convex=False)), Effort.PATIENT)[1]
     assert (by_beams.maker, by_photons.maker) == (Maker.BEAMS, Maker.PHOTONS)

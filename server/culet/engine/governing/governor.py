@@ -49,6 +49,10 @@ CROWDED_RATE = 8.0
 SHRINK = 2**-0.25
 """Of width and height, each time: a step that is hardly seen."""
 
+MOVING_BANDS = 3
+"""Wavelengths of a moving frame. Others cost by their number: 8 take 2.6 times as long (`culet bench`)."""
+POLARISED_COST = 1.1
+"""Time of a polarised picture over that of one that is not (`culet bench`)."""
 
 LIGHT_CUTOFFS = ((0.2, 1e-3), (0.1, 2e-3), (0.0, 5e-3))
 """Cut-offs of the light map, by the cost of a rung, at least. Of a point light 1e-3 cuts 0.15 of the light and takes
@@ -148,7 +152,7 @@ class Governor:
         if setting is None:
             return Plan(scene, wanted, wanted, None, math.nan)
         changes = {
-            "bands": 3,
+            "bands": MOVING_BANDS,
             "polarised": False,
             "cutoff": max(scene.optics.cutoff, setting.cutoff),
             "max_bounces": min(scene.optics.max_bounces, setting.max_bounces),
@@ -159,6 +163,21 @@ class Governor:
         size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))
         error = self._errors.radiance(scale, simplified.optics.cutoff, simplified.optics.max_bounces)
         return Plan(simplified, size, wanted, setting, error)
+
+    def rested(
+        self, scene: Scene, size: tuple[int, int], seconds: float, frames_per_second: float, share: float = 1.0
+    ) -> None:
+        """The first sample of a picture in full took that long to render: as long as no moving frame has told, it says
+        what they will take. Without, the first one would be drawn in the dearest setting, however late it comes.
+
+        A cut-off below the ladder's makes them seem dearer than they are: better ones are tried soon.
+        """
+        if self._unit is not None:
+            return
+        optics = scene.optics
+        dearer = optics.bands / MOVING_BANDS * (POLARISED_COST if optics.polarised else 1.0)
+        self._unit = seconds / (size[0] * size[1] * dearer * self._ladder[0].pixel_cost)
+        self._adapt(size, frames_per_second, share)
 
     def has_cheaper(self, plan: Plan) -> bool:
         """Whether frames of that size can be cheaper than planned."""
@@ -177,15 +196,18 @@ class Governor:
             return
         overhead = min(overhead, 1 / frames_per_second)  # a longer one was a stall, and says nothing of the next frame
         unit = seconds / (plan.size[0] * plan.size[1] * plan.setting.pixel_cost)
-        least_rate = min(frames_per_second, max(ALONE_RATE * share, CROWDED_RATE))
-        held = frames_per_second if self.has_cheaper(plan) else least_rate
+        held = frames_per_second if self.has_cheaper(plan) else _least_rate(frames_per_second, share)
         late = seconds + overhead > LATE * share / held
         if self._unit is None or (late and unit > self._unit):
             self._unit = unit
         self._unit += MEMORY * (unit - self._unit)
         self._overhead += MEMORY * (overhead - self._overhead)
-        self._choose(plan.wanted, self._budget(frames_per_second, share))
-        self._shrink(plan.wanted, self._budget(least_rate, share), share)
+        self._adapt(plan.wanted, frames_per_second, share)
+
+    def _adapt(self, wanted: tuple[int, int], frames_per_second: float, share: float) -> None:
+        """Setting and size to what is expected."""
+        self._choose(wanted, self._budget(frames_per_second, share))
+        self._shrink(wanted, self._budget(_least_rate(frames_per_second, share), share), share)
 
     def _budget(self, frames_per_second: float, share: float) -> float:
         """For rendering a frame."""
@@ -264,6 +286,11 @@ def worthwhile_rungs(ladder: tuple[Setting, ...], errors: SettingErrors, wanted:
             chosen.insert(0, rung)
             least = min(least, error)
     return tuple(chosen)
+
+
+def _least_rate(frames_per_second: float, share: float) -> float:
+    """For which frames are made smaller than the cheapest setting has them."""
+    return min(frames_per_second, max(ALONE_RATE * share, CROWDED_RATE))
 
 
 def _cost(setting: Setting, wanted: tuple[int, int]) -> float:

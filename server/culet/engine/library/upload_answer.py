@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from culet.errors import CuletError, InputError, MeshError, SceneError, TooLargeError
-from culet.geometry.shape import MassProperties, Shape
+from culet.geometry.designs.limits import MOST_FACETS
+from culet.geometry.designs.solid import LONGEST_NAME
+from culet.geometry.shape import FacetName, MassProperties, Shape
 from culet.optics.panoramas import check_panorama
 from culet.optics.sky_files.picture import SkyPicture
 
@@ -53,6 +55,15 @@ class Part(BaseModel):
     offset: Annotated[int, Field(ge=0, lt=2**48, multiple_of=mmap.ALLOCATIONGRANULARITY)]
 
 
+class Name(BaseModel):
+    """What a facet is called."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    tier: Annotated[int, Field(ge=1, le=MOST_FACETS)]
+    name: Annotated[str, Field(max_length=LONGEST_NAME)]
+
+
 class MeshHeader(BaseModel):
     """A stone but for its arrays."""
 
@@ -68,6 +79,8 @@ class MeshHeader(BaseModel):
     convex: bool
     volume: float
     findings: tuple[str, ...]
+    names: Annotated[tuple[Name, ...], Field(max_length=MOST_FACETS)] = ()
+    """Of each facet, or none."""
 
 
 class SkyHeader(BaseModel):
@@ -133,7 +146,8 @@ class Answer:
         self._finish(
             MeshHeader(
                 name=_utf_8([shape.name])[0], convex=bool(shape.convex), volume=float(shape.mass.volume),
-                findings=_utf_8(shape.findings), **parts,
+                findings=_utf_8(shape.findings),
+                names=tuple(Name(tier=tier, name=_utf_8([name])[0]) for tier, name in shape.names), **parts,
             )
         )  # fmt: skip
 
@@ -225,8 +239,11 @@ def _shape(header: MeshHeader, descriptor: int, size: int) -> Shape:
     inertia = np.asarray(part("inertia", "float64", (3, 3)), np.float64)
     _check_range("triangles", triangles, len(vertices))
     _check_range("facet_of_triangle", facets, len(planes))
+    if len(header.names) not in (0, len(planes)):
+        raise AnswerError(f"{len(header.names)} names of {len(planes)} facets")
+    names = tuple(FacetName(given.tier, given.name) for given in header.names)
     mass = MassProperties(header.volume, inertia)
-    return Shape(header.name, vertices, triangles, facets, planes, header.convex, mass, header.findings)
+    return Shape(header.name, vertices, triangles, facets, planes, header.convex, mass, header.findings, names)
 
 
 def _check_range(name: str, numbers: NDArray[np.int32], count: int) -> None:

@@ -56,7 +56,7 @@ def main(words: list[str]) -> None:
     answer = Answer(order.answer)
     # all that reading needs is loaded before memory is limited
     if order.kind == "mesh":
-        from culet.geometry.mesh import shape_from_mesh
+        from culet.geometry.stone_file import shape_from_file
     else:
         from culet.optics.sky_files.reading import read_sky
     limit(order)
@@ -71,7 +71,7 @@ def main(words: list[str]) -> None:
     try:
         data = sys.stdin.buffer.read()
         if order.kind == "mesh":
-            answer.tell_mesh(shape_from_mesh(data, order.file_type, max_triangles=order.max_triangles))
+            answer.tell_mesh(shape_from_file(data, order.file_type, max_triangles=order.max_triangles))
         else:
             answer.tell_sky(read_sky(data, order.file_type, max_pixels=order.max_pixels, allocate=allocate))
     except (InputError, MemoryError) as error:

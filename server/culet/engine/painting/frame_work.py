@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from time import perf_counter
 
@@ -13,7 +13,12 @@ from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Shown
 from culet.rendering.light.effort import Effort
+from culet.rendering.target import Target
 from culet.stage import Stage
+
+REFRESH_SECONDS = 0.35
+"""After which a picture at rest that gets better is shown as it is after the sample under way: with that sample,
+developing, encoding and the way to the viewer less than half a second where a sample takes a tenth of one."""
 
 
 class Kind(Enum):
@@ -24,7 +29,7 @@ class Kind(Enum):
     FULL = auto()
     """The first sample, as the scene has it."""
     REFINED = auto()
-    """As many samples more as there are."""
+    """More samples."""
 
 
 class Unprepared(Exception):  # noqa: N818 - nothing went wrong
@@ -45,8 +50,10 @@ class FrameWork:
     plan: Plan | None = None
     picture: Picture | None = None
     """Made by the first piece, unless it is refined."""
-    samples: int = 1
-    """That are added."""
+    aim: Target | None = None
+    """To which what is refined is refined at last."""
+    now: Callable[[], float] = perf_counter
+    """s, the clock of `begun_at`."""
     piece_seconds: float = PIECE_SECONDS
     """That a launch is meant to take."""
     final: bool = False
@@ -75,6 +82,11 @@ class FrameWork:
         self.pieces = self._made(renderer)
 
     @property
+    def hold_seconds(self) -> float:
+        """For which it may hold the render thread, if its pieces can be as short."""
+        return min(self.piece_seconds, PIECE_SECONDS)
+
+    @property
     def expected_seconds(self) -> float:
         """That all of it would take, as far as the part that is done tells."""
         return self.spent / self.part if self.part > 0 else self.spent
@@ -87,7 +99,7 @@ class FrameWork:
             effort = Effort.RESTING if self.plan is None else Effort.MOVING
             self.picture = renderer.picture(self.stage, width, height, effort=effort)
         picture = self.picture
-        for part in picture.refine_in_pieces(self.samples, self.piece_seconds):
+        for part in self._samples(picture):
             self.part = part
             yield part
         self.render_seconds += picture.seconds + picture.light_seconds
@@ -95,12 +107,31 @@ class FrameWork:
         yield from picture.develop_in_pieces()
         develop_seconds = perf_counter() - started
         spent = self.simulate_seconds, self.render_seconds
+        whole = (width, height) == self.wanted  # a smaller one is softened enough by being enlarged
         self.frame = LiveFrame.developed(
-            picture, self.shown, self.plan, spent, develop_seconds, final=self.final, slow=self.slow
+            picture, self.shown, self.plan, spent, develop_seconds, aim=self.aim, final=self.final, slow=self.slow,
+            soft=picture.samples == 1 and whole and not self.final,
+        )  # fmt: skip
+
+    def _samples(self, picture: Picture) -> Iterator[float]:
+        """The first one; or as many more as there are, but no more than REFRESH_SECONDS allow, nor than are needed.
+
+        When frames are sent depends on the time, but which of them is final does not.
+        """
+        if self.aim is None:
+            yield from picture.refine_in_pieces(1, self.piece_seconds)
+            return
+        more = replace(self.aim, samples=min(2 * max(1, picture.samples), self.aim.samples))
+        yield from picture.refine_until(
+            more, self.piece_seconds, pause=lambda: self.now() - self.begun_at > REFRESH_SECONDS
         )
+        self.final = picture.reached(self.aim)
 
 
-def proceed(pieces: Iterator[object], clock: Callable[[], float]) -> bool:
-    """Run a piece, and more of them while they are short; whether there are more to come. `clock` tells seconds."""
+def proceed(pieces: Iterator[object], clock: Callable[[], float], seconds: float = PIECE_SECONDS) -> bool:
+    """Run a piece, and more of them while they are short beside so many seconds; whether there are more to come.
+
+    `clock` tells seconds.
+    """
     started = clock()
-    return any(clock() - started > PIECE_SECONDS / 2 for _ in pieces)
+    return any(clock() - started > seconds / 2 for _ in pieces)

@@ -13,6 +13,7 @@ from culet.engine.governing.governor import Plan
 from culet.engine.painting.renderer import Picture
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
+from culet.rendering.target import Target
 from culet.scene.optics import Optics
 from culet_protocol.frame import Codec, Flags, Frame
 
@@ -35,6 +36,10 @@ class LiveFrame:
     cut: float
     error: float
     """Of the radiance: estimated, or NaN."""
+    shown_error: float
+    """Of what is shown, from 0 to 1: estimated, or NaN."""
+    rest_error: float
+    """That a picture at rest is refined to; NaN of a first sample."""
     expected_error: float
     """That of the front, or NaN if the governor had no part in it."""
     final: bool
@@ -56,15 +61,18 @@ class LiveFrame:
         spent: tuple[float, float],
         develop_seconds: float,
         *,
+        aim: Target | None,
         final: bool,
         slow: bool,
+        soft: bool,
     ) -> LiveFrame:
         """Of a picture that is done and developed, and took that long to simulate and to render.
 
         Estimating its error costs nothing for the single sample of a moving one.
         """
         started = time.perf_counter()
-        rgb, cut, error = picture.rgb(), picture.cut(), picture.error_estimate()
+        rgb = picture.softened() if soft else picture.rgb()
+        cut, error = picture.cut(), picture.error_estimate()
         return cls(
             rgb=rgb,
             shown=shown,
@@ -75,6 +83,8 @@ class LiveFrame:
             develop_seconds=develop_seconds + time.perf_counter() - started,
             cut=cut,
             error=error,
+            shown_error=picture.shown_error(),
+            rest_error=math.nan if aim is None or aim.error is None else aim.error,
             expected_error=math.nan if plan is None else plan.error,
             final=final,
             slow=slow,
@@ -108,6 +118,8 @@ class LiveFrame:
             error=self._with_light(self.expected_error) if frontier else self.error,
             light_cut=self.light_cut,
             light_error=self.light_error,
+            shown_error=self.shown_error,
+            rest_error=self.rest_error,
             payload=payload,
         ).pack()
 

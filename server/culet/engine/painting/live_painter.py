@@ -10,7 +10,16 @@ from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_sender import FrameSender
 from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, proceed
-from culet.engine.painting.live_picture import NEVER, REST_SAMPLES, LivePicture, Preparing, State
+from culet.engine.painting.live_picture import (
+    FINE_SAMPLES,
+    FINE_SECONDS,
+    FINE_WEIGHT,
+    NEVER,
+    REST_WEIGHT,
+    LivePicture,
+    Preparing,
+    State,
+)
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
 from culet.engine.painting.renderer import ALONE_SECONDS, Renderer
@@ -18,6 +27,7 @@ from culet.engine.painting.shares import Account, Shares
 from culet.engine.session.motion import Motion
 from culet.engine.session.session import Session, Shown
 from culet.errors import CuletError
+from culet.rendering.target import Target
 
 
 class Stepping(Protocol):
@@ -40,6 +50,7 @@ class LivePainter:
         shares: Shares,
         sender: FrameSender,
         stepper: Stepping,
+        rest: Target,
         *,
         share_of: Callable[[LivePicture], float],
         tell_problem: Callable[[Session, CuletError], None],
@@ -47,8 +58,8 @@ class LivePainter:
         tally: Tally,
         clock: Callable[[], float],
     ) -> None:
-        """`share_of` tells the part of the render thread's time that a picture can have; `wake` is called when
-        something that was waited for is there."""
+        """Pictures at rest are refined to `rest`. `share_of` tells the part of the render thread's time that a picture
+        can have; `wake` is called when something that was waited for is there."""
         self._renderer = renderer
         self._thread = thread
         self._shares = shares
@@ -59,6 +70,7 @@ class LivePainter:
         self._tally = tally
         self._now = clock
         self._stepper = stepper
+        self._rest = rest
 
     async def advance(self, live: LivePicture) -> None:
         """The next piece of a frame or of a refinement, begun if need be."""
@@ -111,15 +123,18 @@ class LivePainter:
         return work
 
     def _begin_refinement(self, live: LivePicture) -> None:
-        """As many samples more as the picture has."""
+        """More samples of the picture."""
         picture, shown = live.picture, live.painted
         assert picture is not None  # noqa: S101 - of a picture that wants to be refined
         assert shown is not None  # noqa: S101 - of such a picture too
-        samples = max(1, min(picture.samples, REST_SAMPLES - picture.samples))  # none are left if they were begun anew
+        fine = picture.samples >= FINE_SAMPLES
+        live.rest.weight = FINE_WEIGHT if fine else REST_WEIGHT
         work = FrameWork(
-            Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, samples=samples,
-            final=picture.samples + samples >= REST_SAMPLES, render_seconds=live.render_seconds,
+            Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, aim=self._rest,
+            now=self._now, render_seconds=live.render_seconds,
         )  # fmt: skip
+        if fine and self._share_of(live) < 1:
+            work.piece_seconds = FINE_SECONDS
         work.start(self._renderer)
         live.making = work
 
@@ -127,7 +142,7 @@ class LivePainter:
         """The next piece; what is done is sent."""
         started = self._now()
         try:
-            more = await self._thread.run(work.account, proceed, work.pieces, self._now)
+            more = await self._thread.run(work.account, proceed, work.pieces, self._now, work.hold_seconds)
         except Unprepared:
             live.making = Preparing(asyncio.create_task(self._prepare(live, work)))
             return
@@ -142,11 +157,12 @@ class LivePainter:
             self._tally.counters.refinements += 1
         else:
             self._tally.counters.frames_rendered += 1
+        governor, seconds = live.quality.governor, work.picture.seconds
+        asked = live.frames_per_second, self._share_of(live)
         if work.plan is not None:
-            seconds = work.picture.seconds
-            live.quality.governor.rendered(
-                work.plan, seconds, work.spent - seconds, live.frames_per_second, self._share_of(live)
-            )  # fmt: skip
+            governor.rendered(work.plan, seconds, work.spent - seconds, *asked)
+        elif work.kind is Kind.FULL:
+            governor.rested(work.shown.scene, work.wanted, seconds, *asked)
         self._sender.publish(live.session, live.outgoing, work.frame, work.begun_at)
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:

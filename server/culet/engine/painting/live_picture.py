@@ -20,9 +20,6 @@ from culet_protocol.sizes import LIVE_SIZE
 NATIVE_RATE = 30.0
 """Frames per second for viewers that only subscribe, and cannot say what they take."""
 
-REST_SAMPLES = 16
-"""Samples per pixel of a picture at rest, reached by doubling. More is what stills are for."""
-
 SETTLE_SECONDS = 0.2
 """If the camera or the scene changes again within this time after a picture was drawn, somebody is moving something:
 the picture is governed as a falling stone's is. The picture is drawn in full once this time has passed without a
@@ -34,6 +31,12 @@ REPEAT_SECONDS = 1.0
 
 REST_WEIGHT = 0.25
 """Share of the render thread's time for a picture at rest beside one that moves: it can wait, motion cannot."""
+
+FINE_WEIGHT = 0.05
+"""The same once it has FINE_SAMPLES: what it gains then is hardly seen, and takes long."""
+FINE_SAMPLES = 16
+FINE_SECONDS = 0.005
+"""That a launch then takes beside others' work, which so waits little: a frame of 60 a second has 16 ms in all."""
 
 STALE_SECONDS = 0.25
 """A reduced frame that takes longer is given up for something newer, unless the frame before was given up too."""
@@ -54,7 +57,7 @@ class State(Enum):
     FULL = auto()
     """In full, to be refined."""
     FINAL = auto()
-    """With all its samples."""
+    """As good as pictures at rest become."""
     REFUSED = auto()
     """It could not be rendered."""
 
@@ -241,7 +244,7 @@ class LivePicture:
                 assert_never(work.kind)
 
     def wants_refinement(self) -> bool:
-        """Whether more samples would improve what is seen, and nothing is in their way."""
+        """Whether more samples would improve what is seen, as far as is wanted, and nothing is in their way."""
         idle = self.making is None and not self.outgoing.full
         return self.watched and self.at_rest and self.state is State.FULL and idle
 

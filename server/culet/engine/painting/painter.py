@@ -1,7 +1,7 @@
 """The render loop: live frames, refinements and stills share one render thread.
 
-Nobody watching, nothing rendered; at rest a picture is refined to REST_SAMPLES and then costs nothing but being sent
-again once a second. The loop never waits for anything but one short piece of work of the render thread.
+Nobody watching, nothing rendered; at rest a picture is refined until it is good enough, and then costs nothing but
+being sent again once a second. The loop never waits for anything but one short piece of work of the render thread.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from culet.engine.painting.still_painter import StillPainter
 from culet.engine.session.session import Session
 from culet.engine.session.stepper import Stepper
 from culet.errors import CuletError
+from culet.rendering.target import Target
 from culet.stage import Stage
 
 
@@ -41,12 +42,14 @@ class Painter:
         tell_problem: Callable[[str, CuletError], None],
         encode_still: Callable[[Picture, str], bytes],
         still_seconds: float,
+        rest: Target,
         stepper: Stepping | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`send` puts a frame on the wire, `tell_problem` tells of a session that could not go on; neither waits.
 
-        A still may take `still_seconds` of the render thread. `clock` is a steady one, in seconds.
+        A still may take `still_seconds` of the render thread. Pictures at rest are refined to `rest`. `clock` is
+        a steady one, in seconds.
         """
         self.pictures: dict[str, LivePicture] = {}
         self._renderer = renderer
@@ -60,7 +63,7 @@ class Painter:
         self._sender = FrameSender(send, self._tell_problem, self.wake, tally, clock)
         self._still_painter = StillPainter(stills, renderer, thread, encode_still, still_seconds, tally, clock)
         self._live_painter = LivePainter(
-            renderer, thread, self._shares, self._sender, stepper or Stepper(clock=clock),
+            renderer, thread, self._shares, self._sender, stepper or Stepper(clock=clock), rest,
             share_of=self._share_of, tell_problem=self._tell_problem, wake=self.wake, tally=tally, clock=clock,
         )  # fmt: skip
 

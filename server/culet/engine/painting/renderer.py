@@ -5,7 +5,7 @@ Everything here is called from one thread only, the render thread, unless it say
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
 from culet.rendering.light.effort import Effort
+from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 
@@ -49,11 +50,27 @@ class Picture(Protocol):
     def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
         """Add samples to every pixel, about so many seconds at a time; yields the part that is done, between them."""
 
+    def refine_until(self, target: Target, seconds: float, *, pause: Callable[[], bool] = ...) -> Iterator[float]:
+        """The same until the target is reached; after each sample `pause` is asked whether to leave it at that."""
+
+    def reached(self, target: Target) -> bool:
+        """Whether there is nothing left to do for it: its error is met, or its samples are there."""
+
+    def meets(self, target: Target) -> bool:
+        """Whether it has the error that the target asks for, if it asks for one."""
+
+    def shown_error(self) -> float:
+        """Root mean square error of what is shown, from 0 to 1, that more samples would take away: estimated. NaN below
+        two samples, and without `refine_until`."""
+
     def develop_in_pieces(self) -> Iterator[Any]:
         """Tone-map, yielding between short pieces of work."""
 
     def rgb(self) -> NDArray[np.uint8]:
         """(height, width, 3), tone-mapped; at once if that was done in pieces."""
+
+    def softened(self) -> NDArray[np.uint8]:
+        """The same, filtered: of a single sample a pixel it is nearer to what more would show."""
 
     def cut(self) -> float:
         """Mean weight of what the cut-off dropped."""
@@ -76,6 +93,9 @@ class Renderer(Protocol):
 
     def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> Picture:
         """An empty picture of the stage, with that effort on its light map."""
+
+    def cut_out(self, stage: Stage, width: int, height: int) -> Picture:
+        """The same in front of nothing: with alpha, and twice the work."""
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more. From any thread."""

@@ -10,11 +10,10 @@ from dataclasses import dataclass, field
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account, Shares
 from culet.errors import BusyError
+from culet.rendering.target import Target
+from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.engine import Format
-
-SESSION_STILL_SAMPLES = 16
-"""Samples per pixel, at least, of a still of a session: no worse than the live picture gets at rest."""
 
 STILLS_WEIGHT = 0.5
 """Share of the render thread's time for all stills together beside a picture that moves."""
@@ -33,7 +32,7 @@ class Still:
     stage: Stage
     width: int
     height: int
-    samples: int
+    target: Target
     format: Format
     client: str = ""
     """On whose behalf."""
@@ -46,19 +45,32 @@ class Still:
     """It is only to be encoded, which is no work of the render thread."""
     spent: float = 0.0
     """s of the render thread so far."""
+    out_of_time: bool = False
+    """It is left as it is after the sample under way, though its target is not reached."""
+
+    @property
+    def pictures(self) -> int:
+        """That are made for it."""
+        return pictures_of(self.stage.scene)
 
     @property
     def pixels(self) -> int:
-        """Of the picture."""
-        return self.width * self.height
+        """Of all its pictures."""
+        return self.width * self.height * self.pictures
 
     def paint(self, renderer: Renderer) -> Iterator[object]:
         """Render, yielding between pieces of work. Runs in the render thread."""
-        picture = renderer.picture(self.stage, self.width, self.height)
+        make = renderer.picture if self.pictures == 1 else renderer.cut_out
+        picture = make(self.stage, self.width, self.height)
         self.picture = picture
-        yield from picture.refine_in_pieces(self.samples, PIECE_SECONDS)
+        yield from picture.refine_until(self.target, PIECE_SECONDS, pause=lambda: self.out_of_time)
         if self.format not in LINEAR_FORMATS:
             yield from picture.develop_in_pieces()
+
+
+def pictures_of(scene: Scene) -> int:
+    """That a still of a scene is made of: one without its backdrop of two."""
+    return 2 if scene.film.cut_out else 1
 
 
 class StillQueue:

@@ -62,6 +62,7 @@ class Engine:
             tell_problem=self._tell_problem,
             encode_still=encode,
             still_seconds=limits.still_seconds,
+            rest=limits.rest,
         )
         self._watchdog = Watchdog(render_thread)
         self._orphan_seconds = limits.orphan_seconds

@@ -7,7 +7,12 @@ import math
 from pydantic import ByteSize, Field
 
 from culet.errors import InputError
+from culet.rendering.target import Target
+from culet.scene.film import MOST_SAMPLES
 from culet.settings import Settings
+
+REST_LEAST = 16
+"""Samples per pixel of a picture at rest, whatever its error: what is small in a picture has little part in that."""
 
 
 class Limits(Settings):
@@ -39,6 +44,19 @@ class Limits(Settings):
     still_seconds: float = Field(
         1800, gt=0, description="Time of the render thread for one still, after which it is given up."
     )
+    rest_error: float = Field(
+        0.004,
+        gt=0,
+        le=1,
+        description="A live picture at rest gets better until what is shown, from 0 to 1, is estimated to be off by "
+        "this (root mean square over pixels and colours): by default until no difference is seen.",
+    )
+    rest_samples: int = Field(
+        256,
+        ge=1,
+        le=MOST_SAMPLES,
+        description="Samples of a pixel that a live picture at rest takes at most, whatever its error.",
+    )
     max_live_pixels: int = Field(
         2560 * 1440,
         ge=1,
@@ -68,15 +86,21 @@ class Limits(Settings):
         description="Shown states of a session that can be rendered again; 600 are 10 s of motion at 60 frames/s.",
     )
 
+    @property
+    def rest(self) -> Target:
+        """Of live pictures at rest."""
+        return Target(self.rest_samples, self.rest_error, least=min(REST_LEAST, self.rest_samples))
 
-def check_still_size(width: int, height: int, limits: Limits) -> None:
-    """InputError if it is beyond the limits."""
+
+def check_still_size(width: int, height: int, limits: Limits, *, pictures: int = 1) -> None:
+    """InputError if it is beyond the limits. A still without its backdrop is made of two `pictures`, held at once."""
     for field, pixels in (("width", width), ("height", height)):
         if not 1 <= pixels <= limits.max_still_edge:
             raise InputError(f"{field}: expected 1 to {limits.max_still_edge} pixels, got {pixels}", field)
-    if width * height > limits.max_still_pixels:
+    if width * height * pictures > limits.max_still_pixels:
+        twice = " of a picture without its backdrop" if pictures > 1 else ""
         raise InputError(
-            f"width: expected at most {limits.max_still_pixels} pixels in all, "
+            f"width: expected at most {limits.max_still_pixels // pictures} pixels in all{twice}, "
             f"got {width} x {height} = {width * height}",
             "width",
         )
@@ -91,6 +115,11 @@ def check_still_work(width: int, height: int, samples: int, bands: int, limits: 
             f"got {width} x {height} x {samples} x {bands} = {work:.3g}; ask for less of each",
             "samples",
         )
+
+
+def most_samples(width: int, height: int, bands: int, limits: Limits) -> int:
+    """That one still may have."""
+    return min(MOST_SAMPLES, int(limits.max_still_work / (width * height * bands)))
 
 
 def live_size(width: int, height: int, limits: Limits) -> tuple[int, int]:

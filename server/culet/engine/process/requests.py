@@ -27,7 +27,19 @@ from culet.stage import Library
 from culet_protocol import engine as protocol
 
 LONG_EVENTS = frozenset(
-    {"patch_scene", "set_scene", "toggle_fall", "reset_stone", "toggle_walls", "push", "undo", "redo"}
+    {
+        "patch_scene",
+        "set_scene",
+        "toggle_fall",
+        "reset_stone",
+        "toggle_walls",
+        "push",
+        "move_stone",
+        "drag_stone",
+        "turn_stone",
+        "undo",
+        "redo",
+    }
 )
 """They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
 
@@ -76,6 +88,9 @@ class Requests:
                 return {}, None
             case protocol.GetSession():
                 return await described(self.sessions.get(request.session)), None
+            case protocol.GetScene():
+                past = self.sessions.get(request.session).session.recall(request.step)
+                return {"step": past.step, "scene": past.scene.model_dump(mode="json")}, None
             case protocol.ListSessions():
                 clients = [
                     await described(live) | {"client": self.sessions.client(live)} for live in list(self.sessions)

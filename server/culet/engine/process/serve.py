@@ -70,11 +70,11 @@ def open_renderer() -> Renderer:
     """
     import culet.rendering.files  # so that the first still needs not wait for it  # noqa: F401
     from culet.rendering import kernel_cache
-    from culet.rendering.renderer import Renderer as OpenClRenderer
+    from culet.rendering.cut_out import CuttingRenderer
 
     if not kernel_cache.has_plenty_of_room() and (fault := kernel_cache.complaint()):
         log.error("%s", fault)  # said first: the compiler may end this process
-    renderer = OpenClRenderer(background_compile=True)
+    renderer = CuttingRenderer(background_compile=True)
     try:
         renderer.prepare()
     except CuletError as error:  # what needs these programs says so itself, and other work goes on
@@ -88,7 +88,7 @@ def encode_still(picture: Picture, file_format: str) -> bytes:
     from culet.rendering.renderer import Picture as OpenClPicture
 
     assert isinstance(picture, OpenClPicture)  # noqa: S101 - made by `open_renderer`
-    return encode(picture, file_format)
+    return encode(file_format, picture.rgb, picture.linear)
 
 
 async def serve(

@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.still import SESSION_STILL_SAMPLES, Still, StillQueue
-from culet.engine.process.limits import Limits, check_still_size, check_still_work
+from culet.engine.painting.still import Still, StillQueue, pictures_of
+from culet.engine.process.limits import Limits, check_still_size, check_still_work, most_samples
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.picture_memory import picture_bytes
 from culet.engine.session import events
 from culet.errors import InputError
+from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Library, Stage
 from culet_protocol.engine import Render
 from culet_protocol.sizes import STILL_SIZE
+
+
+def quality(still: Still) -> dict[str, Any]:
+    """What a still that is done has reached: samples, error if that is known, and whether an error asked for is met."""
+    picture, target = still.picture, still.target
+    assert picture is not None  # noqa: S101 - it is done
+    error = picture.shown_error()
+    met = None if target.error is None else picture.meets(target)
+    return {"samples": picture.samples, "error": None if math.isnan(error) else error, "met": met}
 
 
 class StillRequests:
@@ -53,16 +65,28 @@ class StillRequests:
         scene = stage.scene
         width = default_size[0] if request.width is None else request.width
         height = default_size[1] if request.height is None else request.height
-        check_still_size(width, height, self._limits)
-        samples = scene.sampling.samples_per_pixel
-        if request.session is not None:
-            samples = max(samples, SESSION_STILL_SAMPLES)
-        check_still_work(width, height, samples, scene.optics.bands, self._limits)
-        still = Still(stage, width, height, samples, request.format, request.client, time.monotonic())
+        check_still_size(width, height, self._limits, pictures=pictures_of(scene))
+        target = self._target(request, scene, width, height)
+        still = Still(stage, width, height, target, request.format, request.client, time.monotonic())
         await self._painter.make_ready(stage)
         self._make_room_for(still)
         data = await self._painted(still)
-        return {"width": width, "height": height, "samples": samples, "step": step, "format": request.format}, data
+        reached = {"width": width, "height": height, "step": step, "format": request.format, **quality(still)}
+        return reached, data
+
+    def _target(self, request: Render, scene: Scene, width: int, height: int) -> Target:
+        """What is asked for, of a session by default what it has at rest. InputError if it is too much work."""
+        if request.session is not None and request.samples is None and request.error is None:
+            rest, own = self._limits.rest, scene.sampling.samples_per_pixel
+            target = replace(rest, samples=max(rest.samples, own), least=max(rest.least, own))
+        else:
+            target = Target.of(request.samples, request.error, scene)
+        bands = scene.optics.bands * pictures_of(scene)
+        if target.error is None or request.samples is not None:
+            check_still_work(width, height, target.samples, bands, self._limits)
+            return target
+        check_still_work(width, height, target.least, bands, self._limits)
+        return replace(target, samples=min(target.samples, most_samples(width, height, bands, self._limits)))
 
     async def _painted(self, still: Still) -> bytes:
         self._queue.put(still)
@@ -89,8 +113,8 @@ class StillRequests:
         """BusyError if it does not fit besides what is held and what waits, of which no more pixels are begun at a time
         than a largest still has."""
         waiting = [other for other in self._awaited if other.picture is None]
-        needed = sum(picture_bytes(other.width, other.height) for other in (*waiting, still))
+        needed = sum(picture_bytes(other.pixels, 1) for other in (*waiting, still))
         most = picture_bytes(self._limits.max_still_pixels, 1)
-        needed = max(picture_bytes(still.width, still.height), min(needed, most))
+        needed = max(picture_bytes(still.pixels, 1), min(needed, most))
         with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
             pass

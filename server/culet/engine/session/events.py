@@ -7,7 +7,9 @@ from typing import Any, Literal, assert_never
 from pydantic import ValidationError
 
 from culet.engine.session import viewpoint
+from culet.engine.session.clearance import entered, stepped_back, stopped
 from culet.engine.session.edits import Edit, Moment, paths_of
+from culet.engine.session.hand import by_hand
 from culet.engine.session.history import Past
 from culet.engine.session.picking import placed
 from culet.engine.session.session import Session
@@ -42,6 +44,8 @@ def _edited_by(event: SessionEvent) -> str | None:
             return None if event.target == "camera" else event.target
         case messages.PatchScene():
             return None if event.patch.keys() == {"camera"} else paths_of(event.patch)
+        case messages.MoveStone() | messages.DragStone() | messages.TurnStone():
+            return f"hand {event.stone}"
         case messages.ToggleMirror() | messages.ToggleEnvironment() | messages.ToggleWalls() | messages.SetScene():
             return ""
         case messages.ResetCamera() | messages.LookAtStone() | messages.Balance() | messages.Undo() | messages.Redo():
@@ -66,6 +70,8 @@ def _apply(session: Session, event: SessionEvent, library: Library) -> None:
             session.reset_stone(event.stone)
         case messages.Push():
             session.push(event.x, event.y, event.right, event.up)
+        case messages.MoveStone() | messages.DragStone() | messages.TurnStone():
+            by_hand(session, event)
         case messages.ToggleMirror():
             session.change(session.stage.showing(_with_mirror_toggled(session.scene)))
         case messages.ToggleEnvironment():
@@ -131,7 +137,7 @@ def _go(session: Session, edit: Edit, here: Moment, there: Moment, library: Libr
 def _move(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> None:
     try:
         if event.target == "camera":
-            scene = session.scene.model_copy(update={"camera": _moved_camera(session.scene.camera, event)})
+            scene = session.scene.model_copy(update={"camera": _moved_camera(session, event)})
         else:
             scene = _with_light_moved(session.scene, event, event.target)
     except ValidationError as error:
@@ -143,12 +149,15 @@ def _move(session: Session, event: messages.Orbit | messages.Translate | message
 
 def _look_at_stone(session: Session, name: str | None = None) -> None:
     """Look at the stone of that id, or at all stones."""
-    stones = [stone for stone in placed(session.shown.stage) if name in (None, stone.name)]
+    there = placed(session.shown.stage)
+    stones = [stone for stone in there if name in (None, stone.name)]
     if not stones:
         raise _no_stone(session.scene, name, "there is nothing to look at")
     centre, radius = viewpoint.ball_about([(stone.position, stone.scale) for stone in stones])
     try:
-        scene = session.scene.model_copy(update={"camera": viewpoint.look_at(session.scene.camera, centre, radius)})
+        looking = viewpoint.look_at(session.scene.camera, centre, radius)
+        camera = stepped_back(session.scene.camera, looking, there)
+        scene = session.scene.model_copy(update={"camera": camera})
     except ValidationError as error:
         raise InputError(f"the stone is beyond where a camera can be: {error.errors()[0]['msg']}") from error
     session.change(session.stage.showing(scene))
@@ -162,14 +171,16 @@ def _no_stone(scene: Scene, name: str | None, consequence: str) -> InputError:
     return InputError(f"stone: expected the id of a stone ({ids}), got {name!r}", "stone")
 
 
-def _moved_camera(camera: Camera, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:
+def _moved_camera(session: Session, event: messages.Orbit | messages.Translate | messages.Dolly) -> Camera:
+    """The session's camera, moved, but into no stone."""
+    camera, stones = session.scene.camera, placed(session.shown.stage)
     match event:
         case messages.Orbit():
-            return viewpoint.orbit(camera, event.yaw, event.pitch)
+            return stepped_back(camera, viewpoint.orbit(camera, event.yaw, event.pitch), stones)
         case messages.Translate():
-            return viewpoint.translate(camera, event.right, event.up)
+            return stopped(camera, viewpoint.translate(camera, event.right, event.up), stones)
         case messages.Dolly():
-            return viewpoint.dolly(camera, event.forward)
+            return stopped(camera, viewpoint.dolly(camera, event.forward), stones)
         case _:
             assert_never(event)
 
@@ -237,5 +248,26 @@ def _patch(session: Session, patch: dict[str, Any], library: Library) -> None:
         at_home = document | {"camera": home.model_dump(mode="json")}
         home = read_patched(at_home, patch).camera
     stage = put_down(Stage.of(after, library, before=known_to(session)), session.stage)
+    _check_camera(session, stage)
     sky = None if after.environment == before.environment else own_sky(stage.sky)
     session.change(stage.showing(sharing(stage.scene, before)), home=home, sky=sky)
+
+
+def _check_camera(session: Session, stage: Stage) -> None:
+    """InputError if the camera of a stage is put into a stone: where that is now, or is put."""
+    before, camera = session.scene.camera, stage.scene.camera
+    if camera.kind != "pinhole" or camera.position == before.position:
+        return
+    starts, seen = ({stone.id: stone for stone in scene.stones} for scene in (session.scene, session.shown.scene))
+    poses = []
+    for stone in stage.scene.stones:
+        old = starts.get(stone.id)
+        stays = old is not None and (old.position, old.orientation) == (stone.position, stone.orientation)
+        now = seen[stone.id] if stays else stone
+        poses.append((now.position, now.orientation))
+    name = entered(before.position, camera.position, placed(stage.posed(poses)))
+    if name is not None:
+        raise InputError(
+            f"camera.position: expected a place outside of the stones, got {camera.position}, inside of {name!r}",
+            "camera.position",
+        )

@@ -11,77 +11,23 @@ import contextlib
 import math
 import threading
 from collections.abc import AsyncIterator, Callable, Mapping
-from dataclasses import dataclass
 from time import thread_time
 from typing import Any, Literal
 
+from culet.engine.session.following import adapt, in_order, moved_by, same_form
+from culet.engine.session.instants import Instant, Lease, Seen
 from culet.engine.session.snapshot import LARGEST_FRACTION
 from culet.errors import CuletError, InputError
-from culet.scene.fields import Pose
 from culet.simulation import Allowance, FixedStepClock, Pace
-from culet.simulation.bodies import Body, BodyState, WorldState
+from culet.simulation.bodies import Body, BodyState
 from culet.simulation.clock import MAX_CATCH_UP
 from culet.simulation.staged import bodies_of, world_of
 from culet.simulation.state import Triple
-from culet.simulation.surfaces import surfaces_of
 from culet.simulation.world import World, between
 from culet.stage import Stage
 
 LATE = 1e-3
 """Time steps after a step is due, when it is taken: however the sums of times are rounded, it is due by then."""
-
-
-@dataclass(frozen=True, eq=False)
-class Lease:
-    """That somebody looks on, and so time goes on."""
-
-    since: float
-    """s, steady clock: when the first one looked on after a pause."""
-    until: float
-    """s, steady clock: as long as one look keeps time going."""
-    lost: float
-    """s since then, during which nobody looked on: they are not made up for."""
-    share: float
-    """Of the time that a session can have beside others."""
-
-
-@dataclass(frozen=True, eq=False)
-class Instant:
-    """The latest states, and where between them time was when they were written down."""
-
-    names: tuple[str, ...]
-    """Of the stones, in the order of the states."""
-    previous: WorldState
-    state: WorldState
-    settled: bool
-    """All stones sleep in both."""
-    fraction: float
-    """From the previous state (0) to the later one (1)."""
-    time_step: float
-    """s"""
-    at: float
-    """s, steady clock, without what was lost: when the fraction was that."""
-    lease: Lease | None
-    """By which time goes on from there; None if it stands."""
-
-    def fraction_at(self, now: float, lease: Lease | None) -> float:
-        """Where between the states time is at `now`, by the lease that holds then; time waits at the later state."""
-        if self.lease is None or lease is None or self.lease.since != lease.since:
-            return self.fraction
-        ahead = min(now, lease.until) - lease.lost - self.at
-        return self.fraction if ahead <= 0 else min(self.fraction + ahead / self.time_step, 1.0)
-
-
-@dataclass(frozen=True)
-class Seen:
-    """Where the stones are at a time."""
-
-    poses: Mapping[str, Pose]
-    """By the ids of the stones."""
-    time: float
-    """s of simulation."""
-    moving: bool
-    """Whether time would change the poses."""
 
 
 class Motion:
@@ -121,7 +67,7 @@ class Motion:
         self.clock = _clock(self.clock.time_step, fraction)
         self.falling = falling and bool(self.world.bodies)
         if snapshot is not None:
-            self.world = _in_order(self.world, snapshot.get("stones"))
+            self.world = in_order(self.world, snapshot.get("stones"))
             self.world.restore(snapshot)
         self._write_down()
 
@@ -206,12 +152,12 @@ class Motion:
         has another start, shape or scale. If no stone goes on with the shape that it had, all of them begin anew.
         InputError, and nothing changed, if the stones cannot be so.
         """
-        if not states and _moved_by(stage) == _moved_by(self._stage):
+        if not states and moved_by(stage) == moved_by(self._stage):
             self._stage = stage
             return
         bodies = {body.name: body for body in bodies_of(stage)}
         given = {name: state for name, state in (states or {}).items() if name in bodies}
-        if any(body.name in bodies and _same_form(body, bodies[body.name]) for body in self.world.bodies):
+        if any(body.name in bodies and same_form(body, bodies[body.name]) for body in self.world.bodies):
             self._adapt(stage, bodies, given)
         else:
             self.replace(stage)
@@ -235,6 +181,14 @@ class Motion:
         """Put all stones, or one, back to where they started, and stop them; InputError without that stone."""
         self.world.reset(name)
         if name is not None and self.moving and len(self.world.bodies) > 1:
+            self.world.hold(name, held=True)
+            self._stop_if_all_are_held()
+        else:
+            self.stop()
+
+    def hold_still(self, name: str) -> None:
+        """Keep a stone that was put somewhere there: time goes on for others, and stops where there are none."""
+        if self.falling and len(self.world.bodies) > 1:
             self.world.hold(name, held=True)
             self._stop_if_all_are_held()
         else:
@@ -364,40 +318,18 @@ class Motion:
         self._write_down()
 
     def _adapt(self, stage: Stage, wanted: Mapping[str, Body], states: Mapping[str, BodyState]) -> None:
+        """As `following.adapt`; whatever goes wrong, the world is as it was."""
         world, saved = self.world, self.world.snapshot()
         bodies, surfaces, law = world.bodies, world.surfaces, world.law
-        kept = [body for body in bodies if body.name in wanted and body.name not in states]
-        anew = [body.name for body in kept if _begins_anew(body, wanted[body.name])]
         try:
-            world.adjust(stage.scene.simulation)
-            world.surround(surfaces_of(stage.scene))
-            for gone in [body.name for body in bodies if body.name not in wanted]:
-                world.remove(gone)
-            for body in wanted.values():
-                self._fit(body, states.get(body.name))
-            if len(anew) == len(wanted):
-                world.reset()
+            if adapt(world, stage, wanted, states):
                 self.pause()
                 self.clock.restart()
-            else:
-                for name in anew:
-                    world.reset(name)
         except Exception:
             self.world = World(bodies, surfaces, law)
             self.world.restore(saved)
             self._write_down()
             raise
-
-    def _fit(self, body: Body, state: BodyState | None) -> None:
-        """Make a stone of the world what it is to be, or add it; in that state, if one is given."""
-        old = next((each for each in self.world.bodies if each.name == body.name), None)
-        if old is None:
-            self.world.add(body, state)
-            return
-        if not old.like(body) or _begins_anew(old, body):
-            self.world.change(body)
-        if state is not None:
-            self.world.put(body.name, state)
 
     def _toggle_one(self, name: str) -> None:
         world = self.world
@@ -478,30 +410,6 @@ class Motion:
             at=0.0 if self._advanced_at is None else self._advanced_at,
             lease=self._lease,
         )
-
-
-def _moved_by(stage: Stage) -> object:
-    """What motion depends on."""
-    scene = stage.scene
-    return scene.stones, stage.shapes, scene.simulation, surfaces_of(scene), scene.millimetres
-
-
-def _same_form(one: Body, other: Body) -> bool:
-    return one.shape is other.shape and one.scale == other.scale
-
-
-def _begins_anew(old: Body, new: Body) -> bool:
-    """Whether a stone is to be put to its start."""
-    starts = [(body.position, body.orientation, body.velocity, body.spin) for body in (old, new)]
-    return starts[0] != starts[1] or not _same_form(old, new)
-
-
-def _in_order(world: World, names: object) -> World:
-    """The same bodies in the order of a snapshot's, if those are the same."""
-    bodies = {body.name: body for body in world.bodies}
-    if not isinstance(names, list) or sorted(map(str, names)) != sorted(bodies) or list(bodies) == names:
-        return world
-    return World([bodies[name] for name in names], world.surfaces, world.law)
 
 
 def _clock(time_step: float, fraction: float = 0.0) -> FixedStepClock:

@@ -80,6 +80,23 @@ def struck(camera: Camera, stones: Iterable[Placed], x: float, y: float) -> Stru
     return Struck(found, (float(hit[0]), float(hit[1]), float(hit[2])))
 
 
+def spans_inside(eye: Array, way: Array, stone: Placed) -> list[tuple[float, float]]:
+    """Where a line through `eye` along `way` (of length 1) is in a stone: R from the eye to where it enters and leaves,
+    negative behind the eye. One span of a convex stone, and any number of another."""
+    offset = eye - np.array(stone.position, float)
+    along = float(offset @ way)
+    if float(offset @ offset) - along * along > stone.scale**2:  # the line passes by the ball about the stone
+        return []
+    start, turned = (np.array(rotate_back(stone.orientation, (v[0], v[1], v[2]))) for v in (offset / stone.scale, way))
+    shape = stone.shape
+    if shape.convex:
+        enter, leave = _through_planes(start, turned, shape.planes)
+        spans = [(enter, leave)] if enter < leave else []
+    else:
+        spans = _through_triangles(start, turned, shape)
+    return [(enter * stone.scale, leave * stone.scale) for enter, leave in spans]
+
+
 def _line_of_sight(camera: Camera, x: float, y: float) -> tuple[Array, Array]:
     """A point of it (R), and its direction (of length 1), both in the world."""
     right, up, forward = axes(camera)
@@ -98,36 +115,54 @@ def _distance(eye: Array, sight: Array, stone: Placed, behind: float) -> float:
         return math.inf
     start, way = (np.array(rotate_back(stone.orientation, (v[0], v[1], v[2]))) for v in (offset / stone.scale, sight))
     shape = stone.shape
-    distance = _into_planes(start, way, shape.planes) if shape.convex else _into_triangles(start, way, shape, behind)
-    return distance * stone.scale
+    if shape.convex:
+        enter, leave = _through_planes(start, way, shape.planes)
+        return math.inf if enter > leave else enter * stone.scale
+    distances, entering = _at_triangles(start, way, shape)
+    return float(distances[entering & (distances > behind)].min(initial=math.inf)) * stone.scale
 
 
-def _into_planes(start: Array, way: Array, planes: Array) -> float:
-    """Along a line to where it enters the intersection of half-spaces; the slab method (Kay and Kajiya 1986)."""
+def _through_planes(start: Array, way: Array, planes: Array) -> tuple[float, float]:
+    """Along a line to where it enters and leaves the intersection of half-spaces, which the line misses if it leaves
+    before it enters; the slab method (Kay and Kajiya 1986)."""
     towards, room = planes[:, :3] @ way, planes[:, 3] - planes[:, :3] @ start
     if (room[towards == 0] < 0).any():
-        return math.inf
+        return math.inf, -math.inf
     crossings, entering = room[towards != 0] / towards[towards != 0], towards[towards != 0] < 0
-    distance = float(crossings[entering].max(initial=-math.inf))
-    return math.inf if distance > float(crossings[~entering].min(initial=math.inf)) else distance
+    return float(crossings[entering].max(initial=-math.inf)), float(crossings[~entering].min(initial=math.inf))
 
 
-def _into_triangles(start: Array, way: Array, shape: Shape, behind: float) -> float:
-    """Along a line to the first triangle beyond `behind` that it meets from outside (Moeller and Trumbore 1997); a line
-    through an edge meets the triangles on both of its sides."""
+def _through_triangles(start: Array, way: Array, shape: Shape) -> list[tuple[float, float]]:
+    """The spans of a line that are in a closed surface: each from a triangle met from outside to the next one met from
+    inside."""
+    distances, entering = _at_triangles(start, way, shape)
+    spans: list[tuple[float, float]] = []
+    since: float | None = None
+    for distance, enters in sorted(zip(distances.tolist(), entering.tolist(), strict=True)):
+        if enters and since is None:
+            since = distance
+        elif not enters and since is not None:
+            spans.append((since, distance))
+            since = None
+    return spans
+
+
+def _at_triangles(start: Array, way: Array, shape: Shape) -> tuple[Array, NDArray[np.bool_]]:
+    """Along a line to each triangle that it meets (Moeller and Trumbore 1997), and whether it meets it from outside; a
+    line through an edge meets the triangles on both of its sides."""
     corners = shape.vertices[shape.triangles[_about(start, way, shape)]]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     across = np.cross(way, second)
     facing = np.einsum("ij,ij->i", first, across)
-    entering = facing > 0
-    first, second, across, facing = first[entering], second[entering], across[entering], facing[entering]
-    offset = start - corners[entering, 0]
+    crossed = facing != 0
+    first, second, across, facing = first[crossed], second[crossed], across[crossed], facing[crossed]
+    offset = start - corners[crossed, 0]
     u = np.einsum("ij,ij->i", offset, across) / facing
     beside = np.cross(offset, first)
     v = beside @ way / facing
     distances = np.einsum("ij,ij->i", second, beside) / facing
-    met = (u >= 0) & (v >= 0) & (u + v <= 1) & (distances > behind)
-    return float(distances[met].min(initial=math.inf))
+    met = (u >= 0) & (v >= 0) & (u + v <= 1)
+    return distances[met], facing[met] > 0
 
 
 def _about(start: Array, way: Array, shape: Shape) -> NDArray[np.bool_]:

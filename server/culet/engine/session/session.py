@@ -14,14 +14,16 @@ from typing import Any
 
 from culet.engine.session.edits import Edits, Moment
 from culet.engine.session.history import History, Past
-from culet.engine.session.motion import Motion, Seen
+from culet.engine.session.instants import Seen
+from culet.engine.session.motion import Motion
 from culet.engine.session.news import News
 from culet.engine.session.picking import placed, struck
 from culet.engine.session.removals import Removals
 from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
-from culet.scene import Camera, Scene
+from culet.scene import Camera, Scene, StoneSettings
+from culet.scene.fields import Pose
 from culet.simulation.bodies import BodyState
 from culet.stage import Sky, Stage
 from culet_protocol.engine import SessionChange, SessionMotion
@@ -183,6 +185,19 @@ class Session:
         right_axis, up_axis, _ = axes(self.scene.camera)
         a, b, c = (right * right_axis + up * up_axis).tolist()
         self.motion.push(met.name, met.point, (a, b, c))
+        self._show()
+
+    def place(self, name: str, pose: Pose) -> None:
+        """Put a stone at rest where it starts from now on: the others go on. pydantic's ValidationError if that is
+        beyond the range of coordinates."""
+        position, orientation = pose
+        there = {"position": position, "orientation": orientation}
+        stones = tuple(
+            StoneSettings.model_validate({**stone.model_dump(), **there}) if stone.id == name else stone
+            for stone in self.scene.stones
+        )
+        self.change(self.stage.showing(self.scene.model_copy(update={"stones": stones})))
+        self.motion.hold_still(name)
         self._show()
 
     def reset_stone(self, name: str | None = None) -> None:

@@ -19,10 +19,12 @@ from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import Effort
 from culet.rendering.light.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
+from culet.rendering.light.panorama_light import is_summed, panorama_light
 from culet.rendering.light.photons import PhotonMaps, Photons
 from culet.rendering.light.ray import Ray
 from culet.rendering.light.solids import FEW, takes_beams
 from culet.rendering.light.sources import mapped_surfaces, rays_of
+from culet.rendering.surfaces import shown
 from culet.stage import Stage
 
 KEPT = 4
@@ -100,7 +102,9 @@ class Lighting:
         return known
 
     def is_ready(self, stage: Stage) -> bool:
-        """Whether a map can be begun without waiting for a compiler."""
+        """Whether a picture's light can be had without waiting for a compiler, or for a panorama's sum."""
+        if stage.panorama is not None and shown(stage.scene) and not is_summed(stage.panorama):
+            return False
         if not mapped_surfaces(stage):
             return True
         return beams_of(stage) in self._warm if takes_only_beams(stage) else self.photons.is_ready(stage)
@@ -108,6 +112,8 @@ class Lighting:
     def make_ready(self, stage: Stage) -> None:
         """Have the programs that are needed compiled, in any thread: by a pass of next to no light in a queue of its
         own, since machine code is made at the first launch."""
+        if stage.panorama is not None and shown(stage.scene):
+            panorama_light(stage.panorama)
         if self.is_ready(stage):
             return
         device = replace(self.device, queue=cl.CommandQueue(self.device.context))
@@ -207,7 +213,15 @@ class Illumination:
         """Estimates of a single pass's variance, of weight 1."""
         self._before: NDArray[np.float32] | None = None
         self._photons: PhotonMaps | None = None
-        self._brightness = max(_whole(rays_of(stage, 0)), default=0.0)
+        rays = rays_of(stage, 0)
+        self._brightness = max(_whole(rays), default=0.0)
+        self._by_beams = takes_only_beams(stage)
+        self._random = is_spectral(stage.scene) or not self._by_beams or any(ray.position is None for ray in rays)
+        """Whether passes differ in more than their cut-offs."""
+        shadows = len(rays) * len(stage.scene.stones) * len(bound.frame.matte)
+        fewer = min(max(FEWEST_PASSES, SHADOWS // max(1, shadows)), MOST_PASSES)
+        self._most_passes = fewer if self._by_beams else PHOTON_PASSES
+        """A count, and not a time: the same scene gives the same picture."""
 
     @property
     def rmse(self) -> float:
@@ -230,24 +244,6 @@ class Illumination:
         settled = self.passes > 0 and (not self._random or len(self._spread) > 1)
         return self.passes >= self._most_passes or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
 
-    @property
-    def _most_passes(self) -> int:
-        """A count, and not a time: the same scene gives the same picture."""
-        if not takes_only_beams(self.stage):
-            return PHOTON_PASSES
-        shadows = len(rays_of(self.stage, 0)) * len(self.stage.scene.stones) * len(self.bound.frame.matte)
-        return min(max(FEWEST_PASSES, SHADOWS // max(1, shadows)), MOST_PASSES)
-
-    @property
-    def _random(self) -> bool:
-        """Whether passes differ in more than their cut-offs."""
-        scene = self.stage.scene
-        return (
-            is_spectral(scene)
-            or not takes_only_beams(self.stage)
-            or any(ray.position is None for ray in rays_of(self.stage, 0))
-        )
-
     def pieces(self, cutoff: float, effort: Effort, seconds: float, *, first: bool = False) -> Iterator[object]:
         """Make the map as good as is fitting, in launches of about so many seconds; yields between them.
 
@@ -269,7 +265,7 @@ class Illumination:
         while not self.good_enough:
             least = LEAST_CUTOFF
             if self._random:
-                falls = min(1.0, FEW_PASSES / max(1, self.passes)) if takes_only_beams(self.stage) else 1.0
+                falls = min(1.0, FEW_PASSES / max(1, self.passes)) if self._by_beams else 1.0
                 least = max(least, RANDOM_CUTOFF * falls)
             if not self._random and self.cutoff <= least:
                 return
@@ -296,7 +292,7 @@ class Illumination:
         number, started, scene = self.passes, time.perf_counter(), self.stage.scene
         rays = rays_of(self.stage, number)
         follows = scene.optics.caustics == "on"
-        if takes_only_beams(self.stage):
+        if self._by_beams:
             weight = cutoff**-0.5  # the error that lamps' directions make does not fall with the cut-off
             before, keep, gain = self._weigh(weight, anew=not self._random)
             beams = self._of.take_beams()

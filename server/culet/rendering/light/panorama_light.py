@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from culet.optics.panoramas import Panorama, check_panorama
 from culet.rendering.light.lamp_field import ALL, normals
@@ -68,15 +67,26 @@ def turned(vectors: Array, turn: float) -> Array:
 _KNOWN: dict[int, tuple[weakref.ref[Panorama], PanoramaLight]] = {}
 
 
+def _kept(pixels: Panorama) -> PanoramaLight | None:
+    found = None if pixels.flags.writeable else _KNOWN.get(id(pixels))
+    return found[1] if found is not None and found[0]() is pixels else None
+
+
+def is_summed(pixels: Panorama) -> bool:
+    """Whether `panorama_light` takes no time. One that can be written to is summed at every call: nothing can be made
+    ready."""
+    return pixels.flags.writeable or _kept(pixels) is not None
+
+
 def panorama_light(pixels: Panorama) -> PanoramaLight:
-    """Of a panorama; made once for one that nobody can write to. InputError if it is none."""
-    key = id(pixels)
-    if not pixels.flags.writeable and (known := _KNOWN.get(key)) is not None and known[0]() is pixels:
-        return known[1]
+    """Of a panorama; made once for one that nobody can write to, which takes a second. InputError if it is none."""
+    if (known := _kept(pixels)) is not None:
+        return known
     check_panorama(pixels)
     moments = _moments(pixels)
     found = PanoramaLight(moments, len(moments) // ROWS, _spots(pixels))
     if not pixels.flags.writeable:
+        key = id(pixels)
         _KNOWN[key] = weakref.ref(pixels, lambda _: _KNOWN.pop(key, None)), found
     return found
 
@@ -137,6 +147,8 @@ def _moments(pixels: Panorama) -> Array:
 
 
 def _spots(pixels: Panorama) -> tuple[RoundLamp, ...]:
+    from scipy import ndimage  # few scenes need it, and importing it takes 50 ms
+
     height, width = pixels.shape[:2]
     grey = pixels.mean(axis=-1, dtype=np.float32)
     solid_angle = _solid_angles(height, width)

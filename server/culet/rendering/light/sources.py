@@ -106,6 +106,8 @@ def sources_of(stage: Stage) -> tuple[Source, ...]:
     if not surfaces or not stage.shapes or scene.optics.estimator == "classic":
         return ()
     matte = scene.floor.kind == "matte" or scene.walls.kind == "matte"
+    if not matte and not isinstance(scene.floor, StudioFloor):
+        return ()
     found = [
         Source(number, emitter, surfaces)
         for number, emitter in enumerate(scene.emitters)

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CULET_INTERFACE 1       /* changes whenever a structure or a function of this file does */
+#define CULET_INTERFACE 2       /* changes whenever a structure or a function of this file does */
 
 #define CULET_MAX_VERTICES 1024 /* of a hull: bounds the work and the memory of one pair */
 #define CULET_MAX_SURFACES 16
@@ -94,7 +94,7 @@ CULET_API void culet_world_save(const CuletWorld *world, void *bytes);
 CULET_API int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t size);
 
 /* Signed distance of two bodies along the best of all axes: negative is the depth by which they overlap, exactly. Above
- * `enough` a lower bound. */
-CULET_API double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough);
+ * `enough` a lower bound. `axis` becomes that axis, of length 1, in the world, from the one towards the other. */
+CULET_API double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough, double axis[3]);
 
 #endif

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_size_t, c_void_p
 
-VERSION = 1
+VERSION = 2
 """CULET_INTERFACE."""
 MAX_VERTICES = 1024
 MAX_SURFACES = 16
@@ -98,7 +98,7 @@ _FUNCTIONS: dict[str, tuple[object, tuple[object, ...]]] = {
     "culet_world_size": (c_size_t, (c_void_p,)),
     "culet_world_save": (None, (c_void_p, c_void_p)),
     "culet_world_load": (c_int32, (c_void_p, c_void_p, c_size_t)),
-    "culet_world_separation": (c_double, (c_void_p, c_int32, c_int32, c_double)),
+    "culet_world_separation": (c_double, (c_void_p, c_int32, c_int32, c_double, Doubles)),
 }
 
 

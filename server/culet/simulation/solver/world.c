@@ -229,10 +229,13 @@ void culet_world_touches(const CuletWorld *world, CuletTouch *touches) {
   }
 }
 
-double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough) {
+double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough, double axis[3]) {
   const Body *a = &world->bodies[one], *b = &world->bodies[other];
   Mat3 turn;
   Vec3 offset;
   pair_pose(a, b, &turn, &offset);
-  return separation(&a->hull, &b->hull, &turn, offset, enough, world->room).distance;
+  Axis best = separation(&a->hull, &b->hull, &turn, offset, enough, world->room);
+  Vec3 along = times(&a->axes, best.normal);
+  axis[0] = along.x, axis[1] = along.y, axis[2] = along.z;
+  return best.distance;
 }

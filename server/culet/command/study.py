@@ -14,17 +14,19 @@ import typer
 from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
 from culet.command.places import opened
 from culet.command.stage import read_stage
-from culet.command.terminal import errors_in_one_line, report_console
-from culet.errors import InputError, SceneError
+from culet.command.terminal import errors_in_one_line, progress_bar, report_console
+from culet.errors import SceneError
+from culet.scene.film import MOST_SAMPLES
 
 if TYPE_CHECKING:
-    from culet.stage import Stage
     from culet.study.comparison import Difference
+    from culet.study.measuring import Study
     from culet.study.report import Report
-    from culet.study.studies import Effort
 
-study_app = typer.Typer(
-    help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.", no_args_is_help=True
+app = typer.Typer(
+    help="Measure what each approximation costs and what it saves; reports as HTML, JSON and CSV.",
+    no_args_is_help=True,
+    add_completion=False,
 )
 
 Out = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the report; made if missing.")]
@@ -39,7 +41,7 @@ SHOWN_RATIOS = 20
 """Of a comparison: those that changed most."""
 
 
-@study_app.command()
+@app.command()
 def rendering(
     scene: SceneFile = None,
     out: Out = Path("report/rendering"),
@@ -55,14 +57,10 @@ def rendering(
 
     Stopped with Ctrl-C it goes on where it was when it is started again.
     """
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_rendering
-
-        stage, effort = _with_stone(read_stage(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
-        _tell(study_rendering(stage, out, _progress, effort=effort, quick=quick, fresh=fresh), out)
+    _measure("rendering", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
 
 
-@study_app.command()
+@app.command()
 def simulation(
     scene: SceneFile = None,
     out: Out = Path("report/simulation"),
@@ -72,14 +70,10 @@ def simulation(
     fresh: Fresh = False,
 ) -> None:
     """Sweep integrators and step sizes on motions whose truth is known."""
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_simulation
-
-        stage = _with_stone(read_stage(scene, preset, mesh))
-        _tell(study_simulation(stage, out, _progress, quick=quick, fresh=fresh), out)
+    _measure("simulation", (scene, preset, mesh), out, quick=quick, fresh=fresh)
 
 
-@study_app.command()
+@app.command()
 def streaming(
     scene: SceneFile = None,
     out: Out = Path("report/streaming"),
@@ -92,15 +86,10 @@ def streaming(
     height: Height = None,
 ) -> None:
     """Sweep codecs and qualities on moving and still frames."""
-    with _errors(), _interruptible(out):
-        from culet.study.studies import study_streaming
-
-        stage, effort = _with_stone(read_stage(scene, preset, mesh, sky)), _effort(width, height, quick=quick)
-        size = effort.width, effort.height
-        _tell(study_streaming(stage, out, _progress, size=size, quick=quick, fresh=fresh), out)
+    _measure("streaming", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
 
 
-@study_app.command()
+@app.command()
 def caustics(
     scene: SceneFile = None,
     out: Out = Path("report/caustics"),
@@ -113,15 +102,54 @@ def caustics(
 
     The light is a point's, then a sun's; the scene's own is out. Stopped with Ctrl-C it goes on where it was.
     """
+    _measure("caustics", (scene, preset, mesh), out, quick=quick, fresh=fresh)
+
+
+@app.command()
+def resting(
+    scene: SceneFile = None,
+    preset: Preset = None,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels.")] = 960,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels.")] = 540,
+    error: Annotated[
+        float, typer.Option(metavar="RMSE", help="Refine to this, as `culet serve --rest-error`.")
+    ] = 0.004,
+    samples: Annotated[int, typer.Option(min=16, max=MOST_SAMPLES, help="At most, as `--rest-samples`.")] = 256,
+    reference: Annotated[int, typer.Option(min=16, max=MOST_SAMPLES, help="Samples of the converged picture.")] = 1024,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every picture.")] = None,
+) -> None:
+    """Refine a picture at rest as the engine does: how soon is it how good, and is its estimated error right?"""
+    from culet.engine.process.limits import REST_LEAST
+    from culet.rendering.target import Target
+    from culet.study.resting import described, measure, table
+
+    with errors_in_one_line():
+        stage = read_stage(scene, preset, None, None)
+        with opened(out) as file:
+            with progress_bar("rendering") as advance:
+                rest = Target(samples, error, least=min(REST_LEAST, samples))
+                found = measure(stage, width, height, rest, reference, advance)
+            if file is not None:
+                file.truncate(0)
+                file.write(found.document() + "\n")
+        report_console().print(table(found))
+        for line in described(found):
+            typer.echo(line)
+
+
+@app.command()
+def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh = False) -> None:
+    """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers.
+
+    Stopped with Ctrl-C it goes on where it was.
+    """
     with _errors(), _interruptible(out):
-        from culet.study.studies import study_caustics
+        from culet.study.studies import study_growth
 
-        _tell(
-            study_caustics(_with_stone(read_stage(scene, preset, mesh)), out, _progress, quick=quick, fresh=fresh), out
-        )
+        _tell(study_growth(out, _progress, quick=quick, fresh=fresh), out)
 
 
-@study_app.command()
+@app.command()
 def gallery(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets gallery.md and its pictures.")
@@ -150,7 +178,7 @@ def gallery(
         raise typer.Exit(1)
 
 
-@study_app.command()
+@app.command()
 def contacts(
     out: Out = Path("report/contacts"),
     quick: Quick = False,
@@ -177,7 +205,7 @@ def contacts(
         raise typer.Exit(1)
 
 
-@study_app.command()
+@app.command()
 def governor(
     scene: SceneFile = None,
     preset: Preset = None,
@@ -205,7 +233,7 @@ def governor(
         typer.echo(described(measured, size, rate_of(exactness)))
 
 
-@study_app.command()
+@app.command()
 def diff(before: ReportFile, after: ReportFile) -> None:
     """Compare two reports of the same study, as ratios after / before."""
     from culet.study.comparison import compare_reports
@@ -215,7 +243,7 @@ def diff(before: ReportFile, after: ReportFile) -> None:
         _print_difference(compare_reports(Report.read(before), Report.read(after)))
 
 
-@study_app.command("compare-bench")
+@app.command("compare-bench")
 def compare_bench(before: BenchFile, after: BenchFile) -> None:
     """Compare the last lines of two files of `culet bench -o`, as ratios after / before. Fails on no ratio."""
     from culet.study.baseline import last_line
@@ -225,7 +253,7 @@ def compare_bench(before: BenchFile, after: BenchFile) -> None:
         print_comparison(report_console(), last_line(before), last_line(after))
 
 
-@study_app.command()
+@app.command()
 def headline(
     report: ReportFile,
     into: Annotated[
@@ -244,29 +272,34 @@ def headline(
             write_into(into, text)
 
 
-def _with_stone(stage: Stage) -> Stage:
-    if not stage.shapes:
-        raise SceneError("stones: a study needs a stone; the scene has none", "stones")
-    return stage
+def _measure(
+    study: Study,
+    named: tuple[Path | None, str | None, Path | None] | tuple[Path | None, str | None, Path | None, Path | None],
+    out: Path,
+    *,
+    quick: bool,
+    fresh: bool,
+    size: tuple[int | None, int | None] = (None, None),
+) -> None:
+    """Of the stage that the user named: a scene, a preset, a mesh, a sky."""
+    from culet.study.measuring import measure_stage
 
-
-def _effort(width: int | None, height: int | None, *, quick: bool) -> Effort:
-    """The usual one, at the size that was asked for."""
-    from culet.study.studies import FULL, QUICK
-
-    usual = QUICK if quick else FULL
-    return usual._replace(width=width or usual.width, height=height or usual.height)
+    with _errors(), _interruptible(out):
+        width, height = size
+        _tell(
+            measure_stage(
+                study, read_stage(*named), out, _progress, quick=quick, fresh=fresh, width=width, height=height
+            ),
+            out,
+        )
 
 
 @contextlib.contextmanager
 def _errors() -> Iterator[None]:
-    with errors_in_one_line():
-        try:
-            yield
-        except ModuleNotFoundError as error:
-            if error.name is None or error.name.split(".")[0] != "skimage":
-                raise
-            raise InputError("a study needs scikit-image: pip install 'culet[study]'") from error
+    from culet.study.measuring import needs_of_studies
+
+    with errors_in_one_line(), needs_of_studies():
+        yield
 
 
 @contextlib.contextmanager

@@ -1,0 +1,70 @@
+"""The few requests of REST that a viewer needs: a session made, told something, forgotten."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import urllib.error
+import urllib.request
+from typing import Any
+from urllib.parse import urlsplit, urlunsplit
+
+from culet_client.errors import ClientError, RefusedError
+from culet_protocol.messages import Message
+
+
+class Rest:
+    """A gateway's interface."""
+
+    def __init__(self, server: str, timeout_seconds: float) -> None:
+        """The gateway at an address such as `http://127.0.0.1:8000`; ClientError for one that is none."""
+        parts = urlsplit(server)
+        scheme = {"http": "http", "https": "https", "ws": "http", "wss": "https"}.get(parts.scheme)
+        if scheme is None or not parts.netloc:
+            raise ClientError(f"expected a server such as http://127.0.0.1:8000, got {server!r}")
+        self.server = urlunsplit((scheme, parts.netloc, parts.path.rstrip("/"), "", ""))
+        self._timeout = timeout_seconds
+
+    def make_session(self, scene: dict[str, Any] | None, preset: str | None) -> str:
+        """The id of a new session that shows a scene, or a preset, or the default scene."""
+        given = {"scene": scene, "preset": preset}
+        answer = self._ask("POST", "/api/sessions", {name: value for name, value in given.items() if value is not None})
+        session = answer.get("id")
+        if not isinstance(session, str):
+            raise ClientError(f"{self.server} made a session and did not say its id")
+        return session
+
+    def tell(self, session: str, event: Message) -> None:
+        """Apply an event to a session; RefusedError says why it cannot be."""
+        self._ask("POST", f"/api/sessions/{session}/events", event.model_dump(mode="json"))
+
+    def forget_session(self, session: str) -> None:
+        """Delete it."""
+        self._ask("DELETE", f"/api/sessions/{session}")
+
+    def _ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(  # noqa: S310 - http or https, as checked above
+            self.server + path, data, {"Content-Type": "application/json"}, method=method
+        )
+        try:
+            with urllib.request.urlopen(request, timeout=self._timeout) as answer:  # noqa: S310
+                text = answer.read()
+        except urllib.error.HTTPError as error:
+            raise _refusal(error) from error
+        except (OSError, http.client.HTTPException) as error:
+            raise ClientError(f"cannot reach {self.server}: {getattr(error, 'reason', error)}") from error
+        try:
+            answered: dict[str, Any] = json.loads(text) if text else {}
+        except ValueError as error:
+            raise ClientError(f"{self.server} answered with something else than JSON; is it culet?") from error
+        return answered
+
+
+def _refusal(error: urllib.error.HTTPError) -> RefusedError:
+    """What the problem document says (RFC 9457), if there is one."""
+    try:
+        problem = json.loads(error.read())
+        return RefusedError(f"{problem['title']}: {problem['detail']}", problem.get("field"))
+    except (ValueError, KeyError, TypeError):
+        return RefusedError(f"the server answered with status {error.code}")

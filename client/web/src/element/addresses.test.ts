@@ -1,0 +1,22 @@
+import { expect, it } from "vitest";
+import { frameAddress, posterAddress } from "./addresses";
+
+const WANTED = { src: "https://gems.example", preset: "ruby & co", rotate: "20" };
+
+it("the live picture has no interface, and what was asked for", () => {
+  expect(frameAddress(WANTED)).toBe("https://gems.example/?ui=0&preset=ruby+%26+co&rotate=20");
+  expect(frameAddress({ ...WANTED, preset: null, rotate: null })).toBe("https://gems.example/?ui=0");
+});
+
+it("a poster has one of a few sizes, of the area's shape", () => {
+  expect(posterAddress(WANTED, 400, 300, 1)).toBe(
+    "https://gems.example/api/render.webp?preset=ruby+%26+co&width=480&height=368",
+  );
+  const size = (width: number, height: number, ratio: number) => {
+    const { searchParams } = new URL(posterAddress(WANTED, width, height, ratio));
+    return [searchParams.get("width"), searchParams.get("height")].map(Number);
+  };
+  expect(size(300, 400, 2)).toEqual([720, 960]);
+  expect(size(4000, 2000, 3)).toEqual([1280, 640]);
+  expect(size(0, 0, 1)).toEqual([16, 16]);
+});

@@ -1,0 +1,36 @@
+/** Where a viewer's pictures come from, by the attributes of its element. */
+
+/** The server, and what of it is shown; null: what the server takes by itself. */
+export interface Wanted {
+  /** Of the server, such as https://gems.example. */
+  src: string;
+  preset: string | null;
+  /** Degrees a second. */
+  rotate: string | null;
+}
+
+/** Pixels of the longer side of posters: few sizes, so that caches along the way have them. */
+const SIDES = [320, 480, 640, 960, 1280];
+/** Pixels: the other side is a multiple. */
+const STEP = 16;
+
+/** The live picture, for an iframe. */
+export function frameAddress({ src, preset, rotate }: Wanted): string {
+  const address = new URL("/", src);
+  address.searchParams.set("ui", "0");
+  if (preset !== null) address.searchParams.set("preset", preset);
+  if (rotate !== null) address.searchParams.set("rotate", rotate);
+  return address.href;
+}
+
+/** A still of the same, as large as that area of css pixels or a little larger. */
+export function posterAddress({ src, preset }: Wanted, width: number, height: number, ratio: number): string {
+  const long = Math.max(width, height, 1) * ratio;
+  const side = SIDES.find((each) => each >= long) ?? (SIDES.at(-1) as number);
+  const pixels = (length: number) => Math.max(STEP, Math.round((side * length * ratio) / long / STEP) * STEP);
+  const address = new URL("/api/render.webp", src);
+  if (preset !== null) address.searchParams.set("preset", preset);
+  address.searchParams.set("width", String(pixels(width)));
+  address.searchParams.set("height", String(pixels(height)));
+  return address.href;
+}

@@ -1,0 +1,9 @@
+/** A better picture of what is seen already comes up within a moment: nothing pops when things come to rest. */
+
+/** Short enough that the finished picture is not waited for, long enough that no step is seen. */
+export const FADE_MS = 150;
+
+/** How much the new picture covers the old one so many ms after it began to come up: 0 to 1. */
+export function coveredAfter(ms: number): number {
+  return Math.min(1, Math.max(0, ms / FADE_MS));
+}

@@ -1,0 +1,64 @@
+"""`culet render`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.single import single_command
+from culet.command.stage import read_stage
+from culet.command.terminal import errors_in_one_line, progress_bar
+from culet.places import check_place
+from culet.scene.film import MOST_SAMPLES
+
+app = single_command()
+
+
+@app.command()
+def render(
+    scene: SceneFile = None,
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="FILE", help="Picture: .png .jpg .webp .tga, or linear: .exr .npy")
+    ] = Path("out.png"),
+    width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 640,
+    height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 360,
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            min=1, max=MOST_SAMPLES, help="Samples per pixel, with --error at most; without either the scene's."
+        ),
+    ] = None,
+    error: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RMSE",
+            help="Take samples until what is shown, from 0 to 1, is estimated to be off by this (root mean square over "
+            "pixels and colours); from 0.004 on no difference is seen.",
+        ),
+    ] = None,
+    background: Annotated[
+        str | None,
+        typer.Option(
+            metavar="transparent|#rrggbb", help="Nothing behind the stones, with alpha, or that colour; twice the work."
+        ),
+    ] = None,
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    sky: SkyFile = None,
+) -> None:
+    """Render a still picture into a file."""
+    from culet.rendering.files import FORMATS
+    from culet.stills import before, render_stage
+
+    with errors_in_one_line():
+        check_place(out, "out", FORMATS)
+        stage = read_stage(scene, preset, mesh, sky)
+        if background is not None:
+            stage = before(stage, background)
+        with progress_bar(f"rendering {out.name}") as advance:
+            picture = render_stage(stage, width, height, samples=samples, error=error, progress=advance)
+        picture.save(out)
+        typer.echo(f"{out}: {width} x {height}, {picture.quality()}")

@@ -1,0 +1,155 @@
+"""How soon a picture at rest is how good: as the engine refines it, against the converged one."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from rich import box
+from rich.table import Table
+
+from culet.engine.painting import jpeg
+from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.shares import Account
+from culet.engine.session.session import Session
+from culet.optics.gamut import into_gamut
+from culet.optics.tone import tone_map
+from culet.rendering.cut_out import CuttingRenderer
+from culet.rendering.light.effort import Effort
+from culet.rendering.renderer import Picture
+from culet.rendering.target import Target
+from culet.scene.film import Film
+from culet.stage import Stage
+from culet.study.convergence import TimeTo, time_to
+from culet.study.radiance_error import Image, radiance_error
+
+TARGETS = (0.01, 0.004)
+"""RMSE to which seconds are told."""
+WARM_UP = 64, 64
+"""Pixels of a picture that has machine code made."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """One of the pictures that a viewer gets."""
+
+    seconds: float
+    """Since the first one was begun: rendering, developing and encoding."""
+    samples: int
+    shown: float
+    """RMSE of what is shown, from 0 to 1."""
+    shown_estimate: float
+    radiance: float
+    """RMSE of linear radiance."""
+    radiance_estimate: float
+
+
+@dataclass(frozen=True)
+class Resting:
+    """Of one scene."""
+
+    width: int
+    height: int
+    looks: Sequence[Look]
+    met: bool
+    """Whether the last picture has the error that it was to have."""
+    samples: int
+    """Of the reference: those after the last picture's own, so that it shares none with any of them."""
+
+    def seconds_to(self, target: float, *, shown: bool) -> TimeTo:
+        """Until that RMSE, as shown or of radiance."""
+        errors = [look.shown if shown else look.radiance for look in self.looks]
+        return time_to([look.seconds for look in self.looks], errors, target)
+
+    def document(self) -> str:
+        """As JSON."""
+        values = asdict(self) | {
+            f"{kind}_seconds_to": {f"{target:g}": self.seconds_to(target, shown=kind == "shown") for target in TARGETS}
+            for kind in ("shown", "radiance")
+        }
+        text = json.dumps(values, indent=1, default=str)
+        return text.replace("NaN", "null")
+
+
+def as_shown(linear: Image, film: Film) -> NDArray[np.float64]:
+    """0 (black) to 1 (white), not rounded to bytes."""
+    exposed = film.exposure * linear.astype(np.float64)
+    return np.clip(tone_map(into_gamut(exposed, film.gamut), film.tone_map), 0, 1)
+
+
+def measure(
+    stage: Stage, width: int, height: int, rest: Target, samples: int, progress: Callable[[float], None]
+) -> Resting:
+    """Refine to `rest`, then by `samples` more for the reference.
+
+    The machine has nothing else to do, or the times are of what is left of it. Compiling does not count, the map of the
+    light that stones throw does.
+    """
+    renderer = CuttingRenderer()
+    renderer.picture(stage, *WARM_UP, effort=None).refine(2)
+    picture, taken = renderer.picture(stage, width, height, effort=Effort.RESTING), list[tuple[float, int, Image]]()
+    estimates = []
+    for seconds in _at_rest(renderer, stage, picture, rest):
+        taken.append((seconds, picture.samples, picture.linear()))
+        estimates.append((picture.shown_error(), picture.error_estimate()))
+        progress(min(1.0, picture.samples / (rest.samples + samples)))
+    met, own = picture.meets(rest), picture.samples
+    last = own * picture.linear().astype(np.float64)
+    for _ in range(samples):
+        picture.refine(1)
+        progress(picture.samples / (own + samples))
+    reference = (picture.samples * picture.linear().astype(np.float64) - last) / samples
+    film, looks = stage.scene.film, []
+    shown = as_shown(reference, film)
+    for (seconds, count, image), (shown_estimate, radiance_estimate) in zip(taken, estimates, strict=True):
+        off = math.sqrt(np.mean(np.square(as_shown(image, film) - shown)))
+        of_radiance = radiance_error(image, reference)["rmse"]
+        looks.append(Look(seconds, count, off, shown_estimate, of_radiance, radiance_estimate))
+    return Resting(width, height, looks, met, samples)
+
+
+def _at_rest(renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Target) -> Iterator[float]:
+    """Yields the seconds that it took so far, whenever a viewer would get the picture."""
+    shown, size, spent = Session("0" * 32, stage).shown, (picture.width, picture.height), 0.0
+    final = False
+    while not final:
+        begun = time.perf_counter()
+        first = picture.samples == 0
+        work = FrameWork(Kind.FULL if first else Kind.REFINED, shown, size, Account(None), begun, picture=picture)
+        work.aim, work.now = None if first else rest, time.perf_counter
+        work.start(renderer)
+        for _ in work.pieces:
+            pass
+        jpeg.encode(picture.rgb(), moving=False)
+        spent += time.perf_counter() - begun
+        final = work.final
+        yield spent
+
+
+def table(found: Resting) -> Table:
+    """A row for each picture."""
+    rows = Table("seconds", "samples", "error as shown", "estimated", "of radiance", "estimated", box=box.SIMPLE)
+    for look in found.looks:
+        errors = (look.shown, look.shown_estimate, look.radiance, look.radiance_estimate)
+        rows.add_row(f"{look.seconds:.2f}", str(look.samples), *("-" if math.isnan(e) else f"{e:.4f}" for e in errors))
+    return rows
+
+
+def described(found: Resting) -> Iterator[str]:
+    """In sentences."""
+    last = found.looks[-1]
+    reached = "its target" if found.met else "the limit of samples, not its target"
+    yield f"final after {last.seconds:.1f} s with {last.samples} samples: {reached}"
+    for kind, shown in (("as shown", True), ("of radiance", False)):
+        for target in TARGETS:
+            until = found.seconds_to(target, shown=shown)
+            words = "never" if until.seconds is None else f"after {until.seconds:.1f} s"
+            note = " (extrapolated)" if until.extrapolated else ""
+            yield f"error {kind} under {target:g}: {words}{note}"
+    gaps = [after.seconds - before.seconds for before, after in zip(found.looks, found.looks[1:], strict=False)]
+    yield f"longest time between two pictures: {max(gaps, default=0):.2f} s"
