@@ -21,7 +21,10 @@ from culet.geometry.symmetry import SAME
 from culet.rendering.build import FLAGS, Variant
 from culet.rendering.device import Device, Real
 from culet.rendering.facet_rows import FacetRows, facet_rows
+from culet.rendering.renderer import Renderer
+from culet.scene.legacy import legacy
 from rendering.views import Array
+from shared.stages import staged
 from shared.stones import ball, box, brilliant, step_cut
 
 SIGNS = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
@@ -152,3 +155,12 @@ def test_light_leaves_where_it_does_by_the_facets(device: Device, real: Real, la
         assert np.abs(t[:, 0] - t[:, 1]).max() < rounding, name
         other = np.abs(normals[:, 0] - normals[:, 1]).max(axis=1) > 1e-5
         assert other.mean() < 0.004, name  # at edges; measured 0.0019 in box and needle, next to none elsewhere
+
+
+def test_symmetry_is_looked_for_before_a_picture_is_begun(renderer: Renderer) -> None:
+    """It takes longer than a frame of a moving stone may."""
+    stage = staged(legacy({}), turned(brilliant(), seed=71))
+    renderer.make_ready(staged(legacy({})))  # all else is there
+    assert not renderer.is_ready(stage)
+    renderer.make_ready(stage)
+    assert renderer.is_ready(stage)

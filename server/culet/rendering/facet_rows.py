@@ -57,8 +57,13 @@ class FacetRows:
 _ROWS: WeakKeyDictionary[Shape, FacetRows] = WeakKeyDictionary()
 
 
+def has_facet_rows(shape: Shape) -> bool:
+    """Whether `facet_rows` has them already."""
+    return shape in _ROWS
+
+
 def facet_rows(shape: Shape) -> FacetRows:
-    """The rows that cost least, made once."""
+    """The rows that cost least, made once: symmetries are looked for, for some 50 ms."""
     rows = _ROWS.get(shape)
     if rows is None:
         rows = _ROWS[shape] = _cheapest(shape.planes)

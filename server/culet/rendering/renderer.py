@@ -16,7 +16,8 @@ from culet.optics.panoramas import Panorama
 from culet.rendering.bounds import largest_radiance
 from culet.rendering.build import OF_ITEMS, TILES_DEALT, Kernel, Variant, build, progress_size, tile_of
 from culet.rendering.device import Device, Real, open_device
-from culet.rendering.features import Features, Geometry, by_half_spaces, features_of
+from culet.rendering.facet_rows import facet_rows, has_facet_rows
+from culet.rendering.features import Features, by_half_spaces, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
 from culet.rendering.light.effort import Effort
@@ -137,21 +138,20 @@ class Renderer:
         return self._paces.setdefault((kernel, triangles.bit_length()), Pace())
 
     def is_ready(self, stage: Stage) -> bool:
-        """Whether a picture can be begun without waiting for a compiler, or for a mesh's tree."""
+        """Whether a picture can be begun without waiting for a compiler, a mesh's tree or a cut's symmetry."""
         features = features_of(stage)
-        tree_is_there = features.geometry != Geometry.MESH or all(
-            has_tree(shape) or by_half_spaces(shape) for shape in stage.shapes
-        )
+        found = all(has_facet_rows(shape) if by_half_spaces(shape) else has_tree(shape) for shape in stage.shapes)
         programs_are = self.programs.is_ready(features.general, self.variant) and self.lighting.is_ready(stage)
-        return tree_is_there and programs_are
+        return found and programs_are
 
     def make_ready(self, stage: Stage) -> None:
         """Have what `is_ready` asks for made, while pictures are refined in another thread."""
         features = features_of(stage)
-        if features.geometry == Geometry.MESH:
-            for shape in stage.shapes:
-                if not by_half_spaces(shape):
-                    tree_of(shape)
+        for shape in stage.shapes:
+            if by_half_spaces(shape):
+                facet_rows(shape)
+            else:
+                tree_of(shape)
         self.programs.prepare(features.general, self.variant)
         self.lighting.make_ready(stage)
 
