@@ -2,19 +2,11 @@
 
 from __future__ import annotations
 
-import codecs
 import math
 import re
 
 from culet.errors import MeshError
-
-_MARKS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16: its mark begins with UTF-16's
-    (codecs.BOM_UTF32_BE, "utf-32-be"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
+from culet.geometry.formats.text import BYTE_ORDER_MARKS
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 """Python's own reading takes 1_000, nan, and digits of other scripts too."""
@@ -25,7 +17,7 @@ _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?", re.ASCII)
 def decoded(data: bytes) -> str:
     """The text: by its byte order mark, or else as UTF-8, or else in Windows' code page 1252, whose degree sign is no
     UTF-8. MeshError if it is other than its mark says, or no text."""
-    for mark, encoding in _MARKS:
+    for mark, encoding in BYTE_ORDER_MARKS:
         if data.startswith(mark):
             try:
                 return _checked(data[len(mark) :].decode(encoding))

@@ -16,20 +16,21 @@ even if it is empty."""
 MAX_LINE = 8 << 20
 """Bytes: a polygon of 200 000 corners with six digits for each of its three indices has 4.2 million."""
 
-_MARKS = (
+BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16: its mark begins with UTF-16's
     (codecs.BOM_UTF32_BE, "utf-32-be"),
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
+"""And the encodings that they tell."""
 
 _DECIMAL_COMMA = re.compile(rb"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 
 
 def has_mark(data: bytes) -> bool:
     """Whether the bytes begin with a byte order mark."""
-    return any(data.startswith(mark) for mark, _ in _MARKS)
+    return any(data.startswith(mark) for mark, _ in BYTE_ORDER_MARKS)
 
 
 def ascii_text(data: bytes) -> bytes:
@@ -38,7 +39,7 @@ def ascii_text(data: bytes) -> bytes:
     Names and comments come in any encoding, numbers and keywords do not. A byte order mark tells UTF-8, UTF-16 and
     UTF-32; MeshError if what follows the mark is something else, or if zero bytes show that the text is none.
     """
-    for mark, encoding in _MARKS:
+    for mark, encoding in BYTE_ORDER_MARKS:
         if data.startswith(mark):
             name = encoding.removesuffix("-le").removesuffix("-be").upper()
             try:
