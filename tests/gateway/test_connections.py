@@ -240,7 +240,7 @@ async def test_who_reads_an_answer_slowly_gets_all_of_it_and_who_does_not_read_i
     picture = bytes(range(256)) * 100_000  # more than the buffers of both sides hold
 
     async def rendered(*_: object, **__: object) -> tuple[dict[str, object], memoryview]:
-        return {}, memoryview(picture)
+        return {"samples": 1, "error": None, "met": None}, memoryview(picture)
 
     monkeypatch.setattr(Uploads, "request", rendered)
     request = b"GET /api/render.tga HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
