@@ -14,6 +14,7 @@ import pytest
 
 from culet.errors import InputError
 from culet.rendering.device import remedy
+from culet.rendering.driver_package import BY_SYSTEM, how_to_install
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from shared.stages import staged
@@ -60,8 +61,8 @@ def test_a_cache_that_cannot_be_written_is_the_first_suspect(
 
 def test_only_where_there_is_no_device_a_driver_is_to_be_installed(clean: pytest.MonkeyPatch, tmp_path: Path) -> None:
     clean.setenv("POCL_CACHE_DIR", str(tmp_path))
-    assert "apt-get install" in remedy([])
-    assert "apt-get install" not in remedy(["a device that fails"])
+    assert how_to_install() in remedy([])
+    assert how_to_install() not in remedy(["a device that fails"])
     assert "CULET_DEVICE" in remedy(["a device that fails"])
 
 
@@ -105,3 +106,31 @@ def test_a_panorama_that_no_file_may_have_is_refused_as_from_a_file(renderer: Re
         renderer.picture(staged(scene, panorama=pixels), 8, 8)
     with pytest.raises(InputError, match=r"panorama: expected an array of \(height, width, 3\), got \(4, 8\)"):
         renderer.picture(staged(scene, panorama=pixels[..., 0]), 8, 8)
+
+
+@pytest.mark.parametrize(
+    ("release", "conda", "command"),
+    [
+        ({"ID": "debian"}, "", "apt-get install pocl-opencl-icd"),
+        ({"ID": "linuxmint", "ID_LIKE": "ubuntu debian"}, "", "apt-get install pocl-opencl-icd"),
+        ({"ID": "fedora"}, "", "dnf install pocl"),
+        ({"ID": "rocky", "ID_LIKE": "rhel centos fedora"}, "", "dnf install pocl"),
+        ({"ID": "debian"}, "/opt/conda", "conda install conda-forge::pocl"),
+    ],
+)
+def test_the_package_is_named_that_brings_a_driver_here(
+    monkeypatch: pytest.MonkeyPatch, release: dict[str, str], conda: str, command: str
+) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setattr("platform.freedesktop_os_release", lambda: release)
+    monkeypatch.setenv("CONDA_PREFIX", conda)
+    assert how_to_install() == command
+
+
+def test_where_the_system_is_not_known_all_packages_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CONDA_PREFIX", raising=False)
+    monkeypatch.setattr("platform.freedesktop_os_release", lambda: {"ID": "plan9"})
+    monkeypatch.setattr("sys.platform", "linux")
+    assert all(command in how_to_install() for command in BY_SYSTEM.values())
+    monkeypatch.setattr("sys.platform", "darwin")
+    assert how_to_install() == "brew install pocl"

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from culet.errors import DeviceError
 from culet.optics.panoramas import check_panorama
 from culet.rendering import kernel_cache
+from culet.rendering.driver_package import how_to_install
 
 Real = type[np.float32] | type[np.float64]
 """The precision of a program."""
@@ -97,9 +98,7 @@ def open_device() -> Device:
     try:
         platforms = cl.get_platforms()
     except cl.Error as error:
-        raise DeviceError(
-            f"no OpenCL platform is installed ({error}); on Debian: apt-get install pocl-opencl-icd"
-        ) from error
+        raise DeviceError(f"no OpenCL platform is installed ({error}); {how_to_install()}") from error
     candidates = [device for platform in platforms for device in platform.get_devices()]
     candidates.sort(key=lambda device: not device.type & cl.device_type.CPU)
     for candidate in candidates:
@@ -131,7 +130,7 @@ def remedy(found: Sequence[Any]) -> str:
         return found_fault
     if found:
         return "clinfo shows what there is; CULET_DEVICE chooses among it by name"
-    return "on Debian: apt-get install pocl-opencl-icd"
+    return how_to_install()
 
 
 def _probe(context: Any, queue: Any) -> None:  # noqa: ANN401 - pyopencl has no types
