@@ -61,7 +61,10 @@ def test_what_a_picture_misses_is_told() -> None:
     assert 0 < four.missed.error < 1
     assert 0 < four.missed.cut < four.missed.bound
     assert math.isnan(four.missed.light_bound), "no caustics on this floor"
-    assert f"too low by at most {four.missed.bound:.2g}" in repr(four)
+    assert f"too low by at most {four.missed.bound:.2g} (light of weight {four.missed.cut:.2g} cut off)" in repr(four)
+    sunny = culet.render("sun", *SIZE)
+    assert sunny.missed.bound > sunny.linear.mean(), "whatever was cut off may have come from the sun"
+    assert "which may all have come from the brightest lamp" in repr(sunny)
     nothing = culet.render(ALL_SKY, *SIZE)
     assert nothing.missed.bound == 0
 

@@ -119,8 +119,15 @@ class Picture:
     def quality(self) -> str:
         """How right it is, in words."""
         samples = "1 sample" if self.cost.samples == 1 else f"{self.cost.samples} samples"
-        missing = f"mean radiance too low by at most {self.missed.bound:.2g} (light cut off)"
-        return f"{samples} per pixel, {self._noise()}{missing}{self._light_quality()}"
+        return f"{samples} per pixel, {self._noise()}{self._missing()}{self._light_quality()}"
+
+    def _missing(self) -> str:
+        """What was cut off."""
+        bound = (
+            f"mean radiance too low by at most {self.missed.bound:.2g} (light of weight {self.missed.cut:.2g} cut off"
+        )
+        tells = self.missed.bound < float(self.linear[..., :3].mean())
+        return f"{bound})" if tells else f"{bound}, which may all have come from the brightest lamp)"
 
     def _noise(self) -> str:
         """What more samples would take away."""
