@@ -63,8 +63,7 @@ def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> l
 def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
     """The best setting first, then the frontier of those that are cheaper: each has the least error for its cost.
 
-    The first is the scene's own, whatever its error: a single sample of every pixel is sharper than a smaller picture,
-    and so has more of the error that more samples would take away.
+    The first is the scene's own, whatever its error.
     """
     best, *others = (each.setting for each in measured)
     return tuple(replace(r, cost=round(r.cost, 3), error=round(r.error, 4)) for r in _rungs(best, others))
@@ -127,7 +126,9 @@ def _draw(
     picture.refine()
     seconds = time.process_time() - start
     linear = picture.linear()
-    return seconds, (linear, tone_map(linear))
+    # One of full size is filtered before it is sent.
+    shown = picture.softened() / np.float32(255) if scale == 1 else tone_map(linear)
+    return seconds, (linear, shown)
 
 
 def _error(image: Image, truth: Image) -> float:

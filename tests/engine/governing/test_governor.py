@@ -200,7 +200,7 @@ def test_one_alone_whose_scene_is_too_dear_is_made_smaller_until_its_motion_is_s
 
 
 def test_one_alone_is_not_made_smaller_than_the_least_for_more_than_the_least_rate() -> None:
-    slow = alone(0.18)
+    slow = alone(0.16)
     assert {frame.plan.size for frame in slow} == {(640, 360)}
     assert 1 / RATE < slow[0].seconds < 1 / ALONE_RATE
     assert {frame.plan.size for frame in alone(0.5, rate=5)} == {(640, 360)}, "no more is asked for"
@@ -374,13 +374,11 @@ def test_every_rung_is_worth_its_cost_to_a_viewer_so_large_that_nothing_limits_i
 
 
 def test_the_measured_ladder_trades_time_for_error() -> None:
-    """Below its first rung, a single sample of every pixel, which is sharper but noisier than what is cheaper."""
     costs = [setting.cost for setting in MEASURED]
-    errors = [setting.error for setting in MEASURED[1:]]
+    errors = [setting.error for setting in MEASURED]
     assert costs == sorted(costs, reverse=True)
     assert costs[0] == 1
     assert errors == sorted(errors)
-    assert errors[0] < MEASURED[0].error < errors[-1]
     assert all(setting.cutoff <= 0.05 and 0 < setting.scale <= 1 for setting in MEASURED)
     assert all(setting.max_bounces <= 256 for setting in MEASURED)
 

@@ -103,11 +103,7 @@ class Plan:
 
 
 def read_ladder() -> tuple[Setting, ...]:
-    """As measured, the best first, which is the dearest.
-
-    Its errors are not the least: a single sample of every pixel is sharper than a smaller picture, and so has more of
-    the error that more samples would take away. All others have more error the cheaper they are.
-    """
+    """As measured, the best first, which is the dearest: the cheaper, the more error."""
     rungs = json.loads(files(__package__).joinpath("ladder.json").read_text(encoding="utf-8"))["rungs"]
     return tuple(Setting(**rung) for rung in rungs)
 
@@ -273,7 +269,7 @@ def worthwhile_rungs(ladder: tuple[Setting, ...], errors: SettingErrors, wanted:
     """Of the ladder, for a viewer of that size, the dearest first.
 
     LEAST_PIXELS makes some rungs alike, of which the first was measured at the size nearest to what is drawn, and
-    others no better than cheaper ones. The ladder's first rung is worth its cost though its error is not less.
+    others no better than cheaper ones. The ladder's first rung is always worth its cost.
     """
     drawn: dict[tuple[float, float, int], int] = {}
     for rung, setting in enumerate(ladder):
