@@ -373,6 +373,14 @@ def test_every_rung_is_worth_its_cost_to_a_viewer_so_large_that_nothing_limits_i
     assert worthwhile_rungs(MEASURED, ERRORS, (3840, 2160)) == tuple(range(len(MEASURED)))
 
 
+def test_several_stones_share_the_time_for_their_light() -> None:
+    one, twelve = (
+        Governor(MEASURED).plan(Scene.read({"stones": [{"id": f"s{k}"} for k in range(count)]}), WANTED, BALANCE)
+        for count in (1, 12)
+    )
+    assert twelve.scene.optics.caustics_cutoff == pytest.approx(12 * one.scene.optics.caustics_cutoff)
+
+
 def test_the_measured_ladder_trades_time_for_error() -> None:
     costs = [setting.cost for setting in MEASURED]
     errors = [setting.error for setting in MEASURED]

@@ -192,6 +192,21 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     assert (moving.linear() != fresh.linear()).any()
 
 
+def test_a_moving_picture_of_many_stones_has_few_rays_of_each_wide_lamp() -> None:
+    """Each is cast past each stone onto each surface."""
+    lamps = [
+        {"shape": "round", "direction": [x, 2, 1], "half_angle_degrees": 9, "radiance": [1, 1, 1]} for x in (-1, 0, 1)
+    ]
+    stones = [{"id": f"stone-{k}", "scale": 0.2, "position": [k - 2, 0, 0]} for k in range(5)]
+    many = Stage.of(scene_of(emitters=lamps, stones=stones, walls={"kind": "matte"}))
+    one = Stage.of(scene_of(emitters=lamps))
+    assert len(rays_of(many, 0)) == 3 * 16
+    assert len(rays_of(many, 0, moving=True)) * 5 * 4 <= 1200
+    assert len(rays_of(one, 0, moving=True)) == len(rays_of(one, 0)) == 3 * 48, "past one there is time for all"
+    light = [np.sum([ray.colour for ray in rays_of(many, 0, moving=moving)], axis=0) for moving in (False, True)]
+    assert light[1] == pytest.approx(light[0], rel=1e-9), "of as much light"
+
+
 def test_a_stone_that_is_not_convex_is_lit_by_photons(renderer: Renderer) -> None:
     stage = staged(scene_of(stones=[{}], optics={"caustics_cutoff": 0.02}), ring())
     picture, found = lit(renderer, stage, Effort.RESTING, 2)

@@ -56,7 +56,8 @@ POLARISED_COST = 1.1
 
 LIGHT_CUTOFFS = ((0.2, 1e-3), (0.1, 2e-3), (0.0, 5e-3))
 """Cut-offs of the light map, by the cost of a rung, at least. Of a point light 1e-3 cuts 0.15 of the light and takes
-2.3 ms of a core, 5e-3 cuts 0.35 and takes 1.5: what is left of the time then, where frames are late, is little."""
+2.3 ms of a core, 5e-3 cuts 0.35 and takes 1.5: what is left of the time then, where frames are late, is little.
+Several stones share that time: for them the cut-off is as many times as high."""
 
 
 @dataclass(frozen=True)
@@ -147,12 +148,13 @@ class Governor:
         setting = self._pinned(wanted, balance) if balance.pinned else self.setting
         if setting is None:
             return Plan(scene, wanted, wanted, None, math.nan)
+        stones = max(1, len(scene.stones))
         changes = {
             "bands": MOVING_BANDS,
             "polarised": False,
             "cutoff": max(scene.optics.cutoff, setting.cutoff),
             "max_bounces": min(scene.optics.max_bounces, setting.max_bounces),
-            "caustics_cutoff": max(scene.optics.caustics_cutoff, setting.caustics_cutoff),
+            "caustics_cutoff": min(1.0, max(scene.optics.caustics_cutoff, stones * setting.caustics_cutoff)),
         }
         simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
         scale = _scale(setting, wanted) * (1 if balance.pinned else SHRINK**self._shrunk)

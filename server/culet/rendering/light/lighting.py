@@ -290,7 +290,7 @@ class Illumination:
     def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
         """One pass more."""
         number, started, scene = self.passes, time.perf_counter(), self.stage.scene
-        rays = rays_of(self.stage, number)
+        rays = rays_of(self.stage, number, moving=effort is Effort.MOVING)
         follows = scene.optics.caustics == "on"
         if self._by_beams:
             weight = cutoff**-0.5  # the error that lamps' directions make does not fall with the cut-off
