@@ -72,6 +72,8 @@ class World:
         """Of the picture that got some last."""
         self.needed = 0
         """Samples that meet any error."""
+        self.softened: list[tuple[int, tuple[int, int]]] = []
+        """Samples and size of each picture that was filtered."""
         self.pictures = weakref.WeakSet[TimedPicture]()
         """That somebody holds."""
         scene = Scene.read({"optics": {"bands": 16, "polarised": True}} | ({} if with_stone else {"stones": []}))
@@ -191,6 +193,7 @@ class TimedPicture:
         return iter(())
 
     def softened(self) -> NDArray[np.uint8]:
+        self._world.softened.append((self.samples, self._size))
         return self.rgb()
 
     def rgb(self) -> NDArray[np.uint8]:
@@ -288,6 +291,32 @@ async def test_a_drag_is_governed_however_long_a_frame_takes(
     dragged = [drawn for drawn in world.drawn if not math.isnan(drawn.ended)]
     assert not any(drawn.full for drawn in dragged[1:])
     assert len(dragged) / 8 > least_rate
+
+
+async def test_the_first_frame_of_a_drag_is_as_quick_as_the_picture_at_rest_lets_expect(play: Play) -> None:
+    """In the dearest setting it would take 1.2 frames' time."""
+    world = World(0.4)
+    await play(world, 20)
+    world.drawn.clear()
+    world.turn(since=0, seconds=1)
+    await play(world, 1)
+    first = world.drawn[0]
+    assert not first.full
+    assert first.ended - first.begun < 1 / 30
+
+
+async def test_one_sample_of_each_pixel_asked_for_is_softened_and_nothing_else_is(play: Play) -> None:
+    world = World(SLOW)
+    await play(world, 30 * SLOW)
+    world.turn(since=0, seconds=1)
+    await play(world, 3)
+    assert any(drawn.size != WANTED for drawn in world.drawn), "which are to be enlarged"
+    assert {*world.softened} == {(1, WANTED)}
+    once = World(0.1)
+    once.rest = Target(samples=1)
+    await play(once, 1)
+    assert [Flags.FINAL in frame.flags for _, frame in once.first_sent()] == [False, True]
+    assert once.softened == [(1, WANTED)], "and not the last one"
 
 
 async def test_after_a_drag_the_picture_is_drawn_in_full(play: Play) -> None:
