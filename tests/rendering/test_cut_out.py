@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import pytest
 from culet.rendering.cut_out import CutOut
 from culet.rendering.files import encode
 from culet.rendering.renderer import Renderer
+from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from rendering.views import take
@@ -126,3 +128,31 @@ def test_one_that_begins_anew_forgets_the_samples_of_both_pictures(renderer: Ren
     assert (picture.rgb() == stale).all()
     picture.refine(1)
     assert picture.linear().tobytes() == cut_out(renderer, Scene(), samples=3).linear().tobytes()
+
+
+def test_its_error_is_that_before_whatever_is_behind(renderer: Renderer) -> None:
+    """A black stone is right before black at once: what is noisy is its edge before white."""
+    scene = Scene.read(
+        {
+            "floor": {"kind": "none"},
+            "environment": {"kind": "constant", "radiance": [0, 0, 0]},
+            "emitters": [],
+            "stones": [{"absorption": [100, 100, 100]}],
+            "film": {"background": "#ffffff"},
+        }
+    )
+    picture = CutOut(renderer, Stage.of(scene), *SIZE)
+    for _ in picture.refine_until(Target(8), math.inf):
+        pass
+    shown, told = picture.rgb() / 255, picture.shown_error()
+    for _ in picture.refine_until(Target(256), math.inf):
+        pass
+    true = float(np.sqrt(np.mean((shown - picture.rgb() / 255) ** 2)))
+    assert true > 1e-3
+    assert 0.5 < told / true < 2.5
+    assert not picture.meets(Target(256, 1e-6))
+
+
+def test_rows_are_those_of_the_whole(renderer: Renderer) -> None:
+    picture = cut_out(renderer, Scene())
+    assert (picture.linear(slice(7, 20)) == picture.linear()[7:20]).all()

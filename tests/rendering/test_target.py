@@ -11,6 +11,7 @@ import pytest
 from culet.errors import InputError
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import TONE_MAPS, tone_map
+from culet.rendering.doublings import MOST, Doublings
 from culet.rendering.renderer import Picture, Renderer
 from culet.rendering.target import Target
 from culet.scene import Scene
@@ -103,3 +104,18 @@ def test_the_scene_says_how_many_samples_unless_somebody_asks() -> None:
     settings = ((None, None), (5, None), (None, 0.1), (5, 0.1))
     asked = [Target.of(samples, error, scene) for samples, error in settings]
     assert [(each.samples, each.error) for each in asked] == [(3, None), (5, None), (65536, 0.1), (5, 0.1)]
+
+
+@pytest.mark.parametrize("error", [1e-300, 5e-324])
+def test_an_error_that_no_number_of_samples_meets_is_a_limit_that_is_not_met(renderer: Renderer, error: float) -> None:
+    picture = take(renderer, LEGACY_DEFAULT, samples=0)
+    for _ in picture.refine_until(Target(4, error), math.inf):
+        pass
+    assert picture.samples == 4
+    assert not picture.meets(Target(4, error))
+
+
+def test_without_a_number_for_the_error_all_samples_are_taken() -> None:
+    halves = Doublings()
+    halves.add(2, math.nan, 3)
+    assert halves.samples_for(0.01) == MOST

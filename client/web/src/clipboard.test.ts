@@ -28,12 +28,33 @@ it("is given the picture as a promise, before the picture is there", async () =>
   expect(await written[0]?.parts["image/png"]).toBe(PICTURE);
 });
 
+it("is given a text as a promise too, or the text where the browser takes no promises", async () => {
+  const written: (Item | string)[] = [];
+  const clipboard = {
+    write: async (items: Item[]) => void written.push(...items),
+    writeText: async (text: string) => void written.push(text),
+  };
+  vi.stubGlobal("navigator", { clipboard });
+  await copyText(async () => "a text");
+  expect(written).toEqual(["a text"]);
+  vi.stubGlobal("ClipboardItem", Item);
+  let made: (text: string) => void = () => undefined;
+  const copied = copyText(() => new Promise((resolve) => (made = resolve)));
+  expect(written).toHaveLength(2);
+  made("a link");
+  await copied;
+  const item = written[1] as Item;
+  expect(await (await item.parts["text/plain"])?.text()).toBe("a link");
+});
+
 it("that there is not, as by plain http, is told with what to do instead", async () => {
   vi.stubGlobal("navigator", {});
   const render = vi.fn(async () => PICTURE);
   await expect(copyPicture(render)).rejects.toThrow(/https.*S saves the picture/);
   expect(render).not.toHaveBeenCalled();
-  await expect(copyText("https://gems.example/#view=1.A")).rejects.toThrow(/https[\s\S]*gems\.example\/#view=1\.A$/);
+  await expect(copyText(async () => "https://gems.example/#view=1.A")).rejects.toThrow(
+    /https[\s\S]*gems\.example\/#view=1\.A$/,
+  );
 });
 
 it("that refuses says why, and the text is there to be copied by hand", async () => {
@@ -42,7 +63,7 @@ it("that refuses says why, and the text is there to be copied by hand", async ()
   };
   vi.stubGlobal("ClipboardItem", Item);
   vi.stubGlobal("navigator", { clipboard: { write: refuse, writeText: refuse } });
-  await expect(copyText("a text")).rejects.toThrow(/not focused[\s\S]*a text$/);
+  await expect(copyText(async () => "a text")).rejects.toThrow(/not focused[\s\S]*a text$/);
   await expect(copyPicture(async () => PICTURE)).rejects.toThrow(/not focused.*S saves it/);
 });
 

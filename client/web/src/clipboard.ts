@@ -9,14 +9,33 @@ export async function copyPicture(render: () => Promise<Blob>): Promise<void> {
   if (!hasClipboard()) throw new Error(`${INSECURE}: S saves the picture instead.`);
   if (typeof ClipboardItem === "undefined") throw new Error("This browser copies no pictures: S saves the picture.");
   const picture = render();
-  // A promise, and at once: Safari forgets that a key was pressed if the picture is waited for first.
-  await written(() => navigator.clipboard.write([new ClipboardItem({ "image/png": picture })]), picture, "S saves it.");
+  try {
+    // A promise, and at once: Safari forgets that a key was pressed if the picture is waited for first.
+    await navigator.clipboard.write([new ClipboardItem({ "image/png": picture })]);
+  } catch (error) {
+    await picture; // it may be the picture that could not be had
+    throw new Error(`${refusal(error)} S saves it.`);
+  }
 }
 
-/** Put a text there; throws Error that has the text, so that the user can copy it by hand. */
-export async function copyText(text: string): Promise<void> {
-  if (!hasClipboard()) throw new Error(`${INSECURE}. To be copied by hand:\n${text}`);
-  await written(() => navigator.clipboard.writeText(text), Promise.resolve(), `To be copied by hand:\n${text}`);
+/** Put a text there once it has been made; throws Error that has the text, so that the user can copy it by hand. */
+export async function copyText(make: () => Promise<string>): Promise<void> {
+  const text = make();
+  if (!hasClipboard()) throw new Error(`${INSECURE}. To be copied by hand:\n${await text}`);
+  const promised = typeof ClipboardItem !== "undefined";
+  const write = async () =>
+    promised // as a picture
+      ? navigator.clipboard.write([new ClipboardItem({ "text/plain": text.then(plain) })])
+      : navigator.clipboard.writeText(await text);
+  try {
+    await write();
+  } catch (error) {
+    throw new Error(`${refusal(error)} To be copied by hand:\n${await text}`); // or why there is none
+  }
+}
+
+function plain(text: string): Blob {
+  return new Blob([text], { type: "text/plain" });
 }
 
 /** Whether there is one: the types promise that, and pages that came by plain http have none. */
@@ -24,11 +43,6 @@ function hasClipboard(): boolean {
   return (navigator as Partial<Navigator>).clipboard !== undefined;
 }
 
-async function written(write: () => Promise<void>, content: Promise<unknown>, instead: string): Promise<void> {
-  try {
-    await write();
-  } catch (error) {
-    await content; // it may be the content that could not be had
-    throw new Error(`${REFUSED} (${error instanceof Error ? error.message : error}). ${instead}`);
-  }
+function refusal(error: unknown): string {
+  return `${REFUSED} (${error instanceof Error ? error.message : error}).`;
 }

@@ -1,6 +1,5 @@
 /** The page: finds or makes a session, then connects keys, fingers, panel and picture to it. */
 
-import { Flag } from "@culet/protocol/frame";
 import { CloseCode, type Outline, type Pick } from "@culet/protocol/messages";
 import { type Action, actionNamed } from "./actions";
 import {
@@ -19,6 +18,7 @@ import type { Preset, Upload } from "./catalogue";
 import { ChosenStone } from "./chosen-stone";
 import { type Embedding, embeddingOf, queryOf, SHOWN, Turntable } from "./embedding";
 import type { SessionEvent, Target } from "./events";
+import { refines } from "./fade";
 import { FallButton } from "./fall-button";
 import { listenToDrops } from "./file-drop";
 import { chooseFile, MESH_TYPES, parseScene, SCENE_TYPES, SKY_TYPES } from "./files";
@@ -375,7 +375,7 @@ function watch(id: string): void {
   let shownStep: bigint | null = null;
   viewer = new Viewer(streamUrl(location, id), {
     show: (picture, frame, arrival) => {
-      screen.show(picture, shownStep === frame.step && !(frame.flags & Flag.MOVING));
+      screen.show(picture, refines(frame, shownStep));
       shownStep = frame.step;
       clearTimeout(timer);
       if (viewer?.player.shown === 0) firstShown();

@@ -52,8 +52,10 @@ export class Saving {
   /** A link that shows what is seen, also when this session is gone, to the clipboard. */
   async copyLink(): Promise<void> {
     const { session, step, width, height } = this.seen();
-    const scene = await rest.sceneShown(session, step);
-    await copyText(await viewAddress({ scene, aspect: width / height }, location.href));
+    await copyText(async () => {
+      const scene = await rest.sceneShown(session, step);
+      return viewAddress({ scene, aspect: width / height }, location.href);
+    });
     this.world.note("The link to this view is on the clipboard.");
   }
 

@@ -175,7 +175,9 @@ async def presets() -> Presets:
     )
 
 
-@router.get("/api/presets/{name}/thumbnail.webp", response_class=Response, responses=picture_answers(WEBP))
+@router.get(
+    "/api/presets/{name}/thumbnail.webp", response_class=Response, responses=picture_answers(WEBP, rendered=False)
+)
 async def thumbnail(name: str) -> Response:
     """A small picture of a preset."""
     return Response(thumbnail_of(name), media_type=WEBP, headers={"Cache-Control": "max-age=3600"})

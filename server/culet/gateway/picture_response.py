@@ -31,13 +31,16 @@ BINARY = {"type": "string", "format": "binary"}
 """What OpenAPI calls bytes."""
 
 
-def picture_answers(*media_types: str, headers: tuple[str, ...] = ()) -> dict[int | str, dict[str, Any]]:
+def picture_answers(
+    *media_types: str, headers: tuple[str, ...] = (), rendered: bool = True
+) -> dict[int | str, dict[str, Any]]:
     """What OpenAPI should say about the answer of a route: a picture of one of these kinds, with these headers, and
-    those that say how good the picture is."""
+    those that say how good a rendered picture is."""
     return {
         200: {
             "description": "The picture.",
             "content": {kind: {"schema": BINARY} for kind in media_types},
-            "headers": {name: {"schema": {"type": "string"}} for name in headers} | QUALITY_HEADERS,
+            "headers": {name: {"schema": {"type": "string"}} for name in headers}
+            | (QUALITY_HEADERS if rendered else {}),
         }
     }

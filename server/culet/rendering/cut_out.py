@@ -10,7 +10,7 @@ Alpha is 1 - t, t being the mean of the channels; where caustics make a studio's
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from culet.optics.tone import tone_map
 from culet.rendering.chains import is_spectral
 from culet.rendering.light.effort import Effort
 from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.target import Target
 from culet.scene.backdrop import PlainBackdrop
 from culet.stage import Stage
 
@@ -61,9 +62,28 @@ class CutOut(Picture):
         """Interior segments of the last sample, of both."""
         return super().segments() + self._lighter.segments()
 
-    def linear(self) -> NDArray[np.floating[Any]]:
-        """(height, width, 4): linear radiance in front of black, which is multiplied by alpha already; and alpha."""
-        dark, light = super().linear(), self._lighter.linear()
+    def refine_until(
+        self, target: Target, seconds: float, *, pause: Callable[[], bool] = lambda: False
+    ) -> Iterator[float]:
+        """As of any picture. The error is the larger one of the two: before black and before white."""
+        self._lighter.compare_as_shown()
+        yield from super().refine_until(target, seconds, pause=pause)
+
+    def meets(self, target: Target) -> bool:
+        """Whether it has the error that the target asks for, if it asks for one."""
+        return super().meets(target) and self._lighter.meets(target)
+
+    def shown_error(self) -> float:
+        """Estimated, of what is shown before the worse of black and white."""
+        return max(super().shown_error(), self._lighter.shown_error())
+
+    def _needed(self, target: Target) -> int:
+        return max(super()._needed(target), self._lighter._needed(target))
+
+    def linear(self, rows: slice = slice(None)) -> NDArray[np.floating[Any]]:
+        """(height, width, 4), or those rows: linear radiance in front of black, which is multiplied by alpha already;
+        and alpha."""
+        dark, light = super().linear(rows), self._lighter.linear(rows)
         alpha = np.clip(1 - (light - dark).mean(axis=-1, keepdims=True), 0, 1)
         return np.concatenate([dark, alpha], axis=-1)
 
@@ -78,13 +98,13 @@ class CutOut(Picture):
         """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""
         if self._cut_out_samples == self.samples:
             return
-        linear = self.linear().reshape(-1, 4)
-        shown = np.empty((len(linear), self._cut_out.shape[-1]), np.uint8)
-        for begin in range(0, len(linear), DEVELOPED):
-            part = slice(begin, begin + DEVELOPED)
-            shown[part] = self._developed(linear[part])
+        shown = np.empty_like(self._cut_out)
+        step = max(1, DEVELOPED // self.width)
+        for begin in range(0, self.height, step):
+            rows = slice(begin, begin + step)
+            shown[rows] = self._developed(self.linear(rows).reshape(-1, 4)).reshape(shown[rows].shape)
             yield
-        self._cut_out, self._cut_out_samples = shown.reshape(self._cut_out.shape), self.samples
+        self._cut_out, self._cut_out_samples = shown, self.samples
 
     def _developed(self, linear: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
         """(N, 4), or (N, 3): by the references of film.cl."""

@@ -9,6 +9,8 @@ import numpy as np
 RATE = 0.75
 """An edge through a pixel, sampled n times by well spread points, is known to n^-3/4 (D. Mitchell, Consequences of
 stratified sampling in graphics, SIGGRAPH 1996): halfway between random samples and smooth pictures."""
+MOST = 2**53
+"""Samples, as many as nobody will take."""
 LEVELS = 2
 """Doublings that an estimate is the mean of: a sequence is luckier with some numbers of samples than with others."""
 
@@ -42,7 +44,8 @@ class Doublings:
         """How many samples let expect that error; None before the first doubling."""
         if not self._errors:
             return None
-        return max(1, math.ceil(min(math.pow(self._of_one() / error, 1 / RATE), 2.0**53)))
+        ratio = self._of_one() / error
+        return max(1, math.ceil(ratio ** (1 / RATE))) if ratio < MOST**RATE else MOST  # or it is no number
 
     def _of_one(self) -> float:
         """What the last LEVELS doublings say of a single sample, each taken on by RATE."""

@@ -269,8 +269,7 @@ class Picture:
         After each sample `pause` is asked whether to leave it at that for now. The picture that reaches the target is
         the same to the last bit however often it was left, as long as its first two samples were not made otherwise.
         """
-        pixels = self.width * self.height
-        self._sums.compare_shown = partial(self._renderer.shown_difference.pieces, self.scene, pixels)
+        self.compare_as_shown()
         spent = spent_on_light = 0.0
         while not self.reached(target):
             before = self.samples
@@ -280,6 +279,11 @@ class Picture:
             if pause():
                 break
         self.seconds, self.light_seconds = spent, spent_on_light
+
+    def compare_as_shown(self) -> None:
+        """From now on, tell the error of what is shown whenever samples have doubled."""
+        pixels = self.width * self.height
+        self._sums.compare_shown = partial(self._renderer.shown_difference.pieces, self.scene, pixels)
 
     def reached(self, target: Target) -> bool:
         """Whether there is nothing left to do for it: its error is met, or its samples are there."""
@@ -367,9 +371,9 @@ class Picture:
         """The built program that renders this picture."""
         return self._kernel.entry.program
 
-    def linear(self) -> NDArray[np.floating[Any]]:
-        """(height, width, 3) mean linear radiance."""
-        return self._sums.mean()[..., :3]
+    def linear(self, rows: slice = slice(None)) -> NDArray[np.floating[Any]]:
+        """(height, width, 3) mean linear radiance, or those rows of it."""
+        return self._sums.mean(rows)[..., :3]
 
     def cut_map(self) -> NDArray[np.floating[Any]]:
         """(height, width) mean weight that was dropped; times the largest radiance it bounds a pixel's error."""

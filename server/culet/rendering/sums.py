@@ -113,19 +113,20 @@ class Sums:
                 yield
             self.radiance.add(self.samples, squared / half**2, 3 * pixels)
 
-    def mean(self) -> NDArray[np.floating[Any]]:
-        """(height, width, 4) of all samples; zeros without any."""
-        runs = [
-            self._read(buffer) for buffer, count in zip(self.buffers, (self.samples, self.later), strict=True) if count
-        ]
-        return sum(runs, np.zeros((self._height, self._width, 4), self._real)) / self._real(max(1, self.samples))
+    def mean(self, rows: slice = slice(None)) -> NDArray[np.floating[Any]]:
+        """(height, width, 4) of all samples, or those rows of it; zeros without any sample."""
+        counts = self.samples, self.later
+        runs = [self._read(buffer, rows) for buffer, count in zip(self.buffers, counts, strict=True) if count]
+        height = len(range(*rows.indices(self._height)))
+        return sum(runs, np.zeros((height, self._width, 4), self._real)) / self._real(max(1, self.samples))
 
     @property
     def _size(self) -> int:
         """Bytes of a run."""
         return self._width * self._height * 4 * np.dtype(self._real).itemsize
 
-    def _read(self, buffer: Any) -> NDArray[np.floating[Any]]:  # noqa: ANN401
-        sums = np.empty((self._height, self._width, 4), self._real)
-        cl.enqueue_copy(self._fold.queue, sums, buffer)
+    def _read(self, buffer: Any, rows: slice) -> NDArray[np.floating[Any]]:  # noqa: ANN401
+        begin, end, _ = rows.indices(self._height)
+        sums = np.empty((end - begin, self._width, 4), self._real)
+        cl.enqueue_copy(self._fold.queue, sums, buffer, src_offset=begin * sums.itemsize * self._width * 4)
         return sums

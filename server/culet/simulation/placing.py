@@ -18,6 +18,9 @@ from culet.simulation.world import World
 ROUNDS = 16
 """Each moves the stone out of everything that it is in, one thing after the other. A wall and the floor take one, a gap
 between stones that the stone fits into a few; one that it does not fit into takes all, and is refused."""
+PUSHES = 4
+"""Out of stones, in each round: the next round goes on. A place among 64 stones that has no room is given up after a
+tenth of the time that a push for each of them takes."""
 OVERLAP = 1e-4
 """R, that stones may overlap where they are put; those that the solver has brought to rest do by up to 7e-5 R."""
 PARTS = (1.0, 0.5, 0.25, 0.125)
@@ -82,7 +85,7 @@ class _Room:
 
     def _out_of_stones(self, position: Triple, orientation: Quaternion) -> Triple:
         """Out of the stone that it is in most, then out of what it is in then, and so on."""
-        for _ in self._others:
+        for _ in range(PUSHES if self._others else 0):
             depth, axis = max(self._overlaps(position, orientation), default=(0.0, (0.0, 0.0, 0.0)))
             if depth <= OVERLAP:
                 break

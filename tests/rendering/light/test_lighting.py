@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +12,7 @@ import pyopencl as cl
 import pytest
 from numpy.typing import NDArray
 
+from culet.errors import DeviceError
 from culet.geometry.shape import Shape
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
@@ -18,6 +20,7 @@ from culet.rendering.light.effort import Effort
 from culet.rendering.light.light_map import frame_of
 from culet.rendering.light.lighting import Illumination, Maker
 from culet.rendering.light.panorama_light import is_summed
+from culet.rendering.light.ray import Ray
 from culet.rendering.light.sources import rays_of
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
@@ -190,6 +193,39 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     assert (again.linear() == fresh.linear()).all(), "by a map that is there already"
     assert (after.linear() == fresh.linear()).all(), "by one that was made for a moving picture"
     assert (moving.linear() != fresh.linear()).any()
+
+
+def test_a_pass_that_failed_is_made_anew(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    stage, made = Stage.of(scene_of()), Beams.pieces
+
+    def failing(*_: object, **__: object) -> Iterator[None]:
+        yield
+        raise DeviceError("lost")
+
+    renderer.lighting.forget()
+    found = renderer.lighting.of(stage)
+    assert found is not None
+    monkeypatch.setattr(Beams, "pieces", failing)
+    with pytest.raises(DeviceError):
+        list(found.pieces(1e-3, Effort.RESTING, 1, first=True))
+    monkeypatch.setattr(Beams, "pieces", made)
+    list(found.pieces(1e-3, Effort.RESTING, 1, first=True))
+    assert found.passes == 1
+
+
+def test_a_moving_pass_takes_the_rays_of_moving_pictures(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[bool] = []
+
+    def listening(stage: Stage, number: int, *, moving: bool = False) -> list[Ray]:
+        asked.append(moving)
+        return rays_of(stage, number, moving=moving)
+
+    monkeypatch.setattr("culet.rendering.light.lighting.rays_of", listening)
+    for effort, moving in ((Effort.MOVING, True), (Effort.RESTING, False)):
+        renderer.lighting.forget()
+        asked.clear()
+        lit(renderer, Stage.of(scene_of()), effort)
+        assert asked[-1] == moving
 
 
 def test_a_moving_picture_of_many_stones_has_few_rays_of_each_wide_lamp() -> None:

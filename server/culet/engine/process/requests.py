@@ -34,6 +34,10 @@ LONG_EVENTS = frozenset(
         "reset_stone",
         "toggle_walls",
         "push",
+        "orbit",
+        "translate",
+        "dolly",
+        "look_at_stone",
         "move_stone",
         "drag_stone",
         "turn_stone",
@@ -41,7 +45,8 @@ LONG_EVENTS = frozenset(
         "redo",
     }
 )
-"""They may make a stone or its hull, or try whether a stone that sleeps would move: other sessions go on meanwhile."""
+"""They may make a stone or its hull, try whether a stone that sleeps would move, or look for a way among all triangles
+of a mesh that the camera is near: other sessions go on meanwhile."""
 
 Answer = tuple[dict[str, Any], bytes | None]
 

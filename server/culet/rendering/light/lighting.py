@@ -282,8 +282,12 @@ class Illumination:
     def _advance(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
         """Go on with the pass under way, or else with a new one."""
         running = self._running = self._running or self._pass(cutoff, effort, seconds)
-        for piece in running:  # noqa: UP028 - that would end it with the picture that it is made for
-            yield piece
+        try:
+            for piece in running:  # noqa: UP028 - that would end it with the picture that it is made for
+                yield piece
+        except Exception:
+            self._running = None  # it has ended without a pass
+            raise
         if self._running is running:
             self._running = None
 
