@@ -69,7 +69,7 @@ soak: $(DONE)/soak opencl $(DONE)/solver
 
 # Writes what the hostile trials find into the documentation.
 reliability: $(DONE)/soak opencl
-	PYTHONPATH=tests $(BIN)/python -m hostile.reliability --into docs/reliability.md $(ARGS)
+	PYTHONPATH=tests $(BIN)/python -m hostile.reliability --into docs/explanation/reliability.md $(ARGS)
 
 bench: opencl
 	$(BIN)/culet bench --against tests/benchmarks/baseline.jsonl $(ARGS)

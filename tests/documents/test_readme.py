@@ -118,7 +118,7 @@ def test_the_examples_of_the_command_line_run(tmp_path: Path) -> None:
     assert (tmp_path / "path.csv").read_text().count("\n") > 3 / (1 / 30), "a line for every step, and a header"
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
+@pytest.mark.parametrize("document", ["README.md", "docs/how-to/python.md"])
 def test_the_examples_of_python_run(tmp_path: Path, document: str) -> None:
     """In one process, in their order."""
     text = (ROOT / document).read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What docs/simulation.md says is so: the columns of a path, each once and in their order."""
+"""What docs/explanation/simulation.md says is so: the columns of a path, each once and in their order."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from culet.scene import Scene
 from culet.simulation.paths import record
 from shared.stages import staged
 
-PAGE = (Path(__file__).parents[2] / "docs/simulation.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs/explanation/simulation.md").read_text(encoding="utf-8")
 
 
 def test_the_table_of_columns_names_the_columns_of_a_path_and_no_others(brilliant: Shape) -> None:

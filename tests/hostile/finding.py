@@ -1,4 +1,4 @@
-"""What a trial found: a row of the table in docs/reliability.md, and a claim that a test makes."""
+"""What a trial found: a row of the table in docs/explanation/reliability.md, and a claim that a test makes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`make reliability`: runs the long trials and writes the table of docs/reliability.md.
+"""`make reliability`: runs the long trials and writes the table of docs/explanation/reliability.md.
 
     python -m hostile.reliability [--into FILE] [--part PART] [NAME...]
 

@@ -7,11 +7,11 @@ from pathlib import Path
 from culet.optics.materials import MATERIALS
 from culet.optics.materials_page import page
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "materials.md"
+DOCUMENT = Path(__file__).parents[2] / "docs" / "reference" / "materials.md"
 
 
 def test_the_document_is_up_to_date() -> None:
-    """If not: python -m culet.optics.materials_page > docs/materials.md"""
+    """If not: python -m culet.optics.materials_page > docs/reference/materials.md"""
     assert DOCUMENT.read_text(encoding="utf-8") == page()
 
 

@@ -1,4 +1,4 @@
-"""The table of extremes in docs/accuracy.md: every count in it is zero, and it counts what is wrong."""
+"""The table of extremes in docs/explanation/accuracy.md: every count in it is zero, and it counts what is wrong."""
 
 from __future__ import annotations
 
@@ -58,6 +58,6 @@ def test_a_ray_that_is_lost_is_a_speck_though_it_is_counted_as_cut() -> None:
 
 
 def test_the_page_shows_every_case() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "accuracy.md").read_text(encoding="utf-8")
     for extreme in EXTREMES:
         assert f"| {extreme.name} |" in page

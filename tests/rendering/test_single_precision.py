@@ -53,6 +53,6 @@ def test_steps_are_told_from_slopes() -> None:
 
 
 def test_the_page_shows_every_scene() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "accuracy.md").read_text(encoding="utf-8")
     for name in SCENES:
         assert f"| {name} |" in page

@@ -71,7 +71,7 @@ def test_a_finding_beyond_its_limits_is_not_held() -> None:
 
 
 def test_the_page_shows_every_extreme() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "simulation.md").read_text(encoding="utf-8")
     for case in EXTREMES:
         assert f"| {case.name} |" in page
 

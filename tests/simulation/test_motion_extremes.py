@@ -1,4 +1,4 @@
-"""The table of extremes in docs/simulation.md: everything holds that must, and what makes no sense is refused."""
+"""The extremes in docs/explanation/simulation.md: everything holds that must, what makes no sense is refused."""
 
 from __future__ import annotations
 
@@ -35,6 +35,6 @@ def test_each_flaw_is_told() -> None:
 
 
 def test_the_page_shows_every_case() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "simulation.md").read_text(encoding="utf-8")
     for name in (*(extreme.name for extreme in EXTREMES), *REFUSED):
         assert f"| {name} |" in page

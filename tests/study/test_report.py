@@ -16,7 +16,7 @@ from culet.study.page import page
 from culet.study.report import Report, csv_text
 from study.reports import report
 
-DOCUMENTED = Path(__file__).parents[2] / "docs" / "study.md"
+DOCUMENTED = Path(__file__).parents[2] / "docs" / "explanation" / "study.md"
 
 
 def test_a_report_reads_back_as_it_was(tmp_path: Path) -> None:
@@ -91,5 +91,5 @@ def test_a_file_without_one_pair_of_marks_is_left_alone(tmp_path: Path, content:
 
 
 def test_the_readme_has_a_place_for_them() -> None:
-    text = (DOCUMENTED.parents[1] / "README.md").read_text(encoding="utf-8")
+    text = (DOCUMENTED.parents[2] / "README.md").read_text(encoding="utf-8")
     assert text.count(BEGIN) == text.count(END) == 1

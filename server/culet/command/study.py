@@ -153,7 +153,7 @@ def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh 
 def gallery(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets gallery.md and its pictures.")
-    ] = Path("docs"),
+    ] = Path("docs/reference"),
     thumbnails: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Gets the presets' small pictures too, as the page shows them."),

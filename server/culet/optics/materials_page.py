@@ -1,4 +1,4 @@
-"""The materials and the bands as a page of tables: `python -m culet.optics.materials_page > docs/materials.md`."""
+"""The materials and the bands as tables: `python -m culet.optics.materials_page > docs/reference/materials.md`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ COUNTS = (4, 5, 6, 8, 16, 32)
 
 INDICES = """# Materials
 
-Made by `python -m culet.optics.materials_page > docs/materials.md`; a test compares.
+Made by `python -m culet.optics.materials_page > docs/reference/materials.md`; a test compares.
 
 A scene names a material (`"material": "diamond"`), gives three indices (`{"ior": [r, g, b]}`, at 656.3, 546.1 and
 435.8 nm) or Sellmeier's coefficients (`{"sellmeier": [[B, C], ...]}`, C in micrometres). With three bands each channel

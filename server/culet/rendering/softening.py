@@ -20,7 +20,7 @@ class Softening:
     """Weighs each pixel 6 : 1 with the pixel on either side, along rows and along columns.
 
     One sample of a pixel takes steps at edges that many samples would round off. As shown, filtered so, it is as near
-    to the converged picture as two samples are, whose rendering takes twice as long (docs/performance.md).
+    to the converged picture as two samples are, whose rendering takes twice as long (docs/explanation/performance.md).
     """
 
     def __init__(self, device: Device, program: Any, allocate: Callable[[int], Any]) -> None:  # noqa: ANN401 - pyopencl has no types

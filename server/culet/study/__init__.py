@@ -2,7 +2,7 @@
 
     report = culet.study.measure("rendering", "matte", "report/matte", quick=True)
 
-measures as `culet study` does; docs/study.md says what, and what a report holds.
+measures as `culet study` does; docs/explanation/study.md says what, and what a report holds.
 """
 
 from __future__ import annotations

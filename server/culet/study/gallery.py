@@ -1,4 +1,4 @@
-"""The presets as pictures, with the measures that they are held to: what README, docs/gallery.md and the page show."""
+"""The presets as pictures, with the measures that they are held to: README, docs/reference/gallery.md and page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""docs/gallery.md: a picture of every preset, and the table of what each measures."""
+"""docs/reference/gallery.md: a picture of every preset, and the table of what each measures."""
 
 from __future__ import annotations
 

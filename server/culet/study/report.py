@@ -1,4 +1,4 @@
-"""A study's report: one shape for all studies, JSON in and out; docs/study.md describes it."""
+"""A study's report: one shape for all studies, JSON in and out; docs/explanation/study.md describes it."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ class Effort(NamedTuple):
 QUICK = Effort(320, 180, 256, 48, 9, 512, 4.0, 16)
 """For a first look."""
 FULL = Effort(640, 360, 1024, 192, 25, 1024, 15.0, 16)
-"""How long each takes, docs/study.md says."""
+"""How long each takes, docs/explanation/study.md says."""
 
 
 def study_rendering(

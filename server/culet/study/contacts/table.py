@@ -14,7 +14,7 @@ from culet.study.provenance import SIMULATION_STUDY, code_digest, commit, proces
 from culet.study.report import Point
 
 MARKS = "<!-- culet study contacts: begin -->", "<!-- culet study contacts: end -->"
-"""What is between them in docs/simulation.md is written by `culet study contacts --into`."""
+"""What is between them in docs/explanation/simulation.md is written by `culet study contacts --into`."""
 
 CASES = tuple(f"{case.name}: " for case in extreme.EXTREMES)
 MEASURES = {

@@ -1,6 +1,6 @@
 """Makes the pictures of simulation.md: plot and contact sheet.
 
-python docs/simulation_figures.py [plot] [sheet]
+python docs/explanation/simulation_figures.py [plot] [sheet]
 """
 
 from __future__ import annotations
