@@ -17,11 +17,11 @@ export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 # Kernels compiled for tests are kept here, apart from the user's own.
 test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web format validate soak reliability bench study compose-test compilers opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench study compose-test compilers opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(DONE)/solver $(WEB_BUILD)
-	@echo "Ready. make serve | wheel | test | check | validate | soak | bench | study | compose-test"
+	@echo "Ready. make serve | wheel | test | check | docs | validate | soak | bench | study | compose-test"
 
 serve: opencl $(DONE)/solver $(WEB_BUILD)
 	@exec $(BIN)/culet serve $(ARGS)
@@ -35,9 +35,9 @@ test: $(DONE)/dev opencl $(DONE)/solver compilers browser $(WEB_BUILD)
 	.ci/test $(ARGS)
 
 # Each in its own target, so that `make -k check` finds all there is to find.
-check: check-python check-kernels check-protocol check-web
+check: check-python check-kernels check-protocol check-web check-docs
 
-check-python: $(DONE)/dev
+check-python: $(DONE)/docs
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
@@ -51,6 +51,12 @@ check-protocol: $(DONE)/dev
 
 check-web: $(WEB_PACKAGES)
 	cd $(WEB) && npm run check
+
+check-docs: docs
+
+# A site that can be searched, without a server: open docs/_build/html/index.html. Nothing is fetched.
+docs: $(DONE)/docs
+	$(BIN)/sphinx-build --builder html --fresh-env --nitpicky --fail-on-warning --keep-going --quiet docs docs/_build/html
 
 format: $(DONE)/dev $(WEB_PACKAGES)
 	$(BIN)/ruff check --fix
@@ -95,6 +101,10 @@ $(DONE)/dev: pyproject.toml | $(DONE)/base
 
 $(DONE)/soak: pyproject.toml | $(DONE)/dev
 	$(BIN)/pip install --quiet --editable '.[soak]'
+	@touch $@
+
+$(DONE)/docs: pyproject.toml | $(DONE)/dev
+	$(BIN)/pip install --quiet --editable '.[docs]'
 	@touch $@
 
 $(DONE)/study: pyproject.toml | $(DONE)/base

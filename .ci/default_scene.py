@@ -1,4 +1,4 @@
-"""Write the default scene, as the model has it, into README.md."""
+"""Write the default scene, as the model has it, into its page of the documentation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from culet.scene import Scene
 
-README = Path(__file__).parents[1] / "README.md"
+PAGE = Path(__file__).parents[1] / "docs" / "reference" / "scene.md"
 BLOCK = re.compile(r"(?<=```json\n).*?(?=\n```)", re.DOTALL)
 LINE = 110
 
@@ -44,7 +44,7 @@ def whole(value: object) -> object:
 def main() -> None:
     """Replace the first block of JSON."""
     text = laid_out(whole(Scene().model_dump(mode="json")))
-    README.write_text(BLOCK.sub(lambda _: text, README.read_text(encoding="utf-8"), count=1), encoding="utf-8")
+    PAGE.write_text(BLOCK.sub(lambda _: text, PAGE.read_text(encoding="utf-8"), count=1), encoding="utf-8")
 
 
 if __name__ == "__main__":

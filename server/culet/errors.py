@@ -1,4 +1,4 @@
-"""What can go wrong, as one small tree.
+"""What can go wrong, as one small tree::
 
     CuletError
     ├── InputError              the caller sent something that cannot be used; says what was expected and what came

@@ -90,6 +90,6 @@ def test_a_file_without_one_pair_of_marks_is_left_alone(tmp_path: Path, content:
     assert readme.read_text() == content
 
 
-def test_the_readme_has_a_place_for_them() -> None:
-    text = (DOCUMENTED.parents[2] / "README.md").read_text(encoding="utf-8")
+def test_the_document_has_a_place_for_them() -> None:
+    text = DOCUMENTED.read_text(encoding="utf-8")
     assert text.count(BEGIN) == text.count(END) == 1

@@ -257,10 +257,10 @@ def compare_bench(before: BenchFile, after: BenchFile) -> None:
 def headline(
     report: ReportFile,
     into: Annotated[
-        Path | None, typer.Option(metavar="README.md", help="Write it between the marks of this file instead.")
+        Path | None, typer.Option(metavar="study.md", help="Write it between the marks of this file instead.")
     ] = None,
 ) -> None:
-    """Print a report's numbers in short, as a table for a README."""
+    """Print a report's numbers in short, as a table of a document."""
     from culet.study.headline import headline_markdown, write_into
     from culet.study.report import Report
 

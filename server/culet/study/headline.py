@@ -1,4 +1,4 @@
-"""A report in short, as a Markdown table, and its place in a README."""
+"""A report in short, as a Markdown table, and its place in a document."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ BEGIN, END = "<!-- culet study headline: begin -->", "<!-- culet study headline:
 
 
 def headline_markdown(report: Report) -> str:
-    """A table for a README."""
+    """A table for a document."""
     facts = report.provenance
     on = ", ".join(str(facts[name]) for name in ("processor", "driver", "commit") if name in facts)
     rows = "".join(f"| {line.name} | {f'{line.value:.3g} {line.unit}'.strip()} |\n" for line in report.headlines)
