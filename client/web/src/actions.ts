@@ -4,7 +4,8 @@ import type { JsonObject } from "@culet/protocol/messages";
 import type { SessionEvent, Target } from "./events";
 import type { Move } from "./moves";
 import type { Format } from "./rest";
-import { type Wording, worded } from "./wording";
+import { type Wording, worded } from "./words/wording";
+import { type Words, words } from "./words/words";
 
 /** R a key press, as in the report. */
 export const STEP = 0.5;
@@ -21,8 +22,10 @@ export type Effect =
   | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
   | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
+type Name = keyof Words["actions"];
+
 export interface Action {
-  name: string;
+  name: Name;
   label: string | Wording;
   /** Letter or name printed on the key (`KeyboardEvent.key`, in lower case). */
   key: string;
@@ -33,25 +36,29 @@ export interface Action {
   effect: Effect;
 }
 
-function letter(name: string, key: string, label: Action["label"], effect: Effect, repeats = false): Action {
-  return { name, label, key: key.toLowerCase(), code: `Key${key}`, repeats, effect };
+function key(name: Name, key: string, code: string, effect: Effect, repeats = false): Action {
+  return { name, label: words.actions[name], key, code, repeats, effect };
 }
 
-function move(name: string, code: string, label: string, move: Move): Action {
-  return { name, label, key: code.toLowerCase(), code, repeats: true, effect: { kind: "move", move } };
+function letter(name: Name, letter: string, effect: Effect, repeats = false): Action {
+  return key(name, letter.toLowerCase(), `Key${letter}`, effect, repeats);
 }
 
-function select(target: Target, key: string, code: string, label: string): Action {
-  return { name: target, label, key, code, repeats: false, effect: { kind: "select", target } };
+function move(name: Name, code: string, move: Move): Action {
+  return key(name, code.toLowerCase(), code, { kind: "move", move }, true);
 }
 
-function plain(name: string, key: string, label: Action["label"], type: Plain): Action {
-  return letter(name, key, label, { kind: "send", event: { type } });
+function select(target: Target, letter: string, code: string): Action {
+  return key(target, letter, code, { kind: "select", target });
+}
+
+function plain(name: Name, key: string, type: Plain): Action {
+  return letter(name, key, { kind: "send", event: { type } });
 }
 
 /** By a key with Ctrl, which `keys.ts` knows: no key has such a name or place. */
-function edit(type: "undo" | "redo", key: string, label: string): Action {
-  return { name: type, label, key, code: key, repeats: false, effect: { kind: "send", event: { type } } };
+function edit(type: "undo" | "redo", stroke: string): Action {
+  return key(type, stroke, stroke, { kind: "send", event: { type } });
 }
 
 /** The events that say all by their type. */
@@ -69,74 +76,43 @@ function dolly(forward: number): Effect {
   return { kind: "move", move: { forward } };
 }
 
-const LOOK = { one: "Look at the stone", several: "Look at the chosen stone, or all" };
-const PUT_BACK = { one: "Put the stone back", several: "Put the stones back" };
-
 export const ACTIONS: readonly Action[] = [
-  select("camera", "c", "KeyC", "Move the camera"),
-  select("light_1", "1", "Digit1", "Move the red light"),
-  select("light_2", "2", "Digit2", "Move the blue light"),
-  select("stone", "3", "Digit3", "Move the chosen stone"),
-  move("left", "ArrowLeft", "Left", { right: -STEP }),
-  move("right", "ArrowRight", "Right", { right: STEP }),
-  move("up", "ArrowUp", "Up", { up: STEP }),
-  move("down", "ArrowDown", "Down", { up: -STEP }),
-  letter("in", "I", "In", dolly(STEP), true),
-  letter("out", "O", "Out", dolly(-STEP), true),
-  move("turn_left", "Shift+ArrowLeft", "Turn left", { yaw: -TURN }),
-  move("turn_right", "Shift+ArrowRight", "Turn right", { yaw: TURN }),
-  move("turn_up", "Shift+ArrowUp", "Turn up", { pitch: TURN }),
-  move("turn_down", "Shift+ArrowDown", "Turn down", { pitch: -TURN }),
-  plain("reset_camera", "F", "Reset the camera", "reset_camera"),
-  letter("look", "V", LOOK, { kind: "stones", command: "lookAround" }),
-  plain("fall", "P", "Fall or pause", "toggle_fall"),
-  plain("reset_stone", "R", PUT_BACK, "reset_stone"),
-  plain("mirror", "M", "Mirror or checker", "toggle_mirror"),
-  plain("sky", "L", "Light sky, or the scene's own", "toggle_environment"),
-  plain("walls", "W", "Walls", "toggle_walls"),
-  {
-    name: "remove_stone",
-    label: { one: "Remove the stone", several: "Remove the chosen stone" },
-    key: "delete",
-    code: "Delete",
-    repeats: false,
-    effect: { kind: "stones", command: "remove" },
-  },
-  letter("put_back_stone", "U", "Take a removal back", { kind: "stones", command: "putBack" }),
-  edit("undo", "ctrl+z", "Undo"),
-  edit("redo", "ctrl+shift+z", "Redo"),
-  letter("download", "S", "Save the picture (.png)", { kind: "download", format: "png" }),
-  letter("copy_picture", "X", "Copy the picture", { kind: "copy", what: "picture" }),
-  letter("copy_link", "K", "Copy a link to this view", { kind: "copy", what: "link" }),
-  {
-    name: "keys",
-    label: "All keys",
-    key: "?",
-    code: "F1",
-    repeats: false,
-    effect: { kind: "page", command: "showKeys" },
-  },
-  letter("hide", "H", "Hide all but the picture", { kind: "page", command: "hideAll" }),
-  letter("full", "E", "Fill the screen", { kind: "page", command: "fillScreen" }),
+  select("camera", "c", "KeyC"),
+  select("light_1", "1", "Digit1"),
+  select("light_2", "2", "Digit2"),
+  select("stone", "3", "Digit3"),
+  move("left", "ArrowLeft", { right: -STEP }),
+  move("right", "ArrowRight", { right: STEP }),
+  move("up", "ArrowUp", { up: STEP }),
+  move("down", "ArrowDown", { up: -STEP }),
+  letter("in", "I", dolly(STEP), true),
+  letter("out", "O", dolly(-STEP), true),
+  move("turn_left", "Shift+ArrowLeft", { yaw: -TURN }),
+  move("turn_right", "Shift+ArrowRight", { yaw: TURN }),
+  move("turn_up", "Shift+ArrowUp", { pitch: TURN }),
+  move("turn_down", "Shift+ArrowDown", { pitch: -TURN }),
+  plain("reset_camera", "F", "reset_camera"),
+  letter("look", "V", { kind: "stones", command: "lookAround" }),
+  plain("fall", "P", "toggle_fall"),
+  plain("reset_stone", "R", "reset_stone"),
+  plain("mirror", "M", "toggle_mirror"),
+  plain("sky", "L", "toggle_environment"),
+  plain("walls", "W", "toggle_walls"),
+  key("remove_stone", "delete", "Delete", { kind: "stones", command: "remove" }),
+  letter("put_back_stone", "U", { kind: "stones", command: "putBack" }),
+  edit("undo", "ctrl+z"),
+  edit("redo", "ctrl+shift+z"),
+  letter("download", "S", { kind: "download", format: "png" }),
+  letter("copy_picture", "X", { kind: "copy", what: "picture" }),
+  letter("copy_link", "K", { kind: "copy", what: "link" }),
+  key("keys", "?", "F1", { kind: "page", command: "showKeys" }),
+  letter("hide", "H", { kind: "page", command: "hideAll" }),
+  letter("full", "E", { kind: "page", command: "fillScreen" }),
 ];
-
-const KEY_NAMES: Record<string, string> = {
-  arrowleft: "\u2190",
-  arrowright: "\u2192",
-  arrowup: "\u2191",
-  arrowdown: "\u2193",
-  delete: "Del",
-  "ctrl+z": "Ctrl Z",
-  "ctrl+shift+z": "Ctrl Shift Z",
-  "shift+arrowleft": "Shift \u2190",
-  "shift+arrowright": "Shift \u2192",
-  "shift+arrowup": "Shift \u2191",
-  "shift+arrowdown": "Shift \u2193",
-};
 
 /** A key as it is printed. */
 export function keyName({ key }: Pick<Action, "key">): string {
-  return KEY_NAMES[key] ?? key.toUpperCase();
+  return words.keyNames[key] ?? key.toUpperCase();
 }
 
 /** "Reset the camera  [F]": the label for a scene, with its key as it is printed. */

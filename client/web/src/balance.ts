@@ -2,6 +2,7 @@
 
 import { Flag, type Frame } from "@culet/protocol/frame";
 import { EXACTEST_RATE, FASTEST_RATE } from "@culet/protocol/messages";
+import { words } from "./words/words";
 
 export interface BalanceShown {
   exactness: number;
@@ -15,20 +16,20 @@ export function askedRate({ exactness, pinned }: BalanceShown): number | null {
 
 export function balanceText(balance: BalanceShown): string {
   const rate = askedRate(balance);
-  if (rate !== null) return `In motion: ${rate.toFixed(0)} frames/s, as good as time allows.`;
-  if (balance.exactness === 1) return "In motion: all that the scene asks for, however long it takes.";
-  return `In motion: quality held at ${Math.round(balance.exactness * 100)} %, however long it takes.`;
+  if (rate !== null) return words.meter.byRate(rate);
+  if (balance.exactness === 1) return words.meter.exact;
+  return words.meter.byQuality(balance.exactness);
 }
 
 /** What a frame was drawn with. */
 export function settingsText(frame: Omit<Frame, "payload">): string {
   const { width, height, samples, bands, cutoff, maxBounces, flags } = frame;
   return [
-    `${width}\u00d7${height}`,
-    samples === 1 ? "1 sample" : `${samples} samples`,
-    `${bands} bands`,
-    `cut-off ${Number(cutoff.toPrecision(3))}`,
-    `${maxBounces} bounces`,
-    flags & Flag.POLARISED ? "polarised" : "unpolarised",
+    words.status.size(width, height),
+    words.status.samples(samples),
+    words.meter.bands(bands),
+    words.meter.cutoff(String(Number(cutoff.toPrecision(3)))),
+    words.meter.bounces(maxBounces),
+    flags & Flag.POLARISED ? words.meter.polarised : words.meter.unpolarised,
   ].join(" \u00b7 ");
 }

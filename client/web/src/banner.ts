@@ -2,45 +2,38 @@
 
 import { CloseCode } from "@culet/protocol/messages";
 import type { Connection } from "./stream";
+import { words } from "./words/words";
 
 /** What to say about the connection, or null while all is well. */
 export function bannerText(connection: Connection, engine: "down" | "up"): string | null {
   switch (connection.status) {
     case "connecting":
-      return "Connecting\u2026";
+      return words.connection.connecting;
     case "waiting":
-      return `Connection lost. ${tryingAgainText(connection.delay)}`;
+      return words.connection.lost(tryingAgainText(connection.delay));
     case "closed":
-      return "Not connected.";
+      return words.connection.closed;
     case "open":
-      return engine === "down" ? "The render process stopped and is being restarted. The scene is kept." : null;
+      return engine === "down" ? words.connection.engineDown : null;
   }
 }
 
-/** What stands where the picture will be. */
-export const WAITING = "Waiting for the first picture\u2026";
-export const WAITING_LONG = `${WAITING}\nA server that is new to its processor first compiles its kernels for it, once.`;
-
-/** What to say of a session that the server had lost. */
-export const REGAINED = "The server had lost this session. It was made again as this page last saw it.";
-export const NOT_REGAINED = "The server has lost this session, and it cannot be made again.";
-
 /** When the next try is, after a pause of so many milliseconds. */
 export function tryingAgainText(delay: number): string {
-  return `Trying again in ${Math.max(1, Math.round(delay / 1000))} s\u2026`;
+  return words.connection.tryingAgain(Math.max(1, Math.round(delay / 1000)));
 }
 
 /** Why a stream is over for good, for the card. */
 export function obstacleText(code: number, reason: string): string {
   switch (code) {
     case CloseCode.UNKNOWN_SESSION:
-      return "There is no such session (any more). It may have been closed, or expired.";
+      return words.connection.unknownSession;
     case CloseCode.PROTOCOL_ERROR:
-      return "This page and the server speak different versions. Reload the page.";
+      return words.connection.otherVersion;
     case CloseCode.FORBIDDEN_ORIGIN:
-      return "The server does not let this page watch: it was served from another origin.";
+      return words.connection.foreignOrigin;
     default:
-      return reason ? `The stream ended: ${reason}` : `The stream ended (code ${code}).`;
+      return reason ? words.connection.ended(reason) : words.connection.endedByCode(code);
   }
 }
 

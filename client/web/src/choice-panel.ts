@@ -23,16 +23,9 @@ import { SizeControl } from "./size-control";
 import { imageSky, SkyChoice } from "./sky-choice";
 import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 type Values = Record<string, unknown>;
-
-const HINTS = {
-  bands: "Wavelengths that are followed. 3: one each of red, green and blue; more spread the fire into a spectrum",
-  polarised: "Follow how reflections polarise the light; without it, light is averaged at each one",
-  cutoff: "Light that brings less than this part of what it began with is followed no further",
-  end: "What becomes of light below the cut-off",
-  toneMap: "How radiance becomes the colours of the screen",
-};
 
 /** The sections of the panel that the choices go into: about the stone, about what is around it, and how light is followed. */
 export interface Sections {
@@ -43,8 +36,8 @@ export interface Sections {
 
 export class ChoicePanel {
   private readonly controls: LiveControls<Choices>;
-  private readonly material = new Choice<string>("Material", [OWN_INDICES], NOTHING_CHOSEN.material);
-  private readonly sky = new Choice<string>("Sky", SKIES, NOTHING_CHOSEN.sky);
+  private readonly material = new Choice<string>(words.material.label, [OWN_INDICES], NOTHING_CHOSEN.material);
+  private readonly sky = new Choice<string>(words.skies.label, SKIES, NOTHING_CHOSEN.sky);
   private readonly size: SizeControl;
   private readonly studio = new SkyChoice();
   private skies: readonly Option<string>[] = SKIES;
@@ -59,13 +52,19 @@ export class ChoicePanel {
     this.size = new SizeControl(stone, send, clamped);
     this.controls.listen("sky", surroundings.add(this.sky));
     const numbers = (values: readonly number[]) => values.map((value) => ({ label: String(value), value }));
-    const { bands, polarised, cutoff, end, toneMap } = HINTS;
+    const said = words.optics;
     const none = NOTHING_CHOSEN;
-    this.controls.listen("bands", optics.add(new Choice("Bands", numbers(BANDS), none.bands)).hint(bands));
-    this.controls.listen("polarised", optics.add(new Toggle("Polarised")).hint(polarised));
-    this.controls.listen("cutoff", optics.add(new Choice("Cut-off", numbers(CUTOFFS), none.cutoff)).hint(cutoff));
-    this.controls.listen("end", optics.add(new Choice("Below it", ENDS, none.end)).hint(end));
-    this.controls.listen("toneMap", optics.add(new Choice("Tone map", TONE_MAPS, none.toneMap)).hint(toneMap));
+    this.controls.listen("bands", optics.add(new Choice(said.bands, numbers(BANDS), none.bands)).hint(said.bandsHint));
+    this.controls.listen("polarised", optics.add(new Toggle(said.polarised)).hint(said.polarisedHint));
+    this.controls.listen(
+      "cutoff",
+      optics.add(new Choice(said.cutoff, numbers(CUTOFFS), none.cutoff)).hint(said.cutoffHint),
+    );
+    this.controls.listen("end", optics.add(new Choice(said.end, ENDS, none.end)).hint(said.endHint));
+    this.controls.listen(
+      "toneMap",
+      optics.add(new Choice(said.toneMap, TONE_MAPS, none.toneMap)).hint(said.toneMapHint),
+    );
   }
 
   update({ scene }: ViewState): void {

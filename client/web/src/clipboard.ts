@@ -1,27 +1,25 @@
 /** The clipboard, where the browser lets a page write to it. */
 
-/** Why a browser keeps the clipboard to itself: it is there for pages that came by https, or from the same machine. */
-const INSECURE = "The browser gives the clipboard only to pages that came by https, or from this machine";
-const REFUSED = "The browser did not let the page write to the clipboard";
+import { words } from "./words/words";
 
 /** Put a picture there once it has been rendered; throws Error with words for the user, and with what to do instead. */
 export async function copyPicture(render: () => Promise<Blob>): Promise<void> {
-  if (!hasClipboard()) throw new Error(`${INSECURE}: S saves the picture instead.`);
-  if (typeof ClipboardItem === "undefined") throw new Error("This browser copies no pictures: S saves the picture.");
+  if (!hasClipboard()) throw new Error(words.clipboard.insecurePicture);
+  if (typeof ClipboardItem === "undefined") throw new Error(words.clipboard.noPictures);
   const picture = render();
   try {
     // A promise, and at once: Safari forgets that a key was pressed if the picture is waited for first.
     await navigator.clipboard.write([new ClipboardItem({ "image/png": picture })]);
   } catch (error) {
     await picture; // it may be the picture that could not be had
-    throw new Error(`${refusal(error)} S saves it.`);
+    throw new Error(words.clipboard.refusedPicture(reasonOf(error)));
   }
 }
 
 /** Put a text there once it has been made; throws Error that has the text, so that the user can copy it by hand. */
 export async function copyText(make: () => Promise<string>): Promise<void> {
   const text = make();
-  if (!hasClipboard()) throw new Error(`${INSECURE}. To be copied by hand:\n${await text}`);
+  if (!hasClipboard()) throw new Error(words.clipboard.insecureText(await text));
   const promised = typeof ClipboardItem !== "undefined";
   const write = async () =>
     promised // as a picture
@@ -30,7 +28,7 @@ export async function copyText(make: () => Promise<string>): Promise<void> {
   try {
     await write();
   } catch (error) {
-    throw new Error(`${refusal(error)} To be copied by hand:\n${await text}`); // or why there is none
+    throw new Error(words.clipboard.refusedText(reasonOf(error), await text)); // or why there is none
   }
 }
 
@@ -43,6 +41,6 @@ function hasClipboard(): boolean {
   return (navigator as Partial<Navigator>).clipboard !== undefined;
 }
 
-function refusal(error: unknown): string {
-  return `${REFUSED} (${error instanceof Error ? error.message : error}).`;
+function reasonOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
 }

@@ -8,6 +8,7 @@ import { cutName, cutOf, cutPatch, type Proportion, proportionsOf } from "./cut"
 import { LiveControls } from "./live-controls";
 import { stonePatch } from "./stones";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 const STEP = 0.05;
 
@@ -40,7 +41,7 @@ export class CutPanel {
     );
     for (const proportion of proportions) this.addSlider(this.controls, proportion);
     const reset = () => this.send(stonePatch(this.scene, { cut: cut.name }));
-    this.section.add(new Command("The usual proportions", reset));
+    this.section.add(new Command(words.cut.usual, reset));
     this.update(state);
   }
 

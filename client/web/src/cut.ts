@@ -4,6 +4,7 @@ import type { JsonObject } from "@culet/protocol/messages";
 import type { CutKind } from "./catalogue";
 import { number, object, part, text } from "./json";
 import { stoneOf, stonePatch } from "./stones";
+import { type Words, words } from "./words/words";
 
 /** A slider about one proportion. */
 export interface Proportion {
@@ -15,25 +16,19 @@ export interface Proportion {
   hint: string;
 }
 
-interface Usual {
-  range: readonly [number, number];
-  hint: string;
-}
+type Usual = keyof Words["cut"]["hints"];
 
 /** What is cut: of all that the server allows, a slider this short could not tell a degree from the next. */
-const USUAL: Record<string, Usual> = {
-  table_percent: { range: [45, 75], hint: "The top facet's width, % of the girdle's diameter" },
-  crown_degrees: { range: [20, 45], hint: "Slope of the main facets above the girdle" },
-  pavilion_degrees: {
-    range: [36, 48],
-    hint: "Slope of the main facets below the girdle: too flat or too steep, and light leaks through them",
-  },
-  star_percent: { range: [30, 70], hint: "How far the stars reach from the table, % of the way to the girdle" },
-  lower_half_percent: { range: [50, 95], hint: "How far the lower halves reach down, % of the way to the culet" },
-  girdle_percent: { range: [0.5, 10], hint: "Thickness at the main facets, % of the diameter" },
+const USUAL: Record<Usual, readonly [number, number]> = {
+  table_percent: [45, 75],
+  crown_degrees: [20, 45],
+  pavilion_degrees: [36, 48],
+  star_percent: [30, 70],
+  lower_half_percent: [50, 95],
+  girdle_percent: [0.5, 10],
 };
 
-const UNITS: Record<string, string> = { percent: ", %", degrees: ", \u00b0" };
+const UNITS = ["percent", "degrees"] as const;
 const NO_LIMIT: readonly [number, number] = [Number.NEGATIVE_INFINITY, Number.POSITIVE_INFINITY];
 
 /** The sliders for a cut; each within what the server allows and what is usual. */
@@ -41,24 +36,27 @@ export function proportionsOf({ proportions }: CutKind): Proportion[] {
   return Object.entries(proportions).flatMap(([name, value]) => {
     const schema = object(value);
     if (schema.type !== "number") return [];
-    const [least, most] = USUAL[name]?.range ?? NO_LIMIT;
+    const [least, most] = isUsual(name) ? USUAL[name] : NO_LIMIT;
     return {
       name,
       label: labelOf(name),
       least: Math.max(least, number(schema.minimum ?? schema.exclusiveMinimum, least)),
       most: Math.min(most, number(schema.maximum ?? schema.exclusiveMaximum, most)),
       otherwise: number(schema.default, 0),
-      hint: USUAL[name]?.hint ?? "",
+      hint: isUsual(name) ? words.cut.hints[name] : "",
     };
   });
 }
 
+function isUsual(name: string): name is Usual {
+  return name in USUAL;
+}
+
 /** "Lower half, %" of `lower_half_percent`. */
 function labelOf(name: string): string {
-  const words = name.split("_");
-  const unit = UNITS[words.at(-1) ?? ""] ?? "";
-  const said = (unit ? words.slice(0, -1) : words).join(" ");
-  return said.charAt(0).toUpperCase() + said.slice(1) + unit;
+  const parts = name.split("_");
+  const unit = UNITS.find((known) => known === parts.at(-1)) ?? null;
+  return words.cut.proportion((unit ? parts.slice(0, -1) : parts).join(" "), unit);
 }
 
 /** The name of the stone's cut, or null if it has none: there is no stone, or a mesh takes the cut's place. */

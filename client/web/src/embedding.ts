@@ -1,6 +1,7 @@
 /** What an address asks of the page where it stands in another page: no interface, and a turntable. */
 
 import type { Orbit } from "@culet/protocol/messages";
+import { words } from "./words/words";
 
 export interface Embedding {
   /** Panel, scenes, buttons and lines are shown. */
@@ -16,10 +17,10 @@ export const FASTEST = 360;
 export function embeddingOf(search: string): Embedding {
   const query = new URLSearchParams(search);
   const [ui, rotate] = [query.get("ui") ?? "1", query.get("rotate") ?? "0"];
-  if (ui !== "0" && ui !== "1") throw new Error(`ui in the address: expected 0 or 1, got ${ui}.`);
+  if (ui !== "0" && ui !== "1") throw new Error(words.address.ui(ui));
   const degrees = rotate.trim() === "" ? Number.NaN : Number(rotate);
   if (!(Math.abs(degrees) <= FASTEST)) {
-    throw new Error(`rotate in the address: expected ${-FASTEST} to ${FASTEST} degrees a second, got ${rotate}.`);
+    throw new Error(words.address.rotate(FASTEST, rotate));
   }
   return { ui: ui === "1", rotate: degrees };
 }

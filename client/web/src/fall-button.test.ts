@@ -1,5 +1,8 @@
 import { expect, it } from "vitest";
-import { FALL, fallLabel, PAUSE } from "./fall-button";
+import { fallLabel } from "./fall-button";
+import { words } from "./words/words";
+
+const { fall: FALL, pause: PAUSE } = words.fallButton;
 
 const scene = { stones: [{}] };
 const trio = { stones: [{}, {}, {}] };

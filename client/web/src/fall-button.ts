@@ -3,10 +3,10 @@
 import { actionNamed, labelWithKey } from "./actions";
 import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
-import { worded } from "./wording";
+import { worded } from "./words/wording";
+import { words } from "./words/words";
 
-export const FALL = { one: "Let the stone fall", several: "Let the stones fall" };
-export const PAUSE = "Pause the fall";
+const { fall: FALL, pause: PAUSE } = words.fallButton;
 
 /** What the button does next, or null if there is no stone. */
 export function fallLabel({ scene, falling, asleep }: Pick<ViewState, "scene" | "falling" | "asleep">): string | null {

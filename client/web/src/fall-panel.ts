@@ -1,32 +1,31 @@
 /** The panel's sliders and lists about the fall. They act while the stone falls. */
 
 import type { Titled } from "./catalogue";
-import { Choice, optionsOf } from "./controls/choice";
+import { Choice } from "./controls/choice";
 import type { Section } from "./controls/section";
 import { type Clamped, Slider } from "./controls/slider";
 import { type Direction, type Fall, fallOf, fallPatch, MODELS, OF_RIGID, spinAxis } from "./fall";
 import { LiveControls } from "./live-controls";
 import { hasStone } from "./stones";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 type Name = "height" | "spin" | "gravity" | "restitution" | "friction" | "rolling";
 
 interface Setting {
   name: Name;
-  label: string;
   /** What a scene says may be beyond: then the number is right and the slider is at its end. */
   most: number;
   step: number;
-  hint: string;
 }
 
 const SLIDERS: readonly Setting[] = [
-  { name: "height", label: "Drop height, R", most: 8, step: 0.05, hint: "From the floor to the bounding sphere" },
-  { name: "spin", label: "Spin, rad/s", most: 30, step: 0.1, hint: "At the start, about the axis that the scene has" },
-  { name: "gravity", label: "Gravity, R/s\u00b2", most: 30, step: 0.1, hint: "R is the stone's radius" },
-  { name: "restitution", label: "Restitution", most: 1, step: 0.01, hint: "Speed after a bounce, of that before" },
-  { name: "friction", label: "Friction", most: 2, step: 0.01, hint: "Coulomb's coefficient" },
-  { name: "rolling", label: "Rolling resistance", most: 0.5, step: 0.005, hint: "As a lever arm, R" },
+  { name: "height", most: 8, step: 0.05 },
+  { name: "spin", most: 30, step: 0.1 },
+  { name: "gravity", most: 30, step: 0.1 },
+  { name: "restitution", most: 1, step: 0.01 },
+  { name: "friction", most: 2, step: 0.01 },
+  { name: "rolling", most: 0.5, step: 0.005 },
 ];
 
 /** What a list is before the server said what there is to choose from. */
@@ -36,7 +35,7 @@ export class FallPanel {
   private readonly controls: LiveControls<Fall>;
   private readonly section: Section;
   private readonly sliders: ReadonlyMap<Name, Slider>;
-  private readonly integrator = new Choice<string>("Integrator", [], NOT_KNOWN);
+  private readonly integrator = new Choice<string>(words.fall.integrator, [], NOT_KNOWN);
   private scene: ViewState["scene"] = null;
   private axis: Direction | undefined;
 
@@ -47,13 +46,14 @@ export class FallPanel {
       (name, value) => send(fallPatch(this.scene, name, value, this.axis)),
     );
     this.sliders = new Map(
-      SLIDERS.map(({ name, label, most, step, hint }) => {
+      SLIDERS.map(({ name, most, step }) => {
+        const [label, hint] = words.fall[name];
         const slider = new Slider(label, { least: 0, most, step, decimals: step < 0.01 ? 3 : 2 }, clamped);
         this.controls.listen(name, section.add(slider).hint(hint));
         return [name, slider];
       }),
     );
-    this.controls.listen("model", section.add(new Choice<string>("Model", optionsOf(MODELS), NOT_KNOWN)));
+    this.controls.listen("model", section.add(new Choice<string>(words.fall.model, MODELS, NOT_KNOWN)));
     this.controls.listen("integrator", section.add(this.integrator));
   }
 

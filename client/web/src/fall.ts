@@ -1,8 +1,10 @@
 /** How the stone falls, as a scene says it, and the merge patches that change it. */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import type { Option } from "./controls/choice";
 import { number, part, text, triple } from "./json";
 import { stoneOf, stonePatch } from "./stones";
+import { words } from "./words/words";
 
 export interface Fall {
   /** R: how far above the floor the stone's bounding sphere starts. */
@@ -24,7 +26,10 @@ export type Direction = readonly [number, number, number];
 /** The settings that the report's model does not know. */
 export const OF_RIGID = ["friction", "rolling", "integrator"] as const;
 
-export const MODELS = { "rigid body": "rigid", "the report's": "classic" };
+export const MODELS: readonly Option<string>[] = [
+  { label: words.fall.rigid, value: "rigid" },
+  { label: words.fall.classic, value: "classic" },
+];
 
 /** The scene's before there is one. */
 export const NOTHING_FALLS: Fall = {

@@ -1,6 +1,7 @@
 /** Files that are dropped on the page: opened by their endings. A browser left alone would leave the page for the file. */
 
 import { MESH_TYPES, SCENE_TYPES, SKY_TYPES } from "./files";
+import { words } from "./words/words";
 
 export type Opens = Record<"scene" | "mesh" | "sky", (file: File) => void>;
 
@@ -31,10 +32,7 @@ export function listenToDrops(target: Pick<Window, "addEventListener">, opens: O
     for (const file of event.dataTransfer.files) {
       const kind = kindOf(file.name);
       if (kind) opens[kind](file);
-      else
-        refuse(
-          `${file.name}: expected a scene (${said("scene")}), a mesh or design (${said("mesh")}) or a sky (${said("sky")}).`,
-        );
+      else refuse(words.files.notToOpen(file.name, said("scene"), said("mesh"), said("sky")));
     }
   });
 }

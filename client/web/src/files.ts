@@ -1,6 +1,7 @@
 /** Files from and to the user. */
 
 import type { JsonObject } from "@culet/protocol/messages";
+import { words } from "./words/words";
 
 export const SCENE_TYPES = ".json,application/json";
 /** Of meshes and of cutters' designs. */
@@ -35,10 +36,10 @@ export function parseScene(text: string, name: string): JsonObject {
   try {
     data = JSON.parse(text);
   } catch (error) {
-    throw new Error(`${name} is not JSON: ${error instanceof Error ? error.message : error}`);
+    throw new Error(words.files.notJson(name, error instanceof Error ? error.message : String(error)));
   }
   if (typeof data !== "object" || data === null || Array.isArray(data)) {
-    throw new Error(`${name}: expected a scene (a JSON object), got ${Array.isArray(data) ? "a list" : String(data)}`);
+    throw new Error(words.files.noSceneIn(name, Array.isArray(data) ? words.files.list : String(data)));
   }
   return data as JsonObject;
 }

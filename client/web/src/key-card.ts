@@ -1,17 +1,8 @@
 /** The card that lists what keys, mouse and fingers do. */
 
 import { ACTIONS, keyName } from "./actions";
-import { worded } from "./wording";
-
-/** What is done without a key. */
-export const GESTURES: readonly (readonly [string, string])[] = [
-  ["Drag", "Turn the view; of a light that is chosen, move the light around; turn a stone that is to be moved"],
-  ["Wheel, pinch", "Nearer, farther"],
-  ["Click, tap", "Choose a stone, where there are several"],
-  ["Shift and drag", "Throw the stone under the pointer"],
-  ["Ctrl and drag", "Move the stone under the pointer; with Shift turn it"],
-  ["Esc", "Close this card, leave the full screen, or show all again"],
-];
+import { worded } from "./words/wording";
+import { words } from "./words/words";
 
 export class KeyCard {
   private readonly dialog: HTMLDialogElement;
@@ -20,7 +11,7 @@ export class KeyCard {
   constructor(dialog: HTMLDialogElement, table: HTMLTableElement, close: HTMLButtonElement) {
     this.dialog = dialog;
     const keys = ACTIONS.map((action) => [keyName(action), worded(action.label, null)] as const);
-    for (const [key, meaning] of [...keys, ...GESTURES]) {
+    for (const [key, meaning] of [...keys, ...words.gestures]) {
       const row = table.insertRow();
       const head = document.createElement("th");
       head.scope = "row";

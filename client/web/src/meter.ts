@@ -12,17 +12,16 @@ import { type Arrival, FrameHistory } from "./frame-history";
 import { LiveControls } from "./live-controls";
 import type { Plots } from "./plots";
 import { INITIAL, type ViewState } from "./view-state";
+import { words } from "./words/words";
 
 const WIDTH = 330;
 const MARGIN = 12;
 const EXACTNESS = { least: 0, most: 1, step: 0.05, decimals: 2 };
-const EXACTNESS_HINT = "0: many frames a second; 1: few and good ones. For all viewers of this session";
-const PINNED_HINT = "Moving frames keep this quality, however long they take";
 /** Between two drawings of the plots. */
 const DRAW_MS = 100;
 
 export class Meter {
-  private readonly section = new Section("Speed and exactness", 2);
+  private readonly section = new Section(words.meter.title, 2);
   private readonly controls: LiveControls<BalanceShown>;
   private state: BalanceShown = balanceOf(INITIAL);
   private readonly meaning = paragraph();
@@ -40,10 +39,10 @@ export class Meter {
       () => ({ ...this.state }),
       (name, value) => send({ type: "balance", ...this.controls.shown, [name]: value }),
     );
-    const exactness = this.section.add(new Slider("Exactness", EXACTNESS, clamped));
-    const pinned = this.section.add(new Toggle("Pin the quality"));
-    this.controls.listen("exactness", exactness.hint(EXACTNESS_HINT));
-    this.controls.listen("pinned", pinned.hint(PINNED_HINT));
+    const exactness = this.section.add(new Slider(words.meter.exactness, EXACTNESS, clamped));
+    const pinned = this.section.add(new Toggle(words.meter.pinned));
+    this.controls.listen("exactness", exactness.hint(words.meter.exactnessHint));
+    this.controls.listen("pinned", pinned.hint(words.meter.pinnedHint));
     this.figures.className = "figures";
     this.section.body.append(this.meaning, this.settings, this.figures);
     this.section.onFold((open) => this.fold(open));

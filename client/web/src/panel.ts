@@ -18,8 +18,9 @@ import { FORMATS } from "./saving";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { withFirst } from "./stones";
 import { SurfacePanel } from "./surface-panel";
-import { INITIAL, TARGET_NAMES, type ViewState } from "./view-state";
-import { worded } from "./wording";
+import { INITIAL, type ViewState } from "./view-state";
+import { worded } from "./words/wording";
+import { words } from "./words/words";
 
 export interface PanelActions {
   perform: (action: Action) => void;
@@ -39,7 +40,6 @@ export interface PanelActions {
 
 const MOVES = ["left", "right", "up", "down", "in", "out", "turn_left", "turn_right", "turn_up", "turn_down"];
 const TARGETS = ["camera", "light_1", "light_2", "stone"] as const;
-const STONE = { one: "Stone", several: "Stones" };
 const NARROW = 640;
 
 type Shown = Pick<ViewState, "falling" | "mirror" | "light" | "walls">;
@@ -61,25 +61,26 @@ export class Panel {
 
   constructor(container: HTMLElement, actions: PanelActions) {
     this.actions = actions;
-    const root = new Section("culet", 1);
+    const said = words.panel;
+    const root = new Section(said.title, 1);
     this.edits = root.add(new EditButtons(actions.perform));
-    const stone = root.section(STONE.one);
-    const surroundings = root.section("Surroundings");
-    const move = root.section("Move");
-    const cut = root.section("Cut").fold(true);
-    const fall = root.section("Fall").fold(true);
-    const surfaces = root.section("Floor and walls").fold(true);
-    const optics = root.section("Optics").fold(true);
-    const files = root.section("Pictures and scenes");
-    const page = root.section("Help and page");
+    const stone = root.section(said.stone.one);
+    const surroundings = root.section(said.surroundings);
+    const move = root.section(said.move);
+    const cut = root.section(said.cut).fold(true);
+    const fall = root.section(said.fall).fold(true);
+    const surfaces = root.section(said.surfaces).fold(true);
+    const optics = root.section(said.optics).fold(true);
+    const files = root.section(said.files);
+    const page = root.section(said.page);
     this.stone = stone;
     this.choices = new ChoicePanel({ stone, surroundings, optics }, actions.patch, actions.clamped);
-    this.addToggle(stone, "falling", "fall", "Falling");
+    this.addToggle(stone, "falling", "fall", said.falling);
     this.addButton(stone, actionNamed("reset_stone"));
     this.stones = new StonePanel(stone, actions.perform, actions.stones);
-    this.addToggle(surroundings, "mirror", "mirror", "Mirror");
-    this.addToggle(surroundings, "light", "sky", "Light sky");
-    this.addToggle(surroundings, "walls", "walls", "Walls");
+    this.addToggle(surroundings, "mirror", "mirror", said.mirror);
+    this.addToggle(surroundings, "light", "sky", said.lightSky);
+    this.addToggle(surroundings, "walls", "walls", said.walls);
     this.surfaces = new SurfacePanel(surroundings, surfaces, actions.patch, actions.clamped);
     this.target = this.addMoves(move);
     this.cut = new CutPanel(cut, actions.patch, actions.clamped);
@@ -102,7 +103,7 @@ export class Panel {
     this.target.value = state.target;
     for (const [name, toggle] of this.toggles) toggle.value = shown[name];
     for (const [button, action] of this.counted) button.label(labelWithKey(action, state.scene));
-    this.stone.title(worded(STONE, state.scene));
+    this.stone.title(worded(words.panel.stone, state.scene));
     this.stones.update(state, this.actions.removals());
     const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
     this.fall.update(chosen);
@@ -117,9 +118,9 @@ export class Panel {
 
   private addMoves(section: Section): Choice<Target> {
     const options = TARGETS.map((target) => {
-      return { label: labelWithKey({ ...actionNamed(target), label: TARGET_NAMES[target] }), value: target };
+      return { label: labelWithKey({ ...actionNamed(target), label: words.targets[target] }), value: target };
     });
-    const target = section.add(new Choice<Target>("What", options, "camera"));
+    const target = section.add(new Choice<Target>(words.panel.moved, options, "camera"));
     target.onInput((name) => this.actions.perform(actionNamed(name)));
     for (const name of MOVES) this.addButton(section, actionNamed(name)).element.classList.add("half");
     this.addButton(section, actionNamed("look"));
@@ -128,16 +129,17 @@ export class Panel {
   }
 
   private addFiles(section: Section): void {
+    const said = words.panel;
     const button = (label: string, act: () => void) => section.add(new Command(label, act));
     this.addButton(section, actionNamed("download"));
     for (const [format, label] of FORMATS) button(label, () => this.actions.savePicture(format));
     this.addButton(section, actionNamed("copy_picture"));
     this.addButton(section, actionNamed("copy_link"));
-    button("Save the scene (.json)", () => this.actions.saveScene());
-    button("Open a scene\u2026", () => this.actions.openScene());
-    button("Open a mesh or a design\u2026", () => this.actions.openMesh());
-    button("Open a sky\u2026", () => this.actions.openSky());
-    button("New session", () => this.actions.newSession());
+    button(said.saveScene, () => this.actions.saveScene());
+    button(said.openScene, () => this.actions.openScene());
+    button(said.openMesh, () => this.actions.openMesh());
+    button(said.openSky, () => this.actions.openSky());
+    button(said.newSession, () => this.actions.newSession());
   }
 
   private addToggle(section: Section, name: keyof Shown, command: string, label: string): void {

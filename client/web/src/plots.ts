@@ -3,7 +3,8 @@
 import uPlot from "uplot";
 import "../node_modules/uplot/dist/uPlot.min.css"; // a style sheet of our own origin, as lil-gui's
 import { type Column, type FrameHistory, SPAN_SECONDS, STAGES } from "./frame-history";
-import { ERROR_MEANINGS, milliseconds, significant } from "./status-text";
+import { milliseconds, significant } from "./status-text";
+import { words } from "./words/words";
 
 interface Curve {
   name: string;
@@ -15,10 +16,12 @@ interface Curve {
 const QUIET = "#a4adbd";
 /** Of the stages in turn; apart from each other to colour-blind eyes too. */
 const STAGE_COLOURS = ["#b49cf0", "#6f9bf5", "#4fc3b0", "#e0be62", "#f08c78"];
-const STAGE_CURVES: readonly Curve[] = STAGES.map((name, stage) => ({ name, colour: STAGE_COLOURS[stage] ?? QUIET }));
+const STAGE_CURVES: readonly Curve[] = STAGES.map((stage, index) => {
+  return { name: words.meter.stages[stage], colour: STAGE_COLOURS[index] ?? QUIET };
+});
 const ERRORS: readonly Curve[] = [
-  { name: "frontier's, moving", colour: "#e0be62", meaning: ERROR_MEANINGS.frontier },
-  { name: "estimated, at rest", colour: "#8fb4ff", meaning: ERROR_MEANINGS.estimated },
+  { name: words.meter.frontier, colour: "#e0be62", meaning: words.errors.frontier },
+  { name: words.meter.estimated, colour: "#8fb4ff", meaning: words.errors.estimated },
 ];
 const LINE = "rgb(164 173 189 / 14%)";
 const FONT = "11px system-ui, sans-serif";
@@ -33,9 +36,9 @@ export class Plots {
 
   constructor(container: HTMLElement, history: FrameHistory, width: number) {
     this.history = history;
-    const time = figure(container, "Milliseconds a frame, by stage", STAGE_CURVES);
+    const time = figure(container, words.meter.stagesTitle, STAGE_CURVES);
     this.stages = new uPlot(this.stageOptions(width), stacked(history), time.plot);
-    const error = figure(container, "Error of the radiance, root mean square", ERRORS);
+    const error = figure(container, words.meter.errorsTitle, ERRORS);
     this.errors = new uPlot(errorOptions(width), history.errorColumns(), error.plot);
     this.values = [...time.values, ...error.values];
   }
@@ -113,7 +116,12 @@ function span(): uPlot.Scale {
 }
 
 function seconds(): uPlot.Axis {
-  return { ...axis((value) => (value === 0 ? "now" : `${value} s`)), size: 24, gap: 5, space: 60 };
+  return {
+    ...axis((value) => (value === 0 ? words.meter.now : words.meter.seconds(value))),
+    size: 24,
+    gap: 5,
+    space: 60,
+  };
 }
 
 function axis(text: (value: number) => string): uPlot.Axis {

@@ -2,8 +2,10 @@
 
 import type { Frame } from "@culet/protocol/frame";
 import type { Target } from "./events";
+import type { Screen } from "./screen";
 import type { Connection } from "./stream";
 import type { ViewState } from "./view-state";
+import type { Visit } from "./visit";
 
 /** The header of a frame; the step as a number, so that it goes to JSON. */
 export type FrameHeader = Omit<Frame, "payload" | "step"> & { step: number };
@@ -32,6 +34,39 @@ export function header({ payload: _, step, ...rest }: Frame): FrameHeader {
   return { ...rest, step: Number(step) };
 }
 
-export function expose(probe: Probe): void {
+function expose(probe: Probe): void {
   Object.defineProperty(window, "culet", { value: Object.freeze(probe), enumerable: true });
+}
+
+export function exposeVisit(visit: Visit, screen: Screen, problems: readonly string[]): void {
+  expose({
+    get session() {
+      return visit.session;
+    },
+    get lastFrame() {
+      return visit.lastFrame ? header(visit.lastFrame) : null;
+    },
+    get fading() {
+      return screen.fading;
+    },
+    get framesShown() {
+      return visit.viewer?.player.shown ?? 0;
+    },
+    get outOfOrder() {
+      return visit.viewer?.player.outOfOrder ?? 0;
+    },
+    get state() {
+      return visit.state;
+    },
+    get target() {
+      return visit.state.target;
+    },
+    get connection() {
+      return visit.viewer?.stream.connection.status ?? "connecting";
+    },
+    get roundTripMs() {
+      return visit.viewer?.stream.latency.milliseconds ?? null;
+    },
+    problems,
+  });
 }

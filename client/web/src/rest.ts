@@ -3,6 +3,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import type { CutKind, Material, Preset, Titled, Upload } from "./catalogue";
 import { object, part } from "./json";
+import { words } from "./words/words";
 
 /** An answer other than 2xx; the message is fit to be shown. */
 export class ProblemError extends Error {
@@ -31,7 +32,7 @@ async function request(path: string, init?: RequestInit): Promise<Response> {
   try {
     response = await fetch(path, init);
   } catch {
-    throw new ProblemError(0, "The server cannot be reached.");
+    throw new ProblemError(0, words.connection.unreachable);
   }
   if (response.ok) return response;
   const body = await response.text();
@@ -57,7 +58,7 @@ export function problemText(status: number, body: string): string {
   } catch {
     // a proxy's page, not a problem document
   }
-  return `The server answered with status ${status}.`;
+  return words.connection.answered(status);
 }
 
 function post(body: JsonObject): RequestInit {
@@ -138,12 +139,14 @@ async function upload(path: string, file: File): Promise<JsonObject> {
 }
 
 export async function uploadMesh(file: File): Promise<Upload> {
-  const shape = ({ facets, convex }: JsonObject) => `${facets} facets, ${convex ? "convex" : "not convex"}.`;
+  const shape = ({ facets, convex }: JsonObject) => words.files.facets(String(facets), Boolean(convex));
   return parseUpload(await upload("/api/meshes", file), shape);
 }
 
 export async function uploadSky(file: File): Promise<Upload> {
-  return parseUpload(await upload("/api/skies", file), ({ width, height }) => `${width} \u00d7 ${height} pixels.`);
+  return parseUpload(await upload("/api/skies", file), ({ width, height }) =>
+    words.files.pixels(String(width), String(height)),
+  );
 }
 
 /** The gateway's answer to an upload, and what to say of one in which nothing was found. */

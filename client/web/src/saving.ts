@@ -5,6 +5,7 @@ import { copyPicture, copyText } from "./clipboard";
 import { download } from "./files";
 import * as rest from "./rest";
 import { viewAddress } from "./view-link";
+import { words } from "./words/words";
 
 /** The frame that is seen, and of which session. */
 export interface SeenFrame {
@@ -25,9 +26,9 @@ export interface SavedWorld {
 
 /** What a picture may be saved as, in the panel's order, with the panel's words. */
 export const FORMATS: readonly (readonly [rest.Format, string])[] = [
-  ["webp", "Save the picture (.webp)"],
-  ["tga", "Save the picture (.tga)"],
-  ["exr", "Save the picture's light (.exr)"],
+  ["webp", words.panel.saveWebp],
+  ["tga", words.panel.saveTga],
+  ["exr", words.panel.saveExr],
 ];
 
 export class Saving {
@@ -46,7 +47,7 @@ export class Saving {
   /** The same picture to the clipboard, as PNG. */
   async copyPicture(): Promise<void> {
     await copyPicture(() => this.rendered("png"));
-    this.world.note("The picture is on the clipboard.");
+    this.world.note(words.files.pictureCopied);
   }
 
   /** A link that shows what is seen, also when this session is gone, to the clipboard. */
@@ -56,19 +57,19 @@ export class Saving {
       const scene = await rest.sceneShown(session, step);
       return viewAddress({ scene, aspect: width / height }, location.href);
     });
-    this.world.note("The link to this view is on the clipboard.");
+    this.world.note(words.files.linkCopied);
   }
 
   /** A file of the scene, with the stones where they start. */
   async scene(): Promise<void> {
     const scene = this.world.scene();
-    if (!scene) throw new Error("There is no scene yet.");
+    if (!scene) throw new Error(words.files.noScene);
     download(new Blob([`${JSON.stringify(scene, null, 2)}\n`], { type: "application/json" }), "scene.json");
   }
 
   private async rendered(format: rest.Format): Promise<Blob> {
     const { session, step } = this.seen();
-    const clear = this.world.note("Rendering the picture at full quality\u2026");
+    const clear = this.world.note(words.files.rendering);
     try {
       return await rest.picture(session, step, format);
     } finally {
@@ -78,7 +79,7 @@ export class Saving {
 
   private seen(): SeenFrame {
     const seen = this.world.seen();
-    if (!seen) throw new Error("There is no picture yet.");
+    if (!seen) throw new Error(words.files.noPicture);
     return seen;
   }
 }

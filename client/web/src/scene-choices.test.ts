@@ -6,6 +6,7 @@ import {
   ENDS,
   materialOption,
   NOTHING_CHOSEN,
+  OWN_INDICES,
   patchOf,
   SKIES,
   sizeMatters,
@@ -39,7 +40,7 @@ describe("the choices of a scene", () => {
   });
 
   it("call a material by indices what it is", () => {
-    expect(choicesOf({ stones: [{ material: { ior: [1.7, 1.8, 1.9] } }] }).material).toBe("its own indices");
+    expect(choicesOf({ stones: [{ material: { ior: [1.7, 1.8, 1.9] } }] }).material).toBe(OWN_INDICES.value);
   });
 
   it.each([null, {}, { stones: [], optics: null, film: 3, environment: "dark" }])("survive %j", (scene) => {

@@ -6,6 +6,7 @@ import type { Option } from "./controls/choice";
 import { number, part, text } from "./json";
 import { imageSky, skyPatch } from "./sky-choice";
 import { stoneOf, stonePatch, stonesOf } from "./stones";
+import { words } from "./words/words";
 
 export interface Choices {
   /** A material's name; OWN_INDICES of one that the scene describes by its indices. */
@@ -22,49 +23,26 @@ export interface Choices {
 /** Values to choose from; a scene may have others. */
 export const BANDS = [3, 8, 16, 32];
 export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
-export const ENDS: readonly Option<string>[] = [
-  {
-    label: "cut, counted",
-    value: "cut",
-    summary: "Weak light is dropped. The picture says how much light was dropped: it is darker by that at most",
-  },
-  {
-    label: "by chance",
-    value: "roulette",
-    summary: "Weak light is dropped at random, and the light that goes on counts for more: right on average, but noisy",
-  },
-  {
-    label: "in the sky",
-    value: "sky",
-    summary: "Weak light leaves the stone at once and meets the sky: the picture is not darker, but this is a guess",
-  },
-];
-export const TONE_MAPS: readonly Option<string>[] = [
-  {
-    label: "neutral",
-    value: "neutral",
-    summary: "As it is, but for what is brighter than 0.8: that approaches white without reaching it",
-  },
-  { label: "sRGB", value: "srgb", summary: "What is brighter than white is white" },
-  { label: "filmic", value: "filmic", summary: "Highlights are rolled off, and keep their hues" },
-  { label: "the report's", value: "classic", summary: "As the report draws it" },
-  { label: "none", value: "none", summary: "The radiance itself, without the screen's curve: too dark on a screen" },
-];
-export const SKIES: readonly Option<string>[] = [
-  { label: "studio lamps", value: "studio", summary: "The scene's own lamps and soft boxes" },
-  { label: "dark", value: "dark", summary: "The report's night: lamps alone are bright" },
-  { label: "light", value: "light", summary: "The report's day: bright all around" },
-  { label: "half-lit", value: "half", summary: "Bright on one side, dark on the other" },
-];
+export const ENDS = optionsOf(words.ends, ["cut", "roulette", "sky"]);
+export const TONE_MAPS = optionsOf(words.toneMaps, ["neutral", "srgb", "filmic", "classic", "none"]);
+export const SKIES = optionsOf(words.skies, ["studio", "dark", "light", "half"]);
 
-/** A material that the scene describes by its indices: shown, and not to be chosen. No name has spaces. */
-export const OWN_INDICES: Option<string> = { label: "its own indices", value: "its own indices" };
+/** Options by the scene's names for them, with the page's words for each: what it is called, and what it means. */
+function optionsOf<K extends string>(
+  said: Record<K, readonly [string, string]>,
+  names: readonly K[],
+): Option<string>[] {
+  return names.map((value) => ({ label: said[value][0], value, summary: said[value][1] }));
+}
+
+/** A material that the scene describes by its indices: shown, and not to be chosen. No name has brackets. */
+export const OWN_INDICES: Option<string> = { label: words.material.own, value: "(indices)" };
 
 /** A material under the name that people use, with what its index does: beyond the critical angle all light stays inside. */
 export function materialOption({ name, title, summary, indices }: Material): Option<string> {
   const index = indices[1];
   const critical = (Math.asin(1 / index) * 180) / Math.PI;
-  const said = `${summary}\nIndex ${index.toFixed(2)} for green; critical angle ${critical.toFixed(1)}\u00b0`;
+  const said = `${summary}\n${words.material.index(index, critical)}`;
   return { label: title, value: name, summary: said };
 }
 

@@ -5,9 +5,9 @@ import { type Clamped, Slider } from "./controls/slider";
 import { LiveControls } from "./live-controls";
 import { sizeMatters, sizeOf, sizePatch } from "./scene-choices";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 const ENDS_MM = { least: 0.5, most: 12, step: 0.05, decimals: 2 };
-const HINT = "Of the girdle: the longer the ways through the stone, the deeper its colour. One carat is 3.25 mm";
 
 export class SizeControl {
   private readonly controls: LiveControls<{ size: number }>;
@@ -21,8 +21,8 @@ export class SizeControl {
       (_, value) => send(sizePatch(Number(value))),
     );
     this.slider = section
-      .add(new Slider("Radius, mm", ENDS_MM, clamped))
-      .hint(HINT)
+      .add(new Slider(words.material.radius, ENDS_MM, clamped))
+      .hint(words.material.radiusHint)
       .show(false);
     this.controls.listen("size", this.slider);
   }

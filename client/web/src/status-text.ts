@@ -1,7 +1,7 @@
 /** The status line's words. */
 
 import { Flag, type Frame } from "@culet/protocol/frame";
-import { viewersText } from "./view-state";
+import { words } from "./words/words";
 
 export interface Status {
   framesPerSecond: number;
@@ -20,61 +20,55 @@ export function significant(value: number): string {
   return value === 0 || value >= 1e-4 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
 }
 
-/** What the two kinds of error are of, for tooltips. */
-export const ERROR_MEANINGS = {
-  frontier:
-    "What settings like this moving frame's miss of the default scene at 1280\u00d7720, as measured beforehand: " +
-    "a single sample does not show its own error.",
-  estimated: "What this picture at rest still misses, estimated from the two halves of its samples.",
-  shown:
-    "How far this picture is from a perfect one as a screen shows it, from 0 to 1, root mean square over pixels and " +
-    "colours: what more samples would take away. From 0.004 on no difference is seen.",
-} as const;
-
 type RestingFrame = Pick<Frame, "flags" | "shownError" | "restError">;
 
 /** A moving picture's error is not its own: it is what the measured front says of its settings. */
 function errorName({ flags }: Pick<Frame, "flags">): string {
-  return flags & Flag.FRONTIER ? "frontier's error" : "error";
+  return flags & Flag.FRONTIER ? words.status.frontiersError : words.status.error;
 }
 
 /** Of the light that stones throw on floor and walls at most this part is missing. */
 function lightText({ flags, lightCut }: Pick<Frame, "flags" | "lightCut">): string {
-  if (flags & Flag.SHADOWS_ONLY) return "shadows without caustics";
-  return `caustics lack at most ${significant(100 * lightCut)} %`;
+  if (flags & Flag.SHADOWS_ONLY) return words.status.shadowsOnly;
+  return words.status.lightCut(significant(100 * lightCut));
 }
 
 /** How good a picture at rest is, and, if that is another thing, how good it was to be. */
 function shownErrorText({ flags, shownError, restError }: RestingFrame): string {
-  const error = `error ${significant(shownError)} as shown`;
+  const error = words.status.shownError(significant(shownError));
   if (!(shownError > restError)) return error; // also if there is no such aim
   return flags & Flag.FINAL
-    ? `${error}, ${significant(restError)} not reached`
-    : `${error}, to be ${significant(restError)}`;
+    ? words.status.notReached(error, significant(restError))
+    : words.status.toBe(error, significant(restError));
 }
 
 export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
+  const said = words.status;
   const parts: string[] = [];
   if (frame) {
     const { flags, samples, simulateMs, renderMs, encodeMs } = frame;
     const atRest = samples > 1 && (flags & Flag.MOVING) === 0;
-    if (flags & Flag.FINAL) parts.push("still picture");
-    else parts.push(atRest ? "refining" : `${framesPerSecond.toFixed(1)} frames/s`);
-    if (flags & Flag.SLOW) parts.push("slow motion");
+    if (flags & Flag.FINAL) parts.push(said.still);
+    else parts.push(atRest ? said.refining : said.framesPerSecond(framesPerSecond));
+    if (flags & Flag.SLOW) parts.push(said.slowMotion);
     parts.push(
       atRest
-        ? `render ${milliseconds(renderMs / samples)} ms a sample`
-        : `server ${milliseconds(simulateMs + renderMs + encodeMs)} ms (simulate ${milliseconds(simulateMs)}, ` +
-            `render ${milliseconds(renderMs)}, encode ${milliseconds(encodeMs)})`,
+        ? said.perSample(milliseconds(renderMs / samples))
+        : said.server(
+            milliseconds(simulateMs + renderMs + encodeMs),
+            milliseconds(simulateMs),
+            milliseconds(renderMs),
+            milliseconds(encodeMs),
+          ),
     );
-  } else parts.push("waiting for the first picture");
-  if (roundTripMs !== null) parts.push(`round trip ${milliseconds(roundTripMs)} ms`);
+  } else parts.push(said.waiting);
+  if (roundTripMs !== null) parts.push(said.roundTrip(milliseconds(roundTripMs)));
   if (frame) {
     if (!Number.isNaN(frame.shownError)) parts.push(shownErrorText(frame));
-    else if (!Number.isNaN(frame.error)) parts.push(`${errorName(frame)} ${significant(frame.error)}`);
+    else if (!Number.isNaN(frame.error)) parts.push(said.errorIs(errorName(frame), significant(frame.error)));
     if (frame.lightCut > 0 || frame.flags & Flag.SHADOWS_ONLY) parts.push(lightText(frame)); // NaN without a map
-    parts.push(`${frame.width}\u00d7${frame.height}`, frame.samples === 1 ? "1 sample" : `${frame.samples} samples`);
+    parts.push(said.size(frame.width, frame.height), said.samples(frame.samples));
   }
-  parts.push(viewersText(viewers));
+  parts.push(said.viewers(viewers));
   return parts.join(" \u00b7 ");
 }

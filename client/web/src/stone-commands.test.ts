@@ -1,7 +1,11 @@
 import { beforeEach, expect, it } from "vitest";
 import type { SessionEvent } from "./events";
-import { CHOOSE_FIRST, NO_ROOM, NO_STONE, NOTHING_REMOVED, StoneCommands } from "./stone-commands";
+import { StoneCommands } from "./stone-commands";
 import { INITIAL, type ViewState } from "./view-state";
+import { words } from "./words/words";
+
+const { chooseFirst: CHOOSE_FIRST, noStone: NO_STONE, nothingRemoved: NOTHING_REMOVED } = words.stones;
+const NO_ROOM = words.stones.noRoom(64);
 
 const RUBY = { id: "ruby", cut: "brilliant", scale: 1, position: [0, 0, 0] };
 const GLASS = { id: "glass", cut: "brilliant", scale: 1, position: [3, 0, 0] };

@@ -5,6 +5,7 @@ import type { SessionEvent } from "./events";
 import { additionOf, anotherLike, removalOf, scatterPatch } from "./stone-edits";
 import { idsOf, MOST_STONES, stoneOf, stonesOf } from "./stones";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 export interface StoneWorld {
   state: () => ViewState;
@@ -14,10 +15,6 @@ export interface StoneWorld {
   tell: (text: string) => void;
 }
 
-export const CHOOSE_FIRST = "Choose a stone first: click it, or take it from the panel's list.";
-export const NO_STONE = "There is no stone.";
-export const NO_ROOM = `A scene has at most ${MOST_STONES} stones.`;
-export const NOTHING_REMOVED = "You have removed no stone.";
 /** So many removals can be taken back. */
 const REMEMBERED = 100;
 
@@ -52,7 +49,7 @@ export class StoneCommands {
   /** At the chosen stone, or at all. */
   lookAround(): void {
     const { scene, stone } = this.world.state();
-    if (stonesOf(scene).length === 0) this.world.tell(NO_STONE);
+    if (stonesOf(scene).length === 0) this.world.tell(words.stones.noStone);
     else this.world.send(stone === null ? { type: "look_at_stone" } : { type: "look_at_stone", stone });
   }
 
@@ -74,7 +71,7 @@ export class StoneCommands {
     const { scene } = this.world.state();
     const id = this.chosen();
     if (id === null) {
-      this.world.tell(stonesOf(scene).length > 0 ? CHOOSE_FIRST : NO_STONE);
+      this.world.tell(stonesOf(scene).length > 0 ? words.stones.chooseFirst : words.stones.noStone);
       return;
     }
     this.removed.push(stoneOf(scene, id));
@@ -87,7 +84,7 @@ export class StoneCommands {
   putBack(): void {
     const stone = this.away().at(-1);
     if (!stone) {
-      this.world.tell(NOTHING_REMOVED);
+      this.world.tell(words.stones.nothingRemoved);
     } else if (this.hasRoom()) {
       this.removed.splice(this.removed.lastIndexOf(stone), 1);
       this.bring(additionOf(this.world.state().scene, stone));
@@ -98,7 +95,7 @@ export class StoneCommands {
   scatter(): void {
     const { scene, falling } = this.world.state();
     if (stonesOf(scene).length === 0) {
-      this.world.tell(NO_STONE);
+      this.world.tell(words.stones.noStone);
       return;
     }
     this.patch(scatterPatch(scene));
@@ -118,13 +115,13 @@ export class StoneCommands {
 
   private hasRoom(): boolean {
     const room = stonesOf(this.world.state().scene).length < MOST_STONES;
-    if (!room) this.world.tell(NO_ROOM);
+    if (!room) this.world.tell(words.stones.noRoom(MOST_STONES));
     return room;
   }
 
   private toChosen(type: "look_at_stone" | "reset_stone" | "toggle_fall"): void {
     const { stone } = this.world.state();
-    if (stone === null) this.world.tell(CHOOSE_FIRST);
+    if (stone === null) this.world.tell(words.stones.chooseFirst);
     else this.world.send({ type, stone });
   }
 

@@ -6,6 +6,7 @@ import { Command } from "./controls/command";
 import type { Section } from "./controls/section";
 import { idsOf } from "./stones";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 /** What `StoneCommands` does. */
 export interface StoneActions {
@@ -18,10 +19,10 @@ export interface StoneActions {
 }
 
 /** No id has brackets, and none is empty. */
-const NONE = { label: "(none)", value: "" };
+const NONE = { label: words.stones.none, value: "" };
 
 export class StonePanel {
-  private readonly list = new Choice<string>("Chosen", [NONE], NONE.value);
+  private readonly list = new Choice<string>(words.stones.chosen, [NONE], NONE.value);
   private readonly ofOne: readonly Command[];
   private readonly remove: Command;
   private readonly putBack: Command;
@@ -32,14 +33,14 @@ export class StonePanel {
     const button = (label: string, act: () => void) => section.add(new Command(label, act));
     const acting = (name: string) => button(labelWithKey(actionNamed(name)), () => perform(actionNamed(name)));
     this.ofOne = [
-      button("Look at this stone", () => actions.look()),
-      button("Put this stone back", () => actions.reset()),
-      button("Hold this stone, or let go", () => actions.hold()),
+      button(words.stones.look, () => actions.look()),
+      button(words.stones.putBack, () => actions.reset()),
+      button(words.stones.hold, () => actions.hold()),
     ];
-    button("Add another like it", () => actions.add());
+    button(words.stones.add, () => actions.add());
     this.remove = acting("remove_stone");
     this.putBack = acting("put_back_stone");
-    button("Scatter all", () => actions.scatter());
+    button(words.stones.scatter, () => actions.scatter());
   }
 
   /** `removed`: how many stones this viewer has removed, and may put back. */

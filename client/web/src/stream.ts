@@ -4,6 +4,7 @@ import { type Frame, FrameError, parseFrame } from "@culet/protocol/frame";
 import { type ControlEvent, FINAL_CLOSE_CODES, type Notice, SUBPROTOCOL } from "@culet/protocol/messages";
 import { NoticeError, parseNotice } from "@culet/protocol/notice";
 import { Latency } from "./latency";
+import { words } from "./words/words";
 
 export type Connection =
   | { status: "connecting" }
@@ -79,7 +80,7 @@ export class Stream {
   /** Begin anew, since something of it was lost: the server tells everything to whoever joins. */
   reopen(): void {
     this.socket?.close();
-    this.lost(1006, "begun anew");
+    this.lost(1006);
   }
 
   /** Whether it was sent: events are not kept for later, since a drag of ten seconds ago means nothing. */
@@ -90,7 +91,7 @@ export class Stream {
   }
 
   /** Give up for good. */
-  close(code = 1000, reason = "closed by the page"): void {
+  close(code = 1000, reason = words.connection.closedHere): void {
     const socket = this.socket;
     this.end();
     socket?.close(1000);
@@ -109,7 +110,7 @@ export class Stream {
     if (this.latency.unanswered < LOST_PINGS) this.send(this.latency.ping(performance.now()));
     else {
       this.socket?.close();
-      this.lost(1006, "no answer");
+      this.lost(1006);
     }
   }
 
@@ -129,7 +130,7 @@ export class Stream {
     if (notice) this.listener.notice(notice);
   }
 
-  private lost(code: number, reason: string): void {
+  private lost(code: number, reason = ""): void {
     this.end();
     if (FINAL_CLOSE_CODES.includes(code)) {
       this.become({ status: "closed", code, reason });

@@ -18,24 +18,11 @@ import {
   throwsCaustics,
 } from "./surfaces";
 import type { ViewState } from "./view-state";
+import { words } from "./words/words";
 
 type Send = (patch: Record<string, unknown>) => void;
 
-const TITLES: Record<Place, string> = { floor: "Floor", walls: "Walls" };
 const CELL_ENDS = { least: 0.1, most: 8, step: 0.05, decimals: 2 };
-
-const HINTS = {
-  caustics:
-    "Light that stones throw onto a matte floor and matte walls: flecks, and the rainbows in them. Without it they " +
-    "throw their shadows alone",
-  none: "Neither floor nor walls are matte: there is nothing that caustics could be seen on",
-  albedo:
-    "What the surface looks like in white light: the part of each colour that it gives back. Flecks show best on a dark one",
-  checkered: "Whether every other cell has a colour of its own",
-  cell: "Side of a cell; R is the stone's radius",
-  other: "Of every other cell, in white light",
-  mirror: "Only what is matte has a colour of its own: this is not now",
-};
 
 export class SurfacePanel {
   private readonly caustics: LiveControls<{ caustics: boolean }>;
@@ -48,7 +35,7 @@ export class SurfacePanel {
       () => ({ caustics: throwsCaustics(this.scene) }),
       (_, value) => send(causticsPatch(value)),
     );
-    this.toggle = surroundings.add(new Toggle("Caustics"));
+    this.toggle = surroundings.add(new Toggle(words.optics.caustics));
     this.caustics.listen("caustics", this.toggle);
     this.surfaces = PLACES.map((place) => new OneSurface(place, surfaces, send, clamped));
   }
@@ -57,7 +44,7 @@ export class SurfacePanel {
     this.scene = scene;
     const shown = showsCaustics(scene);
     this.caustics.display();
-    this.toggle.enable(shown).hint(shown ? HINTS.caustics : HINTS.none);
+    this.toggle.enable(shown).hint(shown ? words.optics.causticsHint : words.optics.noCausticsHint);
     for (const surface of this.surfaces) surface.update({ scene });
   }
 }
@@ -79,11 +66,12 @@ class OneSurface {
       () => surfaceOf(this.scene, place),
       (name, value) => send(surfacePatch(place, name, value, this.checker)),
     );
-    const title = TITLES[place];
+    const said = words.surfaces;
+    const title = said[place];
     this.albedo = section.add(new Colour(title));
-    this.checkered = section.add(new Toggle(`${title}, checkered`)).hint(HINTS.checkered);
-    this.cell = section.add(new Slider(`${title}, cell, R`, CELL_ENDS, clamped)).hint(HINTS.cell);
-    this.other = section.add(new Colour(`${title}, other cells`)).hint(HINTS.other);
+    this.checkered = section.add(new Toggle(said.checkered(title))).hint(said.checkeredHint);
+    this.cell = section.add(new Slider(said.cell(title), CELL_ENDS, clamped)).hint(said.cellHint);
+    this.other = section.add(new Colour(said.other(title))).hint(said.otherHint);
     this.controls.listen("albedo", this.albedo);
     this.controls.listen("checkered", this.checkered);
     this.controls.listen("cell", this.cell);
@@ -96,7 +84,7 @@ class OneSurface {
     if (checkered) this.checker = { cell, other };
     this.controls.display();
     const matte = isMatte(scene, this.place);
-    this.albedo.enable(matte).hint(matte ? HINTS.albedo : HINTS.mirror);
+    this.albedo.enable(matte).hint(matte ? words.surfaces.albedoHint : words.surfaces.notMatte);
     this.checkered.enable(matte);
     for (const control of [this.cell, this.other]) control.enable(matte && checkered);
   }

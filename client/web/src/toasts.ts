@@ -1,5 +1,7 @@
 /** Short messages in the corner. Problems stay until they are dismissed, the rest goes by itself unless it is being read. */
 
+import { words } from "./words/words";
+
 const LIFE_MS = 8000;
 const MOST = 4;
 
@@ -33,19 +35,19 @@ export class Toasts {
     }
     while (this.region.children.length >= MOST) this.region.firstElementChild?.remove();
     const toast = document.createElement("div");
-    toast.className = `toast ${kind}`;
+    toast.classList.add("toast", "sheet", kind);
     toast.dataset.about = about;
     if (kind === "problem") toast.setAttribute("role", "alert");
-    const words = document.createElement("p");
-    words.className = "toast-words";
-    words.textContent = text;
+    const said = document.createElement("p");
+    said.className = "toast-words";
+    said.textContent = text;
     const dismiss = document.createElement("button");
     dismiss.type = "button";
     dismiss.className = "toast-dismiss";
     dismiss.textContent = "\u00d7";
-    dismiss.setAttribute("aria-label", "Dismiss");
+    dismiss.setAttribute("aria-label", words.connection.dismiss);
     dismiss.onclick = () => toast.remove();
-    toast.append(words, dismiss);
+    toast.append(said, dismiss);
     this.region.append(toast);
     return toast;
   }

@@ -3,6 +3,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import { framed } from "./framing";
 import { number, object } from "./json";
+import { words } from "./words/words";
 
 /** Of the form in which views are packed; it begins the packed view. */
 const VERSION = "1.";
@@ -35,7 +36,7 @@ export function packedView(hash: string): string | null {
 
 /** The view that was packed; throws LinkError. */
 export async function unpackedView(packed: string): Promise<SeenView> {
-  if (!packed.startsWith(VERSION)) throw new LinkError("This link is of another version of culet: it cannot be read.");
+  if (!packed.startsWith(VERSION)) throw new LinkError(words.address.otherVersion);
   let view: JsonObject;
   try {
     const bytes = await through(
@@ -45,10 +46,10 @@ export async function unpackedView(packed: string): Promise<SeenView> {
     );
     view = object(JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes)));
   } catch {
-    throw new LinkError("This link is damaged: a part of it is missing or changed. Copy it again, as a whole.");
+    throw new LinkError(words.address.damaged);
   }
   if (typeof view.scene !== "object" || view.scene === null || Array.isArray(view.scene)) {
-    throw new LinkError("This link is damaged: there is no scene in it.");
+    throw new LinkError(words.address.noScene);
   }
   return { scene: view.scene as JsonObject, aspect: number(view.aspect, 0) };
 }

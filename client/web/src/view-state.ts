@@ -4,7 +4,8 @@ import { BALANCED, type Change, type JsonObject, type Notice, type State } from 
 import type { SessionEvent, Target } from "./events";
 import { part, text } from "./json";
 import { withParts } from "./scene-parts";
-import { type Wording, worded } from "./wording";
+import { type Wording, worded } from "./words/wording";
+import { words } from "./words/words";
 
 export interface ViewState {
   target: Target;
@@ -90,43 +91,29 @@ export function isAmiss(state: ViewState, notice: Notice): boolean {
 
 /** Why an event would be of no use, for the user; null if it may be of some. */
 export function inVain({ canUndo, canRedo }: ViewState, event: SessionEvent): string | null {
-  if (event.type === "undo" && !canUndo) return "There is nothing to undo.";
-  if (event.type === "redo" && !canRedo) return "There is nothing to redo.";
+  if (event.type === "undo" && !canUndo) return words.changes.nothingToUndo;
+  if (event.type === "redo" && !canRedo) return words.changes.nothingToRedo;
   return null;
 }
-
-export const TARGET_NAMES: Record<Target, string> = {
-  camera: "camera",
-  light_1: "red light",
-  light_2: "blue light",
-  stone: "chosen stone",
-};
 
 /** What changed, in words for those who cannot see it; empty if nothing worth saying. */
 export function describeChange(before: ViewState, after: ViewState): string {
   const said: string[] = [];
-  if (before.target !== after.target) said.push(`moving the ${TARGET_NAMES[after.target]}`);
-  if (before.stone !== after.stone) said.push(after.stone === null ? "no stone chosen" : `${after.stone} chosen`);
+  if (before.target !== after.target) said.push(words.changes.moving(words.targets[after.target]));
+  if (before.stone !== after.stone)
+    said.push(after.stone === null ? words.changes.noneChosen : words.changes.chosen(after.stone));
   if (before.scene && after.scene) {
     if (motion(before) !== motion(after)) said.push(worded(motion(after), after.scene));
-    if (before.mirror !== after.mirror) said.push(after.mirror ? "mirror" : "checker");
-    if (before.light !== after.light) said.push(after.light ? "light sky" : "the scene's own sky");
-    if (before.walls !== after.walls) said.push(after.walls ? "walls shown" : "walls hidden");
-    if (before.pinned !== after.pinned) said.push(after.pinned ? "quality pinned" : "quality follows the frame rate");
+    if (before.mirror !== after.mirror) said.push(after.mirror ? words.changes.mirror : words.changes.checker);
+    if (before.light !== after.light) said.push(after.light ? words.changes.lightSky : words.changes.ownSky);
+    if (before.walls !== after.walls) said.push(after.walls ? words.changes.wallsShown : words.changes.wallsHidden);
+    if (before.pinned !== after.pinned) said.push(after.pinned ? words.changes.pinned : words.changes.unpinned);
   }
-  if (before.viewers !== after.viewers) said.push(viewersText(after.viewers));
+  if (before.viewers !== after.viewers) said.push(words.status.viewers(after.viewers));
   return said.join(", ");
 }
 
-const PAUSED = { one: "the stone is paused", several: "the stones are paused" };
-const AT_REST = { one: "the stone is at rest", several: "the stones are at rest" };
-const FALLING = { one: "the stone falls", several: "the stones fall" };
-
 function motion({ falling, asleep }: ViewState): Wording {
-  if (!falling) return PAUSED;
-  return asleep ? AT_REST : FALLING;
-}
-
-export function viewersText(count: number): string {
-  return count === 1 ? "1 viewer" : `${count} viewers`;
+  if (!falling) return words.changes.paused;
+  return asleep ? words.changes.atRest : words.changes.falling;
 }

@@ -9,6 +9,7 @@ import { FrameRate } from "./frame-rate";
 import type { Size } from "./picture-size";
 import { type Connection, Stream } from "./stream";
 import { INITIAL, isAmiss, type ViewState, withNotice } from "./view-state";
+import { words } from "./words/words";
 
 export interface ViewerListener {
   show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
@@ -44,13 +45,13 @@ export class Viewer {
       decode: (encoded) => this.decode(encoded),
       show: (picture, frame) => this.show(picture, frame),
       acknowledge: (frame) => this.stream.send({ type: "ack", sequence: frame.sequence }),
-      fail: (frame, reason) => listener.problem(`Picture ${frame.sequence} cannot be decoded: ${reason}`),
+      fail: (frame, reason) => listener.problem(words.connection.notDecoded(frame.sequence, String(reason))),
     });
     this.stream = new Stream(url, {
       connection: (connection) => this.connected(connection),
       notice: (notice) => this.heard(notice),
       frame: (frame) => void this.player.push(frame),
-      malformed: (error) => listener.problem(`The server sent what this page does not understand: ${error.message}`),
+      malformed: (error) => listener.problem(words.connection.notUnderstood(error.message)),
     });
     document.addEventListener("visibilitychange", () => {
       this.sendVisibility();
@@ -61,7 +62,7 @@ export class Viewer {
 
   send(event: ControlEvent): void {
     this.spoken = this.state.revision;
-    if (!this.stream.send(event)) this.listener.problem("Not connected: nothing was sent.");
+    if (!this.stream.send(event)) this.listener.problem(words.connection.notSent);
   }
 
   /** Something was sent, and nothing was heard of the session since: the state may not be what it leads to. */

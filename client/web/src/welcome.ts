@@ -1,5 +1,7 @@
 /** The line that tells on a first visit what to do, and goes once something was done. */
 
+import { words } from "./words/words";
+
 const VISITED = "culet.visited";
 
 export interface Memory {
@@ -9,9 +11,7 @@ export interface Memory {
 
 /** What to do first, with a mouse and keys or with fingers. */
 export function firstSteps(fingers: boolean): string {
-  return fingers
-    ? "Drag to turn the stone. The round button lets it fall."
-    : "Drag to turn the stone. P lets it fall, S saves the picture, ? shows all keys.";
+  return fingers ? words.welcome.fingers : words.welcome.mouse;
 }
 
 /** Whether this is the first visit, which is remembered; a browser that forbids to remember has visited. */

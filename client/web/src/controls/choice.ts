@@ -9,11 +9,6 @@ export interface Option<T> {
   summary?: string;
 }
 
-/** The options of names and their values. */
-export function optionsOf<T>(named: Readonly<Record<string, T>>): Option<T>[] {
-  return Object.entries(named).map(([label, value]) => ({ label, value }));
-}
-
 export class Choice<T extends string | number> extends Control<T> {
   private readonly list = document.createElement("select");
   private options: readonly Option<T>[] = [];

@@ -1,6 +1,7 @@
 /** `<culet-viewer>`: a gem in any page. It shows a poster, and the live picture of a server over that once it has come. */
 
 import { SHOWN } from "../embedding";
+import { viewer } from "../words/english";
 import { frameAddress, posterAddress, type Wanted } from "./addresses";
 
 const STYLE = `
@@ -115,13 +116,13 @@ export class CuletViewer extends HTMLElement {
       const { href } = new URL(src, document.baseURI);
       return { src: href, preset: this.getAttribute("preset"), rotate: this.getAttribute("rotate") };
     } catch {
-      this.dispatchEvent(new ErrorEvent("error", { message: `src: expected the address of a server, got ${src}` }));
+      this.dispatchEvent(new ErrorEvent("error", { message: viewer.noAddress(src) }));
       return null;
     }
   }
 
   private words(): string {
-    return this.getAttribute("alt") ?? "A gemstone, live";
+    return this.getAttribute("alt") ?? viewer.alt;
   }
 
   private label(): void {
