@@ -38,11 +38,11 @@ def test_the_table_of_keys_names_the_keys_of_the_page_and_no_others() -> None:
     table = re.findall(r"^\| (.*?) \|", read(KEYS), re.MULTILINE)
     keys = {key for row in table for key in re.findall(r"`([^`]+)`", row)}
     written = {PRINTED.get(key, key.lower()) for key in keys if len(key) == 1}
-    actions = (ROOT / "client/web/src/actions.ts").read_text(encoding="utf-8")
+    actions = (ROOT / "client/web/src/input/actions.ts").read_text(encoding="utf-8")
     page = {key.lower() for key in re.findall(r'(?:letter|plain)\("\w+", "(\w)"', actions)}
     page |= {key.lower() for key in re.findall(r'move\("\w+", "(\w+)"', actions)}
     page |= set(re.findall(r'select\("\w+", "(\w)"', actions))
-    page |= set(re.findall(r'key: "(\W)"', actions))
+    page |= set(re.findall(r'key\("\w+", "(\W)"', actions))
     assert len(page) == 24
     assert written == page
     chords = {key.lower().replace(" ", "+") for key in keys if key.startswith("Ctrl")}

@@ -1,11 +1,11 @@
 /** `window.culet`: what end-to-end tests, and the curious, may read. */
 
 import type { Frame } from "@culet/protocol/frame";
-import type { Target } from "./events";
-import type { Screen } from "./screen";
-import type { Connection } from "./stream";
-import type { ViewState } from "./view-state";
-import type { Visit } from "./visit";
+import type { Screen } from "./picture/screen";
+import type { Target } from "./session/events";
+import type { Connection } from "./session/stream";
+import type { ViewState } from "./session/view-state";
+import type { Visit } from "./session/visit";
 
 /** The header of a frame; the step as a number, so that it goes to JSON. */
 export type FrameHeader = Omit<Frame, "payload" | "step"> & { step: number };

@@ -1,6 +1,6 @@
 /** `<culet-viewer>`: a gem in any page. It shows a poster, and the live picture of a server over that once it has come. */
 
-import { SHOWN } from "../embedding";
+import { SHOWN } from "../picture/embedding";
 import { viewer } from "../words/english";
 import { frameAddress, posterAddress, type Wanted } from "./addresses";
 

@@ -1,7 +1,7 @@
 /** Words about the stones of a scene, which has one or several. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { stonesOf } from "../stones";
+import { stonesOf } from "../stones/stones";
 
 /** A text as it reads where there is one stone, and where there are several. */
 export interface Wording {

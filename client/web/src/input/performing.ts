@@ -1,0 +1,77 @@
+/** What an action does: to the session, or to the page alone. */
+
+import type { Saving } from "../files/saving";
+import type { SessionEvent, Target } from "../session/events";
+import { inVain } from "../session/view-state";
+import type { Visit } from "../session/visit";
+import type { Complaints } from "../signs/complaints";
+import type { StoneCommands } from "../stones/stone-commands";
+import { words } from "../words/words";
+import type { Action } from "./actions";
+import { type Move, movesOf } from "./moves";
+
+export interface PageCommands {
+  showKeys: () => void;
+  hideAll: () => void;
+  /** Something moves by hand. */
+  moved: () => void;
+  /** Tell the user something that passes. */
+  note: (text: string) => void;
+}
+
+export class Performing {
+  private readonly visit: Visit;
+  private readonly stones: StoneCommands;
+  private readonly saving: Saving;
+  private readonly page: PageCommands;
+  private readonly complaints: Complaints;
+
+  constructor(visit: Visit, stones: StoneCommands, saving: Saving, page: PageCommands, complaints: Complaints) {
+    this.visit = visit;
+    this.stones = stones;
+    this.saving = saving;
+    this.page = page;
+    this.complaints = complaints;
+  }
+
+  perform({ effect }: Action): void {
+    const { viewer } = this.visit;
+    if (effect.kind === "download") this.complaints.attempt(() => this.saving.picture(effect.format));
+    else if (effect.kind === "copy") this.complaints.attempt(() => this.copy(effect.what));
+    else if (effect.kind === "page") this.onPage(effect.command);
+    else if (!viewer) this.complaints.tell(words.connection.noSessionYet);
+    else if (effect.kind === "stones") this.stones[effect.command]();
+    else if (effect.kind === "select") viewer.select(effect.target);
+    else if (effect.kind === "move") this.move(effect.move, viewer.state.target);
+    else this.send(effect.event);
+  }
+
+  /** Move the target: a stone only if it is known which. */
+  move(by: Move, target: Target): void {
+    this.page.moved();
+    const stone = this.stones.chosen();
+    if (target === "stone" && stone === null) this.complaints.tell(words.stones.chooseFirst);
+    else for (const event of movesOf(by, target, stone ?? "")) this.visit.send(event);
+  }
+
+  private send(event: SessionEvent): void {
+    const { viewer } = this.visit;
+    const vain = !viewer || viewer.untold ? null : inVain(viewer.state, event);
+    if (vain) this.page.note(vain);
+    else this.visit.send(event);
+  }
+
+  private copy(what: "picture" | "link"): Promise<void> {
+    return what === "picture" ? this.saving.copyPicture() : this.saving.copyLink();
+  }
+
+  private onPage(command: "showKeys" | "hideAll" | "fillScreen"): void {
+    if (command === "fillScreen") this.complaints.attempt(fillScreen);
+    else this.page[command]();
+  }
+}
+
+/** Or leave the full screen. */
+function fillScreen(): Promise<void> {
+  return document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+}

@@ -1,0 +1,99 @@
+/** The panel's choices about the picture: material, sky and optics. */
+
+import { Choice, type Option } from "../controls/choice";
+import type { Section } from "../controls/section";
+import type { Clamped } from "../controls/slider";
+import { Toggle } from "../controls/toggle";
+import type { Material, Titled } from "../session/catalogue";
+import type { ViewState } from "../session/view-state";
+import { hasStone } from "../stones/stones";
+import { words } from "../words/words";
+import { LiveControls } from "./live-controls";
+import {
+  BANDS,
+  type Choices,
+  CUTOFFS,
+  choicesOf,
+  ENDS,
+  materialOption,
+  NOTHING_CHOSEN,
+  OWN_INDICES,
+  patchOf,
+  SKIES,
+  TONE_MAPS,
+} from "./scene-choices";
+import { SizeControl } from "./size-control";
+import { imageSky, SkyChoice } from "./sky-choice";
+
+type Values = Record<string, unknown>;
+
+/** The sections of the panel that the choices go into: about the stone, about what is around it, and how light is followed. */
+export interface Sections {
+  stone: Section;
+  surroundings: Section;
+  optics: Section;
+}
+
+export class ChoicePanel {
+  private readonly controls: LiveControls<Choices>;
+  private readonly material = new Choice<string>(words.material.label, [OWN_INDICES], NOTHING_CHOSEN.material);
+  private readonly sky = new Choice<string>(words.skies.label, SKIES, NOTHING_CHOSEN.sky);
+  private readonly size: SizeControl;
+  private readonly studio = new SkyChoice();
+  private skies: readonly Option<string>[] = SKIES;
+  private scene: ViewState["scene"] = null;
+
+  constructor({ stone, surroundings, optics }: Sections, send: (patch: Values) => void, clamped: Clamped) {
+    this.controls = new LiveControls<Choices>(
+      () => choicesOf(this.scene),
+      (name, value) => send(name === "sky" ? this.skyPatch(String(value)) : patchOf(this.scene, name, value)),
+    );
+    this.controls.listen("material", stone.add(this.material));
+    this.size = new SizeControl(stone, send, clamped);
+    this.controls.listen("sky", surroundings.add(this.sky));
+    const numbers = (values: readonly number[]) => values.map((value) => ({ label: String(value), value }));
+    const said = words.optics;
+    const none = NOTHING_CHOSEN;
+    this.controls.listen("bands", optics.add(new Choice(said.bands, numbers(BANDS), none.bands)).hint(said.bandsHint));
+    this.controls.listen("polarised", optics.add(new Toggle(said.polarised)).hint(said.polarisedHint));
+    this.controls.listen(
+      "cutoff",
+      optics.add(new Choice(said.cutoff, numbers(CUTOFFS), none.cutoff)).hint(said.cutoffHint),
+    );
+    this.controls.listen("end", optics.add(new Choice(said.end, ENDS, none.end)).hint(said.endHint));
+    this.controls.listen(
+      "toneMap",
+      optics.add(new Choice(said.toneMap, TONE_MAPS, none.toneMap)).hint(said.toneMapHint),
+    );
+  }
+
+  update({ scene }: ViewState): void {
+    this.scene = scene;
+    this.studio.see(scene);
+    this.controls.display();
+    this.material.show(hasStone(scene));
+    this.size.update({ scene });
+  }
+
+  /** The merge patch for a sky. */
+  skyPatch(sky: string): Values {
+    return this.studio.patch(this.scene, sky);
+  }
+
+  /** Another scene comes. */
+  forgetSky(): void {
+    this.studio.forget();
+  }
+
+  addMaterials(materials: readonly Material[]): void {
+    this.material.offer(materials.map((material) => materialOption(material)));
+    this.size.setColoured(materials.filter(({ coloured }) => coloured).map(({ name }) => name));
+  }
+
+  /** Skies of the studio, or one that was uploaded: its title is its file's name. */
+  addSkies(skies: readonly Titled[]): void {
+    const offered = skies.map(({ name, title, summary }) => ({ label: title, value: imageSky(name), summary }));
+    this.skies = [...this.skies, ...offered];
+    this.sky.offer(this.skies);
+  }
+}

@@ -1,0 +1,67 @@
+/** Sliders and lists that act while a finger is on them, once a picture at most, and otherwise show what is. */
+
+import type { Control } from "../controls/control";
+
+/**
+ * For so long after it was let go, a slider or list stays where it is: what the server says of it may still be on its way,
+ * and the next arrow key of a list goes on from there.
+ */
+const ECHO_MS = 500;
+
+export class LiveControls<T extends object> {
+  /** What the controls show. */
+  readonly shown: T;
+  private readonly controls = new Map<keyof T, Control<T[keyof T]>>();
+  /** Show where the finger is or was, not what the server last said; with the timer that ends this, if let go. */
+  private readonly held = new Map<keyof T, ReturnType<typeof setTimeout> | undefined>();
+  private readonly waiting = new Map<keyof T, T[keyof T]>();
+  private readonly now: () => T;
+  private readonly send: (name: keyof T, value: T[keyof T]) => void;
+
+  /** `now` says what the server last said, `send` asks it for another value. */
+  constructor(now: () => T, send: (name: keyof T, value: T[keyof T]) => void) {
+    this.now = now;
+    this.send = send;
+    this.shown = { ...now() };
+  }
+
+  /** Let a control show and change the value of that name. */
+  listen<K extends keyof T>(name: K, control: Control<T[K]>): void {
+    this.controls.set(name, control as unknown as Control<T[keyof T]>);
+    control.value = this.shown[name];
+    control.onInput((value) => {
+      this.hold(name);
+      this.shown[name] = value;
+      this.display(); // what is not held shows what is, until the server says that it changed
+      if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
+      this.waiting.set(name, value);
+    });
+    control.onSettled(() => this.letGo(name));
+  }
+
+  display(): void {
+    const now = this.now();
+    for (const name of this.held.keys()) now[name] = this.shown[name];
+    Object.assign(this.shown, now);
+    for (const [name, control] of this.controls) control.value = this.shown[name];
+  }
+
+  private hold(name: keyof T, timer?: ReturnType<typeof setTimeout>): void {
+    clearTimeout(this.held.get(name));
+    this.held.set(name, timer);
+  }
+
+  private letGo(name: keyof T): void {
+    if (!this.held.has(name)) return;
+    const end = () => {
+      this.held.delete(name);
+      this.display();
+    };
+    this.hold(name, setTimeout(end, ECHO_MS));
+  }
+
+  private flush(): void {
+    for (const [name, value] of this.waiting) this.send(name, value);
+    this.waiting.clear();
+  }
+}

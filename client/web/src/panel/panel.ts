@@ -1,0 +1,160 @@
+/** The panel: every action with its key, the state, and files. What most want is first, numbers and optics are last. */
+
+import "../controls/controls.css";
+import { Choice } from "../controls/choice";
+import { Command } from "../controls/command";
+import { Hints } from "../controls/hints";
+import { Section } from "../controls/section";
+import { Toggle } from "../controls/toggle";
+import { FORMATS } from "../files/saving";
+import { type Action, actionNamed, labelWithKey } from "../input/actions";
+import type { CutKind } from "../session/catalogue";
+import type { Target } from "../session/events";
+import type { Format } from "../session/rest";
+import { INITIAL, type ViewState } from "../session/view-state";
+import { withFirst } from "../stones/stones";
+import { worded } from "../words/wording";
+import { words } from "../words/words";
+import { ChoicePanel } from "./choice-panel";
+import { CutPanel } from "./cut-panel";
+import { EditButtons } from "./edit-buttons";
+import { FallPanel } from "./fall-panel";
+import { type StoneActions, StonePanel } from "./stone-panel";
+import { SurfacePanel } from "./surface-panel";
+
+export interface PanelActions {
+  perform: (action: Action) => void;
+  stones: StoneActions;
+  /** How many stones this viewer may put back. */
+  removals: () => number;
+  savePicture: (format: Format) => void;
+  saveScene: () => void;
+  openScene: () => void;
+  openMesh: () => void;
+  openSky: () => void;
+  patch: (patch: Record<string, unknown>) => void;
+  newSession: () => void;
+  /** A number was typed that is beyond a slider's ends. */
+  clamped: (typed: number, taken: number) => void;
+}
+
+const MOVES = ["left", "right", "up", "down", "in", "out", "turn_left", "turn_right", "turn_up", "turn_down"];
+const TARGETS = ["camera", "light_1", "light_2", "stone"] as const;
+const NARROW = 640;
+
+type Shown = Pick<ViewState, "falling" | "mirror" | "light" | "walls">;
+
+export class Panel {
+  readonly choices: ChoicePanel;
+  readonly fall: FallPanel;
+  private readonly edits: EditButtons;
+  private readonly stones: StonePanel;
+  private readonly cut: CutPanel;
+  private readonly surfaces: SurfacePanel;
+  private readonly actions: PanelActions;
+  private readonly target: Choice<Target>;
+  private readonly toggles: [keyof Shown, Toggle][] = [];
+  /** Those whose labels tell how many stones they act on. */
+  private readonly counted: [Command, Action][] = [];
+  private readonly stone: Section;
+  private state: ViewState | null = null;
+
+  constructor(container: HTMLElement, actions: PanelActions) {
+    this.actions = actions;
+    const said = words.panel;
+    const root = new Section(said.title, 1);
+    this.edits = root.add(new EditButtons(actions.perform));
+    const stone = root.section(said.stone.one);
+    const surroundings = root.section(said.surroundings);
+    const move = root.section(said.move);
+    const cut = root.section(said.cut).fold(true);
+    const fall = root.section(said.fall).fold(true);
+    const surfaces = root.section(said.surfaces).fold(true);
+    const optics = root.section(said.optics).fold(true);
+    const files = root.section(said.files);
+    const page = root.section(said.page);
+    this.stone = stone;
+    this.choices = new ChoicePanel({ stone, surroundings, optics }, actions.patch, actions.clamped);
+    this.addToggle(stone, "falling", "fall", said.falling);
+    this.addButton(stone, actionNamed("reset_stone"));
+    this.stones = new StonePanel(stone, actions.perform, actions.stones);
+    this.addToggle(surroundings, "mirror", "mirror", said.mirror);
+    this.addToggle(surroundings, "light", "sky", said.lightSky);
+    this.addToggle(surroundings, "walls", "walls", said.walls);
+    this.surfaces = new SurfacePanel(surroundings, surfaces, actions.patch, actions.clamped);
+    this.target = this.addMoves(move);
+    this.cut = new CutPanel(cut, actions.patch, actions.clamped);
+    this.fall = new FallPanel(fall, actions.patch, actions.clamped);
+    this.addFiles(files);
+    this.addButton(page, actionNamed("keys"));
+    this.addButton(page, actionNamed("hide"));
+    this.addButton(page, actionNamed("full")).show(document.fullscreenEnabled);
+    if (window.innerWidth < NARROW) {
+      for (const section of [root, stone, surroundings, move, files, page]) section.fold(true);
+    }
+    root.element.append(new Hints(root.element).element);
+    container.append(root.element);
+  }
+
+  update(state: ViewState): void {
+    this.state = state;
+    const shown = { ...state, falling: state.falling && !state.asleep };
+    this.edits.update(state);
+    this.target.value = state.target;
+    for (const [name, toggle] of this.toggles) toggle.value = shown[name];
+    for (const [button, action] of this.counted) button.label(labelWithKey(action, state.scene));
+    this.stone.title(worded(words.panel.stone, state.scene));
+    this.stones.update(state, this.actions.removals());
+    const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
+    this.fall.update(chosen);
+    this.cut.update(chosen);
+    this.choices.update(chosen);
+    this.surfaces.update(chosen);
+  }
+
+  addCut(cut: CutKind): void {
+    this.cut.addCut(cut, this.state ?? INITIAL);
+  }
+
+  private addMoves(section: Section): Choice<Target> {
+    const options = TARGETS.map((target) => {
+      return { label: labelWithKey({ ...actionNamed(target), label: words.targets[target] }), value: target };
+    });
+    const target = section.add(new Choice<Target>(words.panel.moved, options, "camera"));
+    target.onInput((name) => this.actions.perform(actionNamed(name)));
+    for (const name of MOVES) this.addButton(section, actionNamed(name)).element.classList.add("half");
+    this.addButton(section, actionNamed("look"));
+    this.addButton(section, actionNamed("reset_camera"));
+    return target;
+  }
+
+  private addFiles(section: Section): void {
+    const said = words.panel;
+    const button = (label: string, act: () => void) => section.add(new Command(label, act));
+    this.addButton(section, actionNamed("download"));
+    for (const [format, label] of FORMATS) button(label, () => this.actions.savePicture(format));
+    this.addButton(section, actionNamed("copy_picture"));
+    this.addButton(section, actionNamed("copy_link"));
+    button(said.saveScene, () => this.actions.saveScene());
+    button(said.openScene, () => this.actions.openScene());
+    button(said.openMesh, () => this.actions.openMesh());
+    button(said.openSky, () => this.actions.openSky());
+    button(said.newSession, () => this.actions.newSession());
+  }
+
+  private addToggle(section: Section, name: keyof Shown, command: string, label: string): void {
+    const action = actionNamed(command);
+    const toggle = section.add(new Toggle(labelWithKey({ label, key: action.key })));
+    toggle.onInput(() => {
+      if (this.state) this.update(this.state); // shows what is, until the server says that it changed
+      this.actions.perform(action);
+    });
+    this.toggles.push([name, toggle]);
+  }
+
+  private addButton(section: Section, action: Action): Command {
+    const button = section.add(new Command(labelWithKey(action), () => this.actions.perform(action)));
+    if (typeof action.label !== "string") this.counted.push([button, action]);
+    return button;
+  }
+}

@@ -1,0 +1,99 @@
+import { describe, expect, it, test } from "vitest";
+import { object } from "../json";
+import {
+  type Choices,
+  choicesOf,
+  ENDS,
+  materialOption,
+  NOTHING_CHOSEN,
+  OWN_INDICES,
+  patchOf,
+  SKIES,
+  sizeMatters,
+  sizeOf,
+  sizePatch,
+  TONE_MAPS,
+} from "./scene-choices";
+import { imageSky } from "./sky-choice";
+
+const STONE = { id: "stone", cut: "brilliant", material: "ruby", position: [0, 4, 0] };
+const SCENE = {
+  stones: [STONE],
+  environment: { kind: "image", image: "light-box", scale: 2 },
+  optics: { bands: 16, polarised: true, cutoff: 0.003, end: "roulette", max_bounces: 64 },
+  film: { tone_map: "filmic", exposure: 2 },
+};
+const CHOSEN: Choices = {
+  material: "ruby",
+  sky: "image:light-box",
+  bands: 16,
+  polarised: true,
+  cutoff: 0.003,
+  end: "roulette",
+  toneMap: "filmic",
+};
+
+describe("the choices of a scene", () => {
+  it("are what it says", () => {
+    expect(choicesOf(SCENE)).toEqual(CHOSEN);
+    expect(choicesOf({ environment: { kind: "studio" } }).sky).toBe("studio");
+  });
+
+  it("call a material by indices what it is", () => {
+    expect(choicesOf({ stones: [{ material: { ior: [1.7, 1.8, 1.9] } }] }).material).toBe(OWN_INDICES.value);
+  });
+
+  it.each([null, {}, { stones: [], optics: null, film: 3, environment: "dark" }])("survive %j", (scene) => {
+    expect(choicesOf(scene)).toEqual(NOTHING_CHOSEN);
+  });
+});
+
+describe("a choice", () => {
+  test.each(Object.entries(CHOSEN) as [keyof Choices, never][])("of %s patches nothing else", (name, value) => {
+    const patch = patchOf({ stones: [{ ...STONE, material: "diamond" }] }, name, value);
+    const after = { ...NOTHING_CHOSEN, [name]: value };
+    const scene = { ...patch, stones: Object.values(object(patch.stones)) };
+    expect(choicesOf(scene)).toEqual(after);
+    expect(Object.keys(patch)).toHaveLength(1);
+  });
+
+  it("of a material leaves the stone's shape and place", () => {
+    expect(patchOf(SCENE, "material", "emerald")).toEqual({ stones: { stone: { material: "emerald" } } });
+  });
+
+  it("of a sky is one of its kind, or an image", () => {
+    expect(patchOf(SCENE, "sky", "light")).toEqual({ environment: { kind: "light" } });
+    expect(patchOf(SCENE, "sky", imageSky("a1"))).toEqual({ environment: { kind: "image", image: "a1" } });
+  });
+});
+
+describe("the size", () => {
+  const coloured = new Set(["ruby"]);
+
+  it("is the scene's, or that of a carat", () => {
+    expect(sizeOf({ stones: [] })).toBe(3.25);
+    expect(sizeOf({ millimetres: 5 })).toBe(5);
+    expect(sizePatch(5)).toEqual({ millimetres: 5 });
+  });
+
+  it("matters if any stone is of a coloured material", () => {
+    const clear = { material: "diamond", absorption: [0, 1, 0] };
+    expect(sizeMatters({ stones: [clear, { material: "ruby" }] }, coloured)).toBe(true);
+    expect(sizeMatters({ stones: [clear, { material: { ior: [2, 2, 2] } }] }, coloured)).toBe(false);
+    expect(sizeMatters({ stones: [] }, coloured)).toBe(false);
+  });
+});
+
+it("explains each sky, end and tone map", () => {
+  for (const { label, value, summary } of [...SKIES, ...ENDS, ...TONE_MAPS]) {
+    expect([label, value, summary].every(Boolean)).toBe(true);
+  }
+});
+
+it("calls a material what people call it, and tells what its index does", () => {
+  const summary = "The usual reference.";
+  const diamond = { name: "diamond", title: "Diamond", summary, coloured: false };
+  const option = materialOption({ ...diamond, indices: [2.4, 2, 2.5] as const });
+  expect([option.label, option.value]).toEqual(["Diamond", "diamond"]);
+  expect(option.summary).toBe(`${summary}\nIndex 2.00 for green; critical angle 30.0\u00b0`);
+});

@@ -1,0 +1,106 @@
+/** What the panel lets one choose, as a scene has it, and the merge patches that choose it. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+import type { Option } from "../controls/choice";
+import { number, part, text } from "../json";
+import type { Material } from "../session/catalogue";
+import { stoneOf, stonePatch, stonesOf } from "../stones/stones";
+import { words } from "../words/words";
+import { imageSky, skyPatch } from "./sky-choice";
+
+export interface Choices {
+  /** A material's name; OWN_INDICES of one that the scene describes by its indices. */
+  material: string;
+  /** The kind of the environment, or, of an image, which one: see `imageSky`. */
+  sky: string;
+  bands: number;
+  polarised: boolean;
+  cutoff: number;
+  end: string;
+  toneMap: string;
+}
+
+/** Values to choose from; a scene may have others. */
+export const BANDS = [3, 8, 16, 32];
+export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
+export const ENDS = optionsOf(words.ends, ["cut", "roulette", "sky"]);
+export const TONE_MAPS = optionsOf(words.toneMaps, ["neutral", "srgb", "filmic", "classic", "none"]);
+export const SKIES = optionsOf(words.skies, ["studio", "dark", "light", "half"]);
+
+/** Options by the scene's names for them, with the page's words for each: what it is called, and what it means. */
+function optionsOf<K extends string>(
+  said: Record<K, readonly [string, string]>,
+  names: readonly K[],
+): Option<string>[] {
+  return names.map((value) => ({ label: said[value][0], value, summary: said[value][1] }));
+}
+
+/** A material that the scene describes by its indices: shown, and not to be chosen. No name has brackets. */
+export const OWN_INDICES: Option<string> = { label: words.material.own, value: "(indices)" };
+
+/** A material under the name that people use, with what its index does: beyond the critical angle all light stays inside. */
+export function materialOption({ name, title, summary, indices }: Material): Option<string> {
+  const index = indices[1];
+  const critical = (Math.asin(1 / index) * 180) / Math.PI;
+  const said = `${summary}\n${words.material.index(index, critical)}`;
+  return { label: title, value: name, summary: said };
+}
+
+/** The scene's before there is one. */
+export const NOTHING_CHOSEN: Choices = {
+  material: "",
+  sky: "",
+  bands: 3,
+  polarised: false,
+  cutoff: 0.01,
+  end: "cut",
+  toneMap: "srgb",
+};
+
+export function choicesOf(scene: JsonObject | null): Choices {
+  const { material } = stoneOf(scene);
+  const environment = part(scene, "environment");
+  const optics = part(scene, "optics");
+  const none = NOTHING_CHOSEN;
+  const kind = text(environment.kind, none.sky);
+  return {
+    material: text(material, material === undefined ? none.material : OWN_INDICES.value),
+    sky: kind === "image" ? imageSky(text(environment.image, "")) : kind,
+    bands: number(optics.bands, none.bands),
+    polarised: optics.polarised === true,
+    cutoff: number(optics.cutoff, none.cutoff),
+    end: text(optics.end, none.end),
+    toneMap: text(part(scene, "film").tone_map, none.toneMap),
+  };
+}
+
+/** The merge patch that makes one choice and leaves the rest of the scene. */
+export function patchOf<K extends keyof Choices>(scene: JsonObject | null, name: K, value: Choices[K]): JsonObject {
+  switch (name) {
+    case "material":
+      return stonePatch(scene, { material: value });
+    case "sky":
+      return skyPatch(scene, String(value));
+    case "toneMap":
+      return { film: { tone_map: value } };
+    default:
+      return { optics: { [name]: value } };
+  }
+}
+
+/** mm, of a scene that says nothing: that of about a carat. */
+const CARAT_MM = 3.25;
+
+/** The radius in millimetres of a stone of scale 1. */
+export function sizeOf(scene: JsonObject | null): number {
+  return number(scene?.millimetres, CARAT_MM);
+}
+
+export function sizePatch(millimetres: number): JsonObject {
+  return { millimetres };
+}
+
+/** Whether the picture depends on the size: a stone is of a material that absorbs by a spectrum of its own. */
+export function sizeMatters(scene: JsonObject | null, coloured: ReadonlySet<string>): boolean {
+  return stonesOf(scene).some(({ material }) => typeof material === "string" && coloured.has(material));
+}

@@ -1,0 +1,163 @@
+/** The gateway's REST interface. Errors are problem documents (RFC 9457). */
+
+import type { JsonObject } from "@culet/protocol/messages";
+import { object, part } from "../json";
+import { words } from "../words/words";
+import type { CutKind, Material, Preset, Titled, Upload } from "./catalogue";
+
+/** An answer other than 2xx; the message is fit to be shown. */
+export class ProblemError extends Error {
+  override name = "ProblemError";
+  readonly status: number;
+  /** The place in the input, such as `stones.0.mesh`. */
+  readonly field: string | null;
+
+  constructor(status: number, message: string, field: string | null = null) {
+    super(message);
+    this.status = status;
+    this.field = field;
+  }
+}
+
+/** Whether it may be gone by itself in a while: nothing answered, or what answered is not ready, or busy. */
+export function isPassing({ status }: ProblemError): boolean {
+  return [0, 429, 502, 503, 504].includes(status);
+}
+
+/** What a picture is saved as. */
+export type Format = "png" | "webp" | "tga" | "exr";
+
+async function request(path: string, init?: RequestInit): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(path, init);
+  } catch {
+    throw new ProblemError(0, words.connection.unreachable);
+  }
+  if (response.ok) return response;
+  const body = await response.text();
+  throw new ProblemError(response.status, problemText(response.status, body), problemField(body));
+}
+
+/** The place in the input that a problem document names. */
+function problemField(body: string): string | null {
+  try {
+    const { field } = object(JSON.parse(body));
+    return typeof field === "string" ? field : null;
+  } catch {
+    return null; // a proxy's page
+  }
+}
+
+/** What to tell the user of a refusal: the problem's title and detail, or at least its status. */
+export function problemText(status: number, body: string): string {
+  try {
+    const { title, detail } = object(JSON.parse(body));
+    const parts = [title, detail].filter((said) => typeof said === "string" && said !== "");
+    if (parts.length > 0) return parts.join(": ");
+  } catch {
+    // a proxy's page, not a problem document
+  }
+  return words.connection.answered(status);
+}
+
+function post(body: JsonObject): RequestInit {
+  return { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
+}
+
+/** What a new session shows; nothing: the default scene. */
+export type Beginning = { preset?: string } | { scene: JsonObject };
+
+export async function createSession(beginning: Beginning = {}): Promise<{ id: string; scene: JsonObject }> {
+  const response = await request("/api/sessions", post(beginning));
+  const { id, scene } = (await response.json()) as JsonObject;
+  if (typeof id !== "string") throw new ProblemError(response.status, "expected the id of a session, got none");
+  return { id, scene: object(scene) };
+}
+
+/** What of a session a viewer knows, and can give to a server that has lost it. */
+export interface Lost {
+  id: string;
+  scene: JsonObject;
+  snapshot: JsonObject | null;
+}
+
+/** Have a session that was lost made again, if no other viewer was faster. */
+export async function reopenSession({ id, scene, snapshot }: Lost): Promise<void> {
+  await request("/api/sessions", post(snapshot ? { id, scene, snapshot } : { id, scene }));
+}
+
+/** Change a session's scene by a merge patch. */
+export async function patchSession(id: string, patch: JsonObject): Promise<void> {
+  await request(`/api/sessions/${encodeURIComponent(id)}`, { ...post(patch), method: "PATCH" });
+}
+
+/** What was found in the scene of a session, a sentence each; throws ProblemError with status 404 if there is none. */
+export async function findSession(id: string): Promise<{ findings: string[] }> {
+  const response = await request(`/api/sessions/${encodeURIComponent(id)}`);
+  const { findings } = object(await response.json());
+  return { findings: Array.isArray(findings) ? findings.map(String) : [] };
+}
+
+/** The scene as the picture of that step shows it: with its camera, and the stones where they were. */
+export async function sceneShown(session: string, step: bigint): Promise<JsonObject> {
+  return object(await (await request(`/api/sessions/${session}/scene?step=${step}`)).json());
+}
+
+/** All that there is of something, under the name that the answer gives it too. */
+async function catalogue<T>(name: string): Promise<T[]> {
+  const response = await request(`/api/${name}`);
+  const { [name]: list } = (await response.json()) as JsonObject;
+  if (!Array.isArray(list)) throw new ProblemError(response.status, `expected a list of ${name}, got none`);
+  return list as T[];
+}
+
+export function presets(): Promise<Preset[]> {
+  return catalogue("presets");
+}
+
+export function materials(): Promise<Material[]> {
+  return catalogue("materials");
+}
+
+export function cuts(): Promise<CutKind[]> {
+  return catalogue("cuts");
+}
+
+export function skies(): Promise<Titled[]> {
+  return catalogue("skies");
+}
+
+export function integrators(): Promise<Titled[]> {
+  return catalogue("integrators");
+}
+
+async function upload(path: string, file: File): Promise<JsonObject> {
+  const body = new FormData();
+  body.append("file", file);
+  return (await (await request(path, { method: "POST", body })).json()) as JsonObject;
+}
+
+export async function uploadMesh(file: File): Promise<Upload> {
+  const shape = ({ facets, convex }: JsonObject) => words.files.facets(String(facets), Boolean(convex));
+  return parseUpload(await upload("/api/meshes", file), shape);
+}
+
+export async function uploadSky(file: File): Promise<Upload> {
+  return parseUpload(await upload("/api/skies", file), ({ width, height }) =>
+    words.files.pixels(String(width), String(height)),
+  );
+}
+
+/** The gateway's answer to an upload, and what to say of one in which nothing was found. */
+function parseUpload(answer: JsonObject, otherwise: (description: JsonObject) => string): Upload {
+  const description = part(answer, "description");
+  if (typeof answer.id !== "string") throw new ProblemError(201, "expected the id of an upload, got none");
+  const said = Array.isArray(description.findings) ? description.findings.map(String) : [];
+  return { id: answer.id, findings: said.length > 0 ? said : [otherwise(description)] };
+}
+
+/** The state of that number, rendered at full quality. */
+export async function picture(session: string, step: bigint, format: Format): Promise<Blob> {
+  return (await request(`/api/sessions/${session}/frame.${format}?step=${step}`)).blob();
+}

@@ -1,0 +1,137 @@
+/** One session on this page: stream, frames and state together. */
+
+import type { Frame } from "@culet/protocol/frame";
+import type { ControlEvent, JsonObject, Notice, Outlined, Picked } from "@culet/protocol/messages";
+import type { Arrival } from "../meter/frame-history";
+import type { Size } from "../picture/picture-size";
+import { words } from "../words/words";
+import type { Target } from "./events";
+import { FramePlayer } from "./frame-player";
+import { FrameRate } from "./frame-rate";
+import { type Connection, Stream } from "./stream";
+import { INITIAL, isAmiss, type ViewState, withNotice } from "./view-state";
+
+export interface ViewerListener {
+  show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
+  size: () => Size;
+  connection: (connection: Connection) => void;
+  state: (before: ViewState, after: ViewState) => void;
+  /** A question of this viewer is answered. */
+  answer: (answer: Picked | Outlined) => void;
+  /** A new render process lacks what the session needs. */
+  lacking: () => void;
+  /** `about`: the field of the scene that was refused, if it was that. */
+  problem: (text: string, about?: string) => void;
+}
+
+export class Viewer {
+  readonly stream: Stream;
+  readonly rate = new FrameRate();
+  readonly player: FramePlayer<ImageBitmap>;
+  lastFrame: Frame | null = null;
+  /** What the server needs, besides the scene, to make the session again if it loses it. */
+  snapshot: JsonObject | null = null;
+  /** The server said that the session ends: it is not lost. */
+  ended = false;
+  state: ViewState = INITIAL;
+  private readonly listener: ViewerListener;
+  private decodeMs = 0;
+  /** The revision of the state when something was sent last. */
+  private spoken: number | null = null;
+
+  constructor(url: string, listener: ViewerListener) {
+    this.listener = listener;
+    this.player = new FramePlayer<ImageBitmap>({
+      decode: (encoded) => this.decode(encoded),
+      show: (picture, frame) => this.show(picture, frame),
+      acknowledge: (frame) => this.stream.send({ type: "ack", sequence: frame.sequence }),
+      fail: (frame, reason) => listener.problem(words.connection.notDecoded(frame.sequence, String(reason))),
+    });
+    this.stream = new Stream(url, {
+      connection: (connection) => this.connected(connection),
+      notice: (notice) => this.heard(notice),
+      frame: (frame) => void this.player.push(frame),
+      malformed: (error) => listener.problem(words.connection.notUnderstood(error.message)),
+    });
+    document.addEventListener("visibilitychange", () => {
+      this.sendVisibility();
+      if (!document.hidden) this.stream.retryNow();
+    });
+    window.addEventListener("online", () => this.stream.retryNow());
+  }
+
+  send(event: ControlEvent): void {
+    this.spoken = this.state.revision;
+    if (!this.stream.send(event)) this.listener.problem(words.connection.notSent);
+  }
+
+  /** Something was sent, and nothing was heard of the session since: the state may not be what it leads to. */
+  get untold(): boolean {
+    return this.spoken !== null && this.spoken === this.state.revision;
+  }
+
+  resize(size: Size): void {
+    this.stream.send({ type: "resize", ...size });
+  }
+
+  select(target: Target): void {
+    this.become({ ...this.state, target });
+  }
+
+  choose(stone: string | null): void {
+    this.become({ ...this.state, stone });
+  }
+
+  /** As `send`, of what needs no complaint if it cannot be sent. */
+  ask(event: ControlEvent): void {
+    this.stream.send(event);
+  }
+
+  private connected(connection: Connection): void {
+    if (connection.status === "open") {
+      this.resize(this.listener.size());
+      this.sendVisibility();
+    }
+    this.listener.connection(connection);
+  }
+
+  private sendVisibility(): void {
+    this.stream.send({ type: "visibility", visible: !document.hidden });
+  }
+
+  private heard(notice: Notice): void {
+    if (notice.type === "hello" || notice.type === "engine") this.player.forget();
+    if (notice.type === "picked" || notice.type === "outlined") this.listener.answer(notice);
+    else if (notice.type === "snapshot") this.snapshot = notice.snapshot;
+    else if (notice.type === "problem") {
+      this.ended ||= notice.code === "session_closed";
+      if (notice.code === "session_lost") this.listener.lacking();
+      this.listener.problem(notice.message, notice.field ?? undefined);
+    } else if (isAmiss(this.state, notice)) this.stream.reopen();
+    else this.become(withNotice(this.state, notice));
+  }
+
+  private become(state: ViewState): void {
+    const before = this.state;
+    this.state = state;
+    if (before !== state) this.listener.state(before, state);
+  }
+
+  private show(picture: ImageBitmap, frame: Frame): void {
+    this.lastFrame = frame;
+    const time = performance.now();
+    this.rate.shown(time);
+    this.listener.show(picture, frame, {
+      time,
+      decodeMs: this.decodeMs,
+      roundTripMs: this.stream.latency.milliseconds,
+    });
+  }
+
+  private async decode(encoded: Blob): Promise<ImageBitmap> {
+    const started = performance.now();
+    const picture = await createImageBitmap(encoded);
+    this.decodeMs = performance.now() - started;
+    return picture;
+  }
+}
