@@ -6,7 +6,8 @@ const server = "http://127.0.0.1:8000";
 
 export default defineConfig({
   resolve: { alias: { "@culet/protocol": protocol } },
-  build: { target: "es2022" },
+  // Licences of what is bundled ask to be given on with it.
+  build: { target: "es2022", license: { fileName: "licenses.md" } },
   // `npm run dev` serves the page with hot reload and passes the rest on to a running `culet serve`.
   server: { proxy: { "/api": { target: server, ws: true } } },
   test: { include: ["src/**/*.test.ts"], restoreMocks: true },

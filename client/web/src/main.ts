@@ -1,5 +1,6 @@
 /** The page: its rooms, and what they tell each other. */
 
+import { Clips } from "./clip/clips";
 import { listenToDrops } from "./files/file-drop";
 import { chooseFile, MESH_TYPES, SCENE_TYPES, SKY_TYPES } from "./files/files";
 import { Opening } from "./files/opening";
@@ -68,6 +69,7 @@ const visit = new Visit(
       signs.arrived();
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
       meter.take(frame, arrival);
+      clips.take(frame, arrival.time);
       chosen.shown(frame.step, arrival.time);
     },
     state: stateChanged,
@@ -133,18 +135,17 @@ const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(wo
 const turntable = new Turntable(matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : embedding.rotate, (turn) =>
   visit.viewer?.stream.send(turn),
 );
-const performing = new Performing(
-  visit,
-  stones,
-  saving,
-  {
-    showKeys: () => keyCard.toggle(),
-    hideAll: () => bareness.toggle(),
-    moved: () => turntable.rest(performance.now()),
-    note: (text) => toasts.note(text),
-  },
-  complaints,
-);
+const clips = new Clips({
+  task: (text, button, end) => toasts.task(text, button, end),
+  recording: (on) => panel.recording(on),
+});
+const page = {
+  showKeys: () => keyCard.toggle(),
+  hideAll: () => bareness.toggle(),
+  moved: () => turntable.rest(performance.now()),
+  note: (text: string) => void toasts.note(text),
+};
+const performing = new Performing({ visit, stones, saving, clips, page, complaints });
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
   stones,

@@ -19,6 +19,7 @@ export type Effect =
   | { kind: "move"; move: Move }
   | { kind: "download"; format: Format }
   | { kind: "copy"; what: "picture" | "link" }
+  | { kind: "clip"; of: "last" | "next" }
   | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
   | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
 
@@ -105,6 +106,8 @@ export const ACTIONS: readonly Action[] = [
   letter("download", "S", { kind: "download", format: "png" }),
   letter("copy_picture", "X", { kind: "copy", what: "picture" }),
   letter("copy_link", "K", { kind: "copy", what: "link" }),
+  letter("clip_last", "B", { kind: "clip", of: "last" }),
+  letter("clip_next", "N", { kind: "clip", of: "next" }),
   key("keys", "?", "F1", { kind: "page", command: "showKeys" }),
   letter("hide", "H", { kind: "page", command: "hideAll" }),
   letter("full", "E", { kind: "page", command: "fillScreen" }),

@@ -1,5 +1,6 @@
 /** What an action does: to the session, or to the page alone. */
 
+import type { Clips } from "../clip/clips";
 import type { Saving } from "../files/saving";
 import type { SessionEvent, Target } from "../session/events";
 import { inVain } from "../session/view-state";
@@ -19,25 +20,37 @@ export interface PageCommands {
   note: (text: string) => void;
 }
 
+export interface PerformingRooms {
+  visit: Visit;
+  stones: StoneCommands;
+  saving: Saving;
+  clips: Clips;
+  page: PageCommands;
+  complaints: Complaints;
+}
+
 export class Performing {
   private readonly visit: Visit;
   private readonly stones: StoneCommands;
   private readonly saving: Saving;
+  private readonly clips: Clips;
   private readonly page: PageCommands;
   private readonly complaints: Complaints;
 
-  constructor(visit: Visit, stones: StoneCommands, saving: Saving, page: PageCommands, complaints: Complaints) {
-    this.visit = visit;
-    this.stones = stones;
-    this.saving = saving;
-    this.page = page;
-    this.complaints = complaints;
+  constructor(rooms: PerformingRooms) {
+    this.visit = rooms.visit;
+    this.stones = rooms.stones;
+    this.saving = rooms.saving;
+    this.clips = rooms.clips;
+    this.page = rooms.page;
+    this.complaints = rooms.complaints;
   }
 
   perform({ effect }: Action): void {
     const { viewer } = this.visit;
     if (effect.kind === "download") this.complaints.attempt(() => this.saving.picture(effect.format));
     else if (effect.kind === "copy") this.complaints.attempt(() => this.copy(effect.what));
+    else if (effect.kind === "clip") this.complaints.attempt(() => this.clip(effect.of));
     else if (effect.kind === "page") this.onPage(effect.command);
     else if (!viewer) this.complaints.tell(words.connection.noSessionYet);
     else if (effect.kind === "stones") this.stones[effect.command]();
@@ -63,6 +76,10 @@ export class Performing {
 
   private copy(what: "picture" | "link"): Promise<void> {
     return what === "picture" ? this.saving.copyPicture() : this.saving.copyLink();
+  }
+
+  private clip(of: "last" | "next"): Promise<void> {
+    return of === "last" ? this.clips.last() : this.clips.record();
   }
 
   private onPage(command: "showKeys" | "hideAll" | "fillScreen"): void {

@@ -57,6 +57,7 @@ export class Panel {
   /** Those whose labels tell how many stones they act on. */
   private readonly counted: [Command, Action][] = [];
   private readonly stone: Section;
+  private clip: Command | null = null;
   private state: ViewState | null = null;
 
   constructor(container: HTMLElement, actions: PanelActions) {
@@ -112,6 +113,12 @@ export class Panel {
     this.surfaces.update(chosen);
   }
 
+  /** The next seconds are being recorded, or not any more. */
+  recording(on: boolean): void {
+    const action = actionNamed("clip_next");
+    this.clip?.label(labelWithKey(on ? { ...action, label: words.clip.stopRecording } : action));
+  }
+
   addCut(cut: CutKind): void {
     this.cut.addCut(cut, this.state ?? INITIAL);
   }
@@ -135,6 +142,8 @@ export class Panel {
     for (const [format, label] of FORMATS) button(label, () => this.actions.savePicture(format));
     this.addButton(section, actionNamed("copy_picture"));
     this.addButton(section, actionNamed("copy_link"));
+    this.addButton(section, actionNamed("clip_last"));
+    this.clip = this.addButton(section, actionNamed("clip_next"));
     button(said.saveScene, () => this.actions.saveScene());
     button(said.openScene, () => this.actions.openScene());
     button(said.openMesh, () => this.actions.openMesh());

@@ -5,6 +5,13 @@ import { words } from "../words/words";
 const LIFE_MS = 8000;
 const MOST = 4;
 
+/** Something that goes on, and is told of until it ends. */
+export interface Task {
+  /** The part that is done, 0 to 1. */
+  progress: (part: number) => void;
+  end: () => void;
+}
+
 export class Toasts {
   private readonly region: HTMLElement;
 
@@ -29,11 +36,29 @@ export class Toasts {
     fade(this.add(text, "finding"));
   }
 
-  private add(text: string, kind: "problem" | "note" | "finding", about = text): HTMLElement {
+  /** Stays until it ends; the button is there to end it sooner. */
+  task(text: string, label: string, act: () => void): Task {
+    const toast = this.add(text, "task");
+    const bar = document.createElement("progress");
+    bar.max = 1;
+    bar.setAttribute("aria-label", text);
+    const button = toast.querySelector("button");
+    if (button) Object.assign(button, { className: "command", textContent: label, onclick: act, ariaLabel: null });
+    toast.querySelector("p")?.append(bar);
+    return {
+      progress: (part) => {
+        bar.value = Math.min(part, 1);
+      },
+      end: () => toast.remove(),
+    };
+  }
+
+  private add(text: string, kind: "problem" | "note" | "finding" | "task", about = text): HTMLElement {
     for (const old of [...this.region.children]) {
       if (old instanceof HTMLElement && old.dataset.about === about) old.remove();
     }
-    while (this.region.children.length >= MOST) this.region.firstElementChild?.remove();
+    const passing = [...this.region.children].filter((other) => !other.classList.contains("task"));
+    for (const old of passing.slice(0, Math.max(0, passing.length - MOST + 1))) old.remove();
     const toast = document.createElement("div");
     toast.classList.add("toast", "sheet", kind);
     toast.dataset.about = about;

@@ -54,6 +54,8 @@ export const actions = {
   download: "Save the picture (.png)",
   copy_picture: "Copy the picture",
   copy_link: "Copy a link to this view",
+  clip_last: "Save a clip of the last seconds",
+  clip_next: "Record a clip of the next seconds",
   keys: "All keys",
   hide: "Hide all but the picture",
   full: "Fill the screen",
@@ -401,6 +403,16 @@ export const files = {
     `${name}: expected a scene (${scene}), a mesh or design (${mesh}) or a sky (${sky}).`,
   facets: (count: string, convex: boolean) => `${count} facets, ${convex ? "convex" : "not convex"}.`,
   pixels: (width: string, height: string) => `${width} \u00d7 ${height} pixels.`,
+};
+
+export const clip = {
+  stopRecording: "Stop recording, and save the clip",
+  recording: (seconds: number) => `Recording, for ${seconds} s at most\u2026`,
+  stop: "Stop",
+  making: "Making the clip\u2026",
+  cancel: "Cancel",
+  unable: "This browser makes no films: neither WebCodecs nor MediaRecorder is there. A screen recorder may do it.",
+  failed: (why: string) => `The browser could not make the film (${why}).`,
 };
 
 export const clipboard = {

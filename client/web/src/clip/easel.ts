@@ -1,0 +1,33 @@
+/** Where the pictures of a film are put, one after the other, all at the same size. */
+
+import { letterbox, type Size } from "../picture/picture-size";
+import type { ClipFrame } from "./clip-frames";
+
+export class Easel {
+  readonly canvas = document.createElement("canvas");
+  private readonly context: CanvasRenderingContext2D;
+  private shown: ClipFrame | null = null;
+  private picture: ImageBitmap | null = null;
+
+  constructor({ width, height }: Size) {
+    Object.assign(this.canvas, { width, height });
+    const context = this.canvas.getContext("2d", { alpha: false });
+    if (!context) throw new Error("expected a 2D canvas, got none from this browser");
+    this.context = context;
+  }
+
+  /** `again`: also if it is shown already, since recorders see only what is painted. */
+  async show(frame: ClipFrame, again = false): Promise<void> {
+    if (frame === this.shown && !again) return;
+    if (frame !== this.shown) {
+      this.picture?.close();
+      this.picture = await createImageBitmap(new Blob([frame.payload], { type: frame.type }));
+      this.shown = frame;
+    }
+    if (!this.picture) return;
+    const { x, y, width, height } = letterbox(this.picture, this.canvas);
+    this.context.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    this.context.imageSmoothingQuality = "high";
+    this.context.drawImage(this.picture, x, y, width, height);
+  }
+}
