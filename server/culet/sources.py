@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from culet.geometry.shape import Shape
     from culet.optics.sky_files.picture import SkyPicture
     from culet.scene import Scene
+    from culet.scene.cuts import AnyCut
     from culet.stage import Stage
 
 FILE = "file"
@@ -87,6 +88,19 @@ def load_stage(
         stage = Stage.of(scene, Library(meshes, skies))
     _tell_overlaps(stage, tell)
     return stage
+
+
+def with_cut(scene: Scene, cut: AnyCut) -> Scene:
+    """The scene with its stone cut so, on the floor if the stone was; MeshError if the proportions make no stone."""
+    from culet.geometry.cuts.cut import shape_of_cut
+    from culet.geometry.load import shape_of
+    from culet.scene import Scene
+    from culet.simulation.lying import on_the_floor
+
+    placed = scene.only_stone() or Scene().stones[0]
+    shape = shape_of_cut(cut)
+    named = scene.model_copy(update={"stones": (placed.model_copy(update={"cut": cut, "mesh": None}),)})
+    return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, placed, shape_of(placed, {})))
 
 
 def _with_mesh(scene: Scene, shape: Shape) -> Scene:

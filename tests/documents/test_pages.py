@@ -17,7 +17,7 @@ import typer
 
 from culet.cli import app
 from culet.scene import PRESETS, Scene
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 from documents.pages import DOCUMENTS, ROOT, blocks, read, run, size_and_format
 
 PRINTED = {"←": "arrowleft", "→": "arrowright", "↑": "arrowup", "↓": "arrowdown"}

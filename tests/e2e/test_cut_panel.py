@@ -30,7 +30,7 @@ def type_in(view: View, label: str, value: str) -> None:
 
 
 def test_the_sliders_are_the_proportions_that_the_server_lists(wide_view: View, server: Server) -> None:
-    (cut,) = server.http.get("/api/cuts").json()["cuts"]
+    cut = server.http.get("/api/cuts").json()["cuts"][0]
     numbers = [schema for schema in cut["proportions"].values() if schema["type"] == "number"]
     boxes = wide_view.page.locator("#panel .section .section", has_text="Pavilion").get_by_role("spinbutton")
     assert [float(box.input_value()) for box in boxes.all()] == [schema["default"] for schema in numbers]
@@ -51,12 +51,25 @@ def test_a_proportion_cuts_the_stone_anew_and_leaves_the_others(wide_view: View,
     assert view.problems == []
 
 
-def test_a_mesh_has_no_proportions(wide_view: View, tmp_path: Path) -> None:
+def test_a_mesh_has_no_proportions_and_gives_way_to_a_cut(wide_view: View, server: Server, tmp_path: Path) -> None:
     view = wide_view
     file = tmp_path / "tetrahedron.obj"
     file.write_text(TETRAHEDRON)
+    shape, pavilion = view.page.get_by_label("Shape"), view.page.get_by_role("spinbutton", name="Pavilion, \u00b0")
     view.change(lambda: view.open_file("Open a mesh", file))
-    assert not view.page.get_by_role("button", name="Cut").is_visible()
+    assert not pavilion.is_visible()
+    assert shape.input_value() == "A file's"
+    before, after = view.change(lambda: shape.select_option(label="Emerald cut"))
+    assert difference(before.pixels, after.pixels) > SEEN
+    assert pavilion.input_value() == "56"
+    view.change(lambda: type_in(view, "Pavilion steps", "2"))
+    (stone,) = server.session(view.session)["scene"]["stones"]
+    assert stone["mesh"] is None
+    assert {"name": "emerald", "pavilion_steps": 2}.items() <= stone["cut"].items()
+    view.change(lambda: shape.select_option(label="Oval"))
+    assert server.session(view.session)["scene"]["stones"][0]["cut"] == "oval"
+    assert pavilion.locator("visible=true").input_value() == "41"
+    assert view.problems == []
 
 
 def test_a_coloured_stone_can_be_larger(wide_view: View, server: Server) -> None:

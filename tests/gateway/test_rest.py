@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 from culet.scene import Scene
+from culet.scene.cuts import CUTS
 from culet.scene.motion import Simulation
 from culet.scene.stone import MaterialName
 from culet_client import FrameSubscription
@@ -144,6 +145,15 @@ async def test_materials_and_cuts_can_be_named_in_a_scene(gateway: Gateway) -> N
         stone = {"cut": {"name": cuts[0]["name"], "table_percent": 57}, "material": material["name"]}
         answer = await gateway.http.post("/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9})
         assert answer.status_code == 200, (material["name"], answer.text)
+    assert {cut["name"] for cut in cuts} == set(CUTS)
+    for cut in cuts:
+        sliders = [name for name, schema in cut["proportions"].items() if "usual" in schema]
+        own = {name: cut["proportions"][name]["default"] for name in sliders[-1:]}
+        scene = {"stones": [{"cut": {"name": cut["name"], **own}}]}
+        answer = await gateway.http.post("/api/render", json={"scene": scene, "width": 16, "height": 9})
+        assert answer.status_code == 200, (cut["name"], answer.text)
+    refused = {"stones": [{"cut": {"name": "trillion", "table_percent": 88}}]}
+    assert_problem(await gateway.http.post("/api/render", json={"scene": refused}), 422, "stones.0.cut.table_percent")
 
 
 async def test_the_integrators_listed_are_those_of_the_scene(gateway: Gateway) -> None:

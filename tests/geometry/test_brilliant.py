@@ -10,7 +10,7 @@ import pytest
 from culet.errors import MeshError
 from culet.geometry.brilliant import brilliant, brilliant_planes
 from culet.geometry.polygons import edges_of_facets
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 
 TOLKOWSKY = BrilliantCut()
 CUTS = {

@@ -11,7 +11,7 @@ from culet.errors import MeshError
 from culet.geometry.brilliant import brilliant
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 from geometry.shapes import Points, Polygons, cube, obj, said, stl
 
 WILD = Path(__file__).with_name("wild")

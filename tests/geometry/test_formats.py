@@ -18,7 +18,7 @@ from culet.geometry.brilliant import brilliant
 from culet.geometry.formats import FORMATS
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.polygons import edges_of_facets
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 from geometry.shapes import as_trimesh, binary_ply, cube, exported, fans, obj, off, prism, said, star_outline, stl
 
 BRILLIANT = brilliant(BrilliantCut())

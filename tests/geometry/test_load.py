@@ -9,7 +9,8 @@ from culet.errors import MeshError, SceneError
 from culet.geometry.brilliant import brilliant
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
-from culet.scene.stone import BrilliantCut, StoneSettings
+from culet.scene.cuts import BrilliantCut
+from culet.scene.stone import StoneSettings
 
 TETRAHEDRON = shape_from_half_spaces(
     "t", np.array([(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1), (-1, -1, 1, 1)], np.float64)

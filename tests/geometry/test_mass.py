@@ -10,7 +10,7 @@ import trimesh
 
 from culet.geometry.brilliant import brilliant
 from culet.geometry.mass import solid_integrals, surface_area
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 from geometry.shapes import cube, fans, prism, star_outline
 
 

@@ -13,7 +13,7 @@ from culet.geometry.brilliant import brilliant
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.polygons import edges_of_facets
 from culet.geometry.shape import Shape
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 from geometry.shapes import Points, Polygons, cube, exported, fans, obj, prism, said, star_outline, stl
 
 BRILLIANT = brilliant(BrilliantCut())

@@ -123,8 +123,18 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
         "stones.0.material.ior", "unknown field",
     ),
     "empty formula": ({"stones": [{"material": {"sellmeier": []}}]}, "stones.0.material.sellmeier", "at least 1"),
-    "unknown cut": ({"stones": [{"cut": "rose"}]}, "stones.0.cut", "'brilliant'; got 'rose'"),
-    "cut by a number": ({"stones": [{"cut": 73}]}, "stones.0.cut", "'brilliant' or its proportions; got 73"),
+    "unknown cut": ({"stones": [{"cut": "cabochon"}]}, "stones.0.cut", "'baguette'; got 'cabochon'"),
+    "proportions of an unknown cut": (
+        {"stones": [{"cut": {"name": "cabochon"}}]}, "stones.0.cut.name", "a cut's name.*; got 'cabochon'",
+    ),
+    "cut by a number": ({"stones": [{"cut": 73}]}, "stones.0.cut", "a cut's name or its proportions.*; got 73"),
+    "proportion of another cut": (
+        {"stones": [{"cut": {"name": "rose", "table_percent": 50}}]}, "stones.0.cut.table_percent",
+        "unknown field; did you mean `girdle_percent`",
+    ),
+    "half a chevron": (
+        {"stones": [{"cut": {"name": "princess", "chevrons": 2.5}}]}, "stones.0.cut.chevrons", "whole number; got 2.5",
+    ),
     "table too wide": ({"stones": [{"cut": {"table_percent": 101}}]}, "stones.0.cut.table_percent", "100; got 101"),
     "mesh by a path": ({"stones": [{"mesh": "../../etc/passwd"}]}, "stones.0.mesh", "text that matches"),
     "mesh by a file": ({"stones": [{"mesh": "stone.ply"}]}, "stones.0.mesh", "text that matches"),

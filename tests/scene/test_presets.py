@@ -12,10 +12,10 @@ from culet.errors import NotFoundError
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene, preset
 from culet.scene.backdrop import NoBackdrop
+from culet.scene.cuts import BrilliantCut
 from culet.scene.optics import Optics
 from culet.scene.room import Plane
 from culet.scene.sky import ConstantEnvironment
-from culet.scene.stone import BrilliantCut
 from culet.scene.thumbnails import SIZE, thumbnail_of
 from rendering.views import BARE, radiance, take, without_stone
 

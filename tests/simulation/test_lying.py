@@ -10,9 +10,9 @@ import pytest
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.scene import Scene, StoneSettings
+from culet.scene.cuts import BrilliantCut
 from culet.scene.fields import Pose
 from culet.scene.room import FLOOR_Y
-from culet.scene.stone import BrilliantCut
 from culet.simulation import Simulation
 from culet.simulation.lying import (
     LYING_DEGREES,

@@ -204,10 +204,7 @@ function firstShown(): void {
 function loadCatalogues(): void {
   attempt(async () => strip.show(await rest.presets(), (preset) => opening.preset(preset)));
   attempt(async () => panel.choices.addMaterials(await rest.materials()));
-  attempt(async () => {
-    const [cut] = await rest.cuts(); // there is one so far
-    if (cut) panel.addCut(cut);
-  });
+  attempt(async () => panel.addCuts(await rest.cuts()));
   attempt(async () => panel.choices.addSkies(await rest.skies()));
   attempt(async () => panel.fall.addIntegrators(await rest.integrators()));
 }

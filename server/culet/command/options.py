@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from culet.scene import PRESETS
+from culet.scene.cuts import CUTS, summary
 
 SceneFile = Annotated[
     Path | None,
@@ -29,6 +30,22 @@ MeshFile = Annotated[
     typer.Option(
         metavar="FILE",
         help="Mesh (.obj .off .stl .ply .glb) or design (.asc .gem .gcs) that takes the place of the stone.",
+    ),
+]
+
+
+def _cuts_that_begin(incomplete: str) -> list[tuple[str, str]]:
+    """For completion by the shell."""
+    return [(name, summary(name)) for name in CUTS if name.startswith(incomplete)]
+
+
+CutText = Annotated[
+    str | None,
+    typer.Option(
+        "--cut",
+        metavar="NAME[,PROPORTION=NUMBER...]",
+        help=f"Cut that takes the place of the stone's shape, as emerald,length_to_width=1.6: {', '.join(CUTS)}.",
+        autocompletion=_cuts_that_begin,
     ),
 ]
 SkyFile = Annotated[

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar
@@ -48,6 +48,7 @@ def render(
     preset: Preset = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
+    cut: CutText = None,
 ) -> None:
     """Render a still picture into a file."""
     from culet.rendering.files import FORMATS
@@ -55,7 +56,7 @@ def render(
 
     with errors_in_one_line():
         check_place(out, "out", FORMATS)
-        stage = read_stage(scene, preset, mesh, sky)
+        stage = read_stage(scene, preset, mesh, sky, cut)
         if background is not None:
             stage = before(stage, background)
         with progress_bar(f"rendering {out.name}") as advance:

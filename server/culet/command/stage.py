@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from culet.errors import SceneError
-from culet.sources import load_scene, load_stage, naming, parse_json
+from culet.sources import load_scene, load_stage, naming, parse_json, with_cut
 
 if TYPE_CHECKING:
     from culet.scene import Scene
@@ -18,11 +18,20 @@ if TYPE_CHECKING:
 STDIN = "-"
 
 
-def read_stage(file: Path | None, preset: str | None, mesh: Path | None, sky: Path | None = None) -> Stage:
+def read_stage(
+    file: Path | None, preset: str | None, mesh: Path | None, sky: Path | None = None, cut: str | None = None
+) -> Stage:
     """From what the user named; InputError says which of it cannot be used, and why."""
+    from culet.scene.cut_text import cut_from_text
+
     if file is not None and preset is not None:
         raise SceneError("expected a scene file or a preset, got both")
-    return load_stage(_scene(file, preset), mesh, sky, _tell, sky_is_seen=file is None, name=_name(file))
+    if mesh is not None and cut is not None:
+        raise SceneError("expected a mesh or a cut, got both")
+    scene = _scene(file, preset)
+    if cut is not None:
+        scene = with_cut(scene, cut_from_text(cut))
+    return load_stage(scene, mesh, sky, _tell, sky_is_seen=file is None, name=_name(file))
 
 
 def _scene(file: Path | None, preset: str | None) -> Scene:

@@ -179,6 +179,21 @@ def gallery(
 
 
 @app.command()
+def cuts(
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Gets cuts.md and its pictures.")] = Path(
+        "docs/reference"
+    ),
+) -> None:
+    """Draw every cut, and list its proportions."""
+    from culet.rendering.renderer import Renderer
+    from culet.study.cut_pages import write_cuts
+
+    with errors_in_one_line():
+        for file in write_cuts(out, Renderer()):
+            typer.echo(file)
+
+
+@app.command()
 def contacts(
     out: Out = Path("report/contacts"),
     quick: Quick = False,

@@ -10,15 +10,14 @@ from culet.gateway.picture_response import picture_answers
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
+from culet.scene.cuts import CUTS, TITLES, AnyCut, CutName, summary
 from culet.scene.fields import Model
 from culet.scene.presets import Group
-from culet.scene.stone import BrilliantCut
 from culet.scene.thumbnails import thumbnail_of
 
 router = APIRouter(tags=["catalogue"])
 
 WEBP = "image/webp"
-CUTS = {"brilliant": "A round brilliant by its proportions."}
 SKIES = {
     "light-box": (
         "Light box",
@@ -114,9 +113,11 @@ class Materials(Model):
 
 
 class Cut(Model):
-    """A named cut; `proportions` is the JSON schema of what it can be told."""
+    """A named cut; `proportions` is the JSON schema of what it can be told, with what is `usual`."""
 
-    name: str
+    name: CutName
+    title: str
+    """What people call it."""
     summary: str
     proportions: dict[str, Any]
 
@@ -208,8 +209,22 @@ async def materials() -> Materials:
 @router.get("/api/cuts")
 async def cuts() -> Cuts:
     """Cuts that a stone can have, with their proportions, limits and defaults."""
-    proportions = BrilliantCut.model_json_schema()["properties"]
-    return Cuts(cuts=tuple(Cut(name=name, summary=summary, proportions=proportions) for name, summary in CUTS.items()))
+    return Cuts(
+        cuts=tuple(
+            Cut(
+                name=cut().name,
+                title=TITLES[name],
+                summary=summary(name),
+                proportions=cut.model_json_schema()["properties"],
+            )
+            for name, cut in CUTS.items()
+        )
+    )
+
+
+def _properties(cut: type[AnyCut]) -> dict[str, Any]:
+    properties: dict[str, Any] = cut.model_json_schema()["properties"]
+    return properties
 
 
 @router.get("/api/skies")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from culet.errors import MeshError
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.shape import FacetName, Shape
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 
 FACETS, VERTICES = 73, 57
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from culet.errors import MeshError, SceneError
-from culet.geometry.brilliant import brilliant
+from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.shape import Shape
-from culet.scene.stone import BrilliantCut, StoneSettings
+from culet.scene.cuts import proportions
+from culet.scene.stone import StoneSettings
 
 
 def shape_of(settings: StoneSettings, meshes: Mapping[str, Shape], field: str = "stones.0") -> Shape:
@@ -21,9 +22,8 @@ def shape_of(settings: StoneSettings, meshes: Mapping[str, Shape], field: str = 
             return meshes[settings.mesh]
         except KeyError:
             raise SceneError(f"{field}.mesh: no uploaded mesh {settings.mesh!r}", f"{field}.mesh") from None
-    cut = BrilliantCut() if settings.cut == "brilliant" else settings.cut
     try:
-        return brilliant(cut)
+        return shape_of_cut(proportions(settings.cut))
     except MeshError as error:
         within = f"{field}.cut" if error.field is None else f"{field}.cut.{error.field}"
         raise MeshError(str(error), within) from error

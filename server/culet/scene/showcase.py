@@ -5,6 +5,7 @@ from __future__ import annotations
 from culet.scene.atelier import AMBIENT, boxes, grey, low_boxes, small_lamps, towards
 from culet.scene.backdrop import GradientBackdrop, NoBackdrop
 from culet.scene.camera import Camera, Head
+from culet.scene.cuts import BrilliantCut
 from culet.scene.emitters import AnyEmitter, BoxLamp
 from culet.scene.fields import Colour
 from culet.scene.film import Film
@@ -12,7 +13,7 @@ from culet.scene.model import SPIN, Scene
 from culet.scene.optics import Optics
 from culet.scene.room import Plane, StudioFloor
 from culet.scene.sky import Environment, ImageEnvironment, StudioEnvironment
-from culet.scene.stone import BrilliantCut, MaterialName, StoneSettings
+from culet.scene.stone import MaterialName, StoneSettings
 
 WHITE = Scene(
     floor=StudioFloor(kind="studio", colour=grey(0.75), reflectance=0.1, shadow=0.6),

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.config import JsonDict
 
+from culet.scene.cuts import Cut
 from culet.scene.fields import Model, Orientation, Vector
 
 MOST_STONES = 64
@@ -18,22 +19,6 @@ CARATS_PER_GRAM = 5
 """The metric carat is 0.2 g."""
 
 Index = Annotated[float, Field(ge=1, le=10)]
-
-
-class BrilliantCut(Model):
-    """A round brilliant by its proportions, in the trade's own measures.
-
-    Percentages: the table of the girdle's diameter (corner to corner), star and lower half of the way that they could
-    reach, the girdle's thickness (at the mains) of the diameter. Which combinations exist is the cut's own affair.
-    """
-
-    name: Literal["brilliant"] = "brilliant"
-    table_percent: Annotated[float, Field(gt=0, lt=100)] = 53
-    crown_degrees: Annotated[float, Field(gt=0, lt=90)] = 34.5
-    pavilion_degrees: Annotated[float, Field(gt=0, lt=90)] = 40.75
-    star_percent: Annotated[float, Field(gt=0, lt=100)] = 55
-    lower_half_percent: Annotated[float, Field(gt=0, lt=100)] = 80
-    girdle_percent: Annotated[float, Field(gt=0, le=50)] = 3
 
 
 class IndexMaterial(Model):
@@ -46,21 +31,6 @@ class SellmeierMaterial(Model):
     """n^2 = 1 + sum B l^2 / (l^2 - C^2), wavelength l and C in micrometres (Sellmeier 1871)."""
 
     sellmeier: Annotated[tuple[tuple[float, float], ...], Field(min_length=1, max_length=8)]
-
-
-def _form_of_cut(value: object) -> str | None:
-    if isinstance(value, str):
-        return "<name>"
-    return "<proportions>" if isinstance(value, dict | BrilliantCut) else None
-
-
-Cut = Annotated[
-    Annotated[Literal["brilliant"], Tag("<name>")] | Annotated[BrilliantCut, Tag("<proportions>")],
-    Discriminator(
-        _form_of_cut, custom_error_type="cut", custom_error_message="Input should be 'brilliant' or its proportions"
-    ),
-]
-"""Of the two forms only the one that was meant is judged. The tags are told from fields by their brackets."""
 
 
 def _form_of_material(value: object) -> str | None:

@@ -13,6 +13,7 @@ from pydantic import Discriminator, Field, Tag
 from culet.scene import atelier
 from culet.scene.backdrop import Backdrop, GradientBackdrop
 from culet.scene.camera import Camera, Head
+from culet.scene.cuts import Cut
 from culet.scene.emitters import MOST_LAMPS, MOST_POINTS, BoxLamp, PointLight, RoundLamp
 from culet.scene.fields import Colour, Model, Orientation, Vector, said
 from culet.scene.film import Film, Sampling
@@ -28,7 +29,7 @@ from culet.scene.sky import (
     LightEnvironment,
     StudioEnvironment,
 )
-from culet.scene.stone import Cut, Material, StoneSettings, UploadId
+from culet.scene.stone import Material, StoneSettings, UploadId
 
 Coefficient = Annotated[float, Field(ge=0, le=1e9)]
 ONLY_IN_1 = {"environment": {"lamps"}, "simulation": {"mass", "spin", "velocity"}}

@@ -101,5 +101,7 @@ def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
 def _is_form(model: type[BaseModel], tag: str) -> bool:
     """Whether a tag in a location, `light` or `<ior>`, chose that form of a union."""
     name = tag.strip("<>")
-    choices = (model.model_fields[field].annotation for field in ("kind", "shape") if field in model.model_fields)
+    choices = (
+        model.model_fields[field].annotation for field in ("kind", "shape", "name") if field in model.model_fields
+    )
     return name in model.model_fields or any(name in get_args(choice) for choice in choices)

@@ -16,7 +16,7 @@ from culet.geometry.mass import solid_integrals
 from culet.geometry.polygons import fan
 from culet.geometry.stone_file import shape_from_file
 from culet.rendering.features import by_half_spaces
-from culet.scene.stone import BrilliantCut
+from culet.scene.cuts import BrilliantCut
 from geometry.designs.files import CHECK_VALUES, NAMES, apart, design, made
 
 CHECKED = {

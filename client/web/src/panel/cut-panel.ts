@@ -1,52 +1,91 @@
-/** The panel's sliders for the proportions of the stone's cut; hidden for a mesh, which has none. */
+/** The panel's list of cuts, and sliders for the proportions of the stone's; a mesh has none. */
 
+import { Choice } from "../controls/choice";
 import { Command } from "../controls/command";
 import type { Section } from "../controls/section";
 import { type Clamped, Slider } from "../controls/slider";
 import type { CutKind } from "../session/catalogue";
 import type { ViewState } from "../session/view-state";
-import { stonePatch } from "../stones/stones";
+import { hasStone, stonePatch } from "../stones/stones";
 import { words } from "../words/words";
-import { cutName, cutOf, cutPatch, type Proportion, proportionsOf } from "./cut";
+import { cutName, cutOf, cutPatch, type Proportion, proportionsOf, shapeName, shapePatch } from "./cut";
 import { LiveControls } from "./live-controls";
 
-const STEP = 0.05;
+type Send = (patch: Record<string, unknown>) => void;
+type Values = Record<string, number>;
+
+/** The sliders of one cut. */
+class Sliders {
+  readonly element = document.createElement("div");
+  private readonly controls: LiveControls<Values>;
+
+  constructor(now: () => Values, send: (name: string, value: number) => void) {
+    this.controls = new LiveControls(now, send);
+  }
+
+  add({ name, label, least, most, step, hint }: Proportion, clamped: Clamped): void {
+    const slider = new Slider(label, { least, most, step, decimals: step < 1 ? 2 : 0 }, clamped).hint(hint);
+    this.controls.listen(name, slider);
+    this.element.append(slider.element);
+  }
+
+  update(shown: boolean): void {
+    this.element.hidden = !shown;
+    if (shown) this.controls.display();
+  }
+}
 
 export class CutPanel {
   private readonly section: Section;
   private readonly clamped: Clamped;
-  private readonly send: (patch: Record<string, unknown>) => void;
-  private controls: LiveControls<Record<string, number>> | null = null;
-  private cut = "";
+  private readonly send: Send;
+  private readonly shape: LiveControls<{ cut: string }>;
+  private readonly list = new Choice<string>(words.cut.shape, [], "");
+  private readonly usual: Command;
+  private readonly kinds = new Map<string, CutKind>();
+  private readonly sliders = new Map<string, Sliders>();
+  private readonly place: HTMLElement;
   private scene: ViewState["scene"] = null;
 
-  constructor(section: Section, send: (patch: Record<string, unknown>) => void, clamped: Clamped) {
+  constructor(section: Section, send: Send, clamped: Clamped) {
     this.section = section.show(false);
     this.send = send;
     this.clamped = clamped;
+    this.shape = new LiveControls(
+      () => ({ cut: shapeName(this.scene) }),
+      (_, name) => send(shapePatch(this.scene, name)),
+    );
+    this.shape.listen("cut", section.add(this.list));
+    this.place = section.add({ element: document.createElement("div") }).element;
+    const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene) }));
+    this.usual = section.add(new Command(words.cut.usual, reset));
   }
 
   update({ scene }: ViewState): void {
     this.scene = scene;
-    this.section.show(this.controls !== null && cutName(scene) === this.cut);
-    this.controls?.display();
+    this.section.show(this.kinds.size > 0 && hasStone(scene));
+    this.shape.display();
+    const now = cutName(scene);
+    const kind = this.kinds.get(now ?? "");
+    if (kind && !this.sliders.has(kind.name)) this.sliders.set(kind.name, this.slidersOf(kind));
+    for (const [name, sliders] of this.sliders) sliders.update(name === now);
+    this.usual.show(kind !== undefined);
   }
 
-  addCut(cut: CutKind, state: ViewState): void {
-    const proportions = proportionsOf(cut);
-    this.cut = cut.name;
-    this.controls = new LiveControls(
-      () => cutOf(this.scene, proportions),
-      (name, value) => this.send(cutPatch(this.scene, name, value)),
-    );
-    for (const proportion of proportions) this.addSlider(this.controls, proportion);
-    const reset = () => this.send(stonePatch(this.scene, { cut: cut.name }));
-    this.section.add(new Command(words.cut.usual, reset));
+  addCuts(cuts: readonly CutKind[], state: ViewState): void {
+    for (const cut of cuts) this.kinds.set(cut.name, cut);
+    this.list.offer(cuts.map(({ name, title, summary }) => ({ label: title, value: name, summary })));
     this.update(state);
   }
 
-  private addSlider(controls: LiveControls<Record<string, number>>, { name, label, least, most, hint }: Proportion) {
-    const slider = new Slider(label, { least, most, step: STEP, decimals: 2 }, this.clamped);
-    controls.listen(name, this.section.add(slider).hint(hint));
+  private slidersOf(kind: CutKind): Sliders {
+    const proportions = proportionsOf(kind);
+    const sliders = new Sliders(
+      () => cutOf(this.scene, proportions),
+      (name, value) => this.send(cutPatch(this.scene, name, value)),
+    );
+    for (const proportion of proportions) sliders.add(proportion, this.clamped);
+    this.place.append(sliders.element);
+    return sliders;
   }
 }

@@ -1,14 +1,17 @@
 import { describe, expect, it } from "vitest";
 import type { CutKind } from "../session/catalogue";
-import { cutName, cutOf, cutPatch, proportionsOf } from "./cut";
+import { words } from "../words/words";
+import { cutName, cutOf, cutPatch, proportionsOf, shapeName, shapePatch } from "./cut";
 
 const KIND: CutKind = {
   name: "brilliant",
+  title: "Round brilliant",
+  summary: "",
   proportions: {
     name: { const: "brilliant", default: "brilliant", type: "string" },
-    pavilion_degrees: { default: 40.75, exclusiveMaximum: 42, exclusiveMinimum: 0, type: "number" },
-    lower_half_percent: { default: 80, maximum: 50, minimum: 3, type: "number" },
-    culet_percent: { default: 1, maximum: 5, minimum: 0, type: "number" },
+    pavilion_degrees: { default: 40.75, type: "number", usual: [36, 48], description: "Its slope" },
+    lower_half_percent: { default: 80, maximum: 100, minimum: 0, type: "number", usual: [50, 95] },
+    crown_steps: { default: 3, type: "integer", usual: [1, 5] },
   },
 };
 const PROPORTIONS = proportionsOf(KIND);
@@ -16,24 +19,25 @@ const CUT = { name: "brilliant", pavilion_degrees: 44, lower_half_percent: 75 };
 const STONE = { id: "ruby", material: "ruby", position: [0, 4, 0] };
 
 describe("the sliders", () => {
-  it("are those of the server's list that are numbers, in its order", () => {
-    expect(PROPORTIONS.map(({ label }) => label)).toEqual(["Pavilion, \u00b0", "Lower half, %", "Culet, %"]);
+  it("are those of the server's list that are numbers, in its order, with its words", () => {
+    expect(PROPORTIONS.map(({ label }) => label)).toEqual(["Pavilion, \u00b0", "Lower half, %", "Crown steps"]);
+    expect(PROPORTIONS[0]?.hint).toBe("Its slope");
   });
 
-  it("reach as far as is usual, but not beyond what the server allows; one that is new, as far as that", () => {
-    expect(PROPORTIONS.map(({ least, most }) => [least, most])).toEqual([
-      [36, 42],
-      [50, 50],
-      [0, 5],
+  it("reach as far as is usual, and go by whole numbers where only these are allowed", () => {
+    expect(PROPORTIONS.map(({ least, most, step }) => [least, most, step])).toEqual([
+      [36, 48, 0.05],
+      [50, 95, 0.05],
+      [1, 5, 1],
     ]);
   });
 });
 
 describe("the cut of a stone", () => {
   it("is what the scene says, and the server's for the rest", () => {
-    const otherwise = { pavilion_degrees: 40.75, lower_half_percent: 80, culet_percent: 1 };
+    const otherwise = { pavilion_degrees: 40.75, lower_half_percent: 80, crown_steps: 3 };
     expect(cutOf({ stones: [{ ...STONE, cut: "brilliant" }] }, PROPORTIONS)).toEqual(otherwise);
-    const said = { pavilion_degrees: 44, lower_half_percent: 75, culet_percent: 1 };
+    const said = { pavilion_degrees: 44, lower_half_percent: 75, crown_steps: 3 };
     expect(cutOf({ stones: [{ ...STONE, cut: CUT }] }, PROPORTIONS)).toEqual(said);
   });
 
@@ -46,6 +50,19 @@ describe("the cut of a stone", () => {
     "is none in %j",
     (scene) => expect(cutName(scene)).toBeNull(),
   );
+});
+
+describe("the list of cuts", () => {
+  it("shows the cut's name, a file's shape, or nothing without a stone", () => {
+    expect(shapeName({ stones: [{ cut: { name: "oval" } }] })).toBe("oval");
+    expect(shapeName({ stones: [{ cut: "oval", mesh: "m1" }] })).toBe(words.cut.own);
+    expect(shapeName({ stones: [] })).toBe("");
+  });
+
+  it("gives the stone another cut, of the usual proportions, in place of a mesh", () => {
+    const patch = shapePatch({ stones: [{ ...STONE, cut: CUT, mesh: "m1" }] }, "oval");
+    expect(patch).toEqual({ stones: { ruby: { cut: "oval", mesh: null } } });
+  });
 });
 
 describe("a change of a proportion", () => {

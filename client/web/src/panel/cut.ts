@@ -3,8 +3,8 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import { number, object, part, text } from "../json";
 import type { CutKind } from "../session/catalogue";
-import { stoneOf, stonePatch } from "../stones/stones";
-import { type Words, words } from "../words/words";
+import { hasStone, stoneOf, stonePatch } from "../stones/stones";
+import { words } from "../words/words";
 
 /** A slider about one proportion. */
 export interface Proportion {
@@ -12,44 +12,33 @@ export interface Proportion {
   label: string;
   least: number;
   most: number;
+  step: number;
   otherwise: number;
   hint: string;
 }
 
-type Usual = keyof Words["cut"]["hints"];
-
-/** What is cut: of all that the server allows, a slider this short could not tell a degree from the next. */
-const USUAL: Record<Usual, readonly [number, number]> = {
-  table_percent: [45, 75],
-  crown_degrees: [20, 45],
-  pavilion_degrees: [36, 48],
-  star_percent: [30, 70],
-  lower_half_percent: [50, 95],
-  girdle_percent: [0.5, 10],
-};
+/** Of a slider about a proportion that is no whole number. */
+const STEP = 0.05;
 
 const UNITS = ["percent", "degrees"] as const;
-const NO_LIMIT: readonly [number, number] = [Number.NEGATIVE_INFINITY, Number.POSITIVE_INFINITY];
 
-/** The sliders for a cut; each within what the server allows and what is usual. */
+/** The sliders for a cut. Each is as long as is usual: of all that the server allows, it could not tell a degree from the next. */
 export function proportionsOf({ proportions }: CutKind): Proportion[] {
   return Object.entries(proportions).flatMap(([name, value]) => {
     const schema = object(value);
-    if (schema.type !== "number") return [];
-    const [least, most] = isUsual(name) ? USUAL[name] : NO_LIMIT;
+    if (schema.type !== "number" && schema.type !== "integer") return [];
+    const otherwise = number(schema.default, 0);
+    const [least, most]: unknown[] = Array.isArray(schema.usual) ? schema.usual : [];
     return {
       name,
       label: labelOf(name),
-      least: Math.max(least, number(schema.minimum ?? schema.exclusiveMinimum, least)),
-      most: Math.min(most, number(schema.maximum ?? schema.exclusiveMaximum, most)),
-      otherwise: number(schema.default, 0),
-      hint: isUsual(name) ? words.cut.hints[name] : "",
+      least: number(least, otherwise),
+      most: number(most, otherwise),
+      step: schema.type === "integer" ? 1 : STEP,
+      otherwise,
+      hint: text(schema.description, ""),
     };
   });
-}
-
-function isUsual(name: string): name is Usual {
-  return name in USUAL;
 }
 
 /** "Lower half, %" of `lower_half_percent`. */
@@ -74,4 +63,14 @@ export function cutOf(scene: JsonObject | null, proportions: readonly Proportion
 /** The merge patch that changes one proportion and leaves the others. */
 export function cutPatch(scene: JsonObject | null, name: string, value: number): JsonObject {
   return stonePatch(scene, { cut: { name: cutName(scene), [name]: value } });
+}
+
+/** What the list of cuts shows: the cut's name, or that a file has the shape; nothing without a stone. */
+export function shapeName(scene: JsonObject | null): string {
+  return cutName(scene) ?? (hasStone(scene) ? words.cut.own : "");
+}
+
+/** The merge patch that gives the stone another cut, of the usual proportions. */
+export function shapePatch(scene: JsonObject | null, name: string): JsonObject {
+  return stonePatch(scene, { cut: name, mesh: null });
 }

@@ -119,8 +119,8 @@ export class Panel {
     this.clip?.label(labelWithKey(on ? { ...action, label: words.clip.stopRecording } : action));
   }
 
-  addCut(cut: CutKind): void {
-    this.cut.addCut(cut, this.state ?? INITIAL);
+  addCuts(cuts: readonly CutKind[]): void {
+    this.cut.addCuts(cuts, this.state ?? INITIAL);
   }
 
   private addMoves(section: Section): Choice<Target> {

@@ -33,8 +33,7 @@ export interface Upload {
   findings: string[];
 }
 
-/** A cut of /api/cuts: `proportions` is the JSON schema of each. */
-export interface CutKind {
-  name: string;
+/** A cut of /api/cuts: `proportions` is the JSON schema of each, with the range that is `usual`. */
+export interface CutKind extends Titled {
   proportions: JsonObject;
 }

@@ -208,20 +208,14 @@ export const toneMaps = {
 } satisfies Record<string, Named>;
 
 export const cut = {
+  shape: "Shape",
+  /** Shown in the list of cuts for a stone whose shape comes from a file. */
+  own: "A file's",
   usual: "The usual proportions",
   /** The name of a proportion, from the words of the scene's name for it, with its unit. */
   proportion: (said: string, unit: "percent" | "degrees" | null) => {
     const ending = { percent: ", %", degrees: ", \u00b0" };
     return said.charAt(0).toUpperCase() + said.slice(1) + (unit ? ending[unit] : "");
-  },
-  /** By the scene's names. */
-  hints: {
-    table_percent: "The top facet's width, % of the girdle's diameter",
-    crown_degrees: "Slope of the main facets above the girdle",
-    pavilion_degrees: "Slope of the main facets below the girdle: too flat or too steep, and light leaks through them",
-    star_percent: "How far the stars reach from the table, % of the way to the girdle",
-    lower_half_percent: "How far the lower halves reach down, % of the way to the culet",
-    girdle_percent: "Thickness at the main facets, % of the diameter",
   },
 };
 

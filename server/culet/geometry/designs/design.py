@@ -79,7 +79,8 @@ class Tier:
 class Design:
     """What a file holds."""
 
-    kind: DesignType
+    kind: DesignType | Literal["shape"]
+    """What file held it; `shape`: made of a stone's facets."""
     wheel: Wheel
     tiers: tuple[Tier, ...]
     """In the order of cutting."""

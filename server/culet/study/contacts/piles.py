@@ -15,8 +15,8 @@ import numpy as np
 
 import culet.scene
 from culet.scene import Scene
+from culet.scene.cuts import BrilliantCut
 from culet.scene.room import FLOOR_Y
-from culet.scene.stone import BrilliantCut
 from culet.simulation.rotation import product, rotate_back
 from culet.simulation.staged import world_of
 from culet.simulation.state import Quaternion

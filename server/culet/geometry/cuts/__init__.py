@@ -1,0 +1,1 @@
+"""The shapes of cuts, made of their proportions in closed form."""
