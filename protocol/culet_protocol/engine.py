@@ -82,6 +82,8 @@ class Demand(Message):
     """What the session's viewers can take: frames per second (0: none), and the size in pixels.
 
     Frames are made for who subscribes to the session's watch id at the frames' socket; this says how many, how large.
+    And how many bytes the link of the viewer who decides the size has for each, None meaning as many as one likes: of a
+    moving frame if frames come as often as the session's balance asks for, and of a picture at rest.
     """
 
     type: Literal["demand"] = "demand"
@@ -89,6 +91,8 @@ class Demand(Message):
     frames_per_second: Annotated[float, Field(ge=0, le=240)]
     width: Annotated[int, Field(ge=16, le=8192)]
     height: Annotated[int, Field(ge=16, le=8192)]
+    bytes_per_frame: Annotated[int, Field(ge=1)] | None = None
+    bytes_at_rest: Annotated[int, Field(ge=1)] | None = None
 
 
 class Render(Message):

@@ -55,6 +55,8 @@ class Flags(IntFlag):
     SHADOWS_ONLY = 2048
     """Floor and walls show what stones take of the light, and not what goes through them: that would take too long
     while things move, or the scene asks for it."""
+    THRIFTY = 4096
+    """The picture is smaller, or encoded with more loss, than it would be without the limits of a viewer's link."""
 
 
 class FrameError(ValueError):

@@ -199,6 +199,12 @@ class Balance(Message):
     pinned: bool
 
 
+def balance_rate(exactness: float) -> float:
+    """Frames per second that a balance asks for while things move."""
+    rate: float = FASTEST_RATE * (EXACTEST_RATE / FASTEST_RATE) ** exactness
+    return rate
+
+
 class Pick(Message):
     """Asks which stone the picture shows at a point (x to the right and y up, from its centre, in halves of its
     height); the answer, a `picked`, has the same number."""

@@ -23,6 +23,7 @@ export const Flag = {
   SLOW: 512,
   KEY: 1024,
   SHADOWS_ONLY: 2048,
+  THRIFTY: 4096,
 } as const;
 export type Flag = (typeof Flag)[keyof typeof Flag];
 

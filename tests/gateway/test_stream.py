@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 from culet.gateway import stream as streaming
-from culet.gateway.credit import WINDOW
+from culet.gateway.credit import FIRST_WINDOW
 from culet.gateway.session_record import EVENTS_UNDER_WAY
 from culet.gateway.stream import MAX_CONTROL_BYTES
 from culet.scene import Scene
@@ -98,7 +98,7 @@ async def test_a_viewer_that_never_acknowledges_gets_its_window_and_delays_nobod
         await lively.until(lambda: len(lively.frames) >= 30)
         await stuck.say(Ping(time=1))
         await stuck.notice("pong")
-    assert len(stuck.frames) == WINDOW
+    assert len(stuck.frames) == FIRST_WINDOW
 
 
 async def test_a_question_about_the_picture_is_answered_to_who_asked(gateway: Gateway) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.viewer import Viewer
 from culet_protocol.engine import SessionChange
 from culet_protocol.frame import Frame
-from culet_protocol.messages import Condition, Notice, Snapshot, State
+from culet_protocol.messages import Condition, Notice, Snapshot, State, balance_rate
 from culet_protocol.parts import with_parts
 from culet_protocol.sizes import LIVE_SIZE
 from culet_protocol.watch import watch_key
@@ -20,6 +20,22 @@ SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
 EVENTS_UNDER_WAY = 8
 """Events of one session that the engine has not answered; more events wait with their senders."""
+
+
+class Wanted(NamedTuple):
+    """What the viewers of a session can take."""
+
+    frames_per_second: float
+    """0 if nobody watches."""
+    size: tuple[int, int]
+    """Pixels."""
+    bytes_per_frame: int | None
+    """Of a moving one, if frames come as often as the session's balance asks for; None: as many as one likes."""
+    bytes_at_rest: int | None
+    """Of a picture at rest."""
+
+
+NO_DEMAND = Wanted(0.0, LIVE_SIZE, None, None)
 
 
 class SessionRecord:
@@ -49,7 +65,7 @@ class SessionRecord:
         self.viewers_told = 0
         """How many of them the viewers were last told of."""
         self.subscribed = False
-        self.demand: tuple[float, int, int] = (0.0, *LIVE_SIZE)
+        self.demand = NO_DEMAND
         """What the engine was last told."""
         self.demanding: asyncio.Task[None] | None = None
         """Tells the engine, one demand after the other."""
@@ -89,10 +105,15 @@ class SessionRecord:
         for viewer in self.viewers:
             viewer.tell(notice)
 
-    def wanted(self, now: float) -> tuple[float, int, int]:
-        """Frames per second that some viewer can take, and the size that the one who has watched longest asked for."""
+    def wanted(self, now: float) -> Wanted:
+        """Frames per second that some viewer can take; the size that the one who has watched longest asked for, and
+        the bytes for which that one's link has room."""
         watching = [viewer for viewer in self.viewers if viewer.watches(now)]
         rate = max((viewer.rate(now) for viewer in watching), default=0.0)
         sized = [viewer for viewer in watching if viewer.size]
-        size = min(sized, key=lambda viewer: viewer.watching_since).size if sized else None
-        return (rate, *(size or (self.demand[1:] if watching else LIVE_SIZE)))
+        deciding = min(sized or watching, key=lambda viewer: viewer.watching_since, default=None)
+        if deciding is None:
+            return NO_DEMAND
+        credit = deciding.credit
+        per_frame = credit.bytes_per_frame(balance_rate(self.condition.exactness), now)
+        return Wanted(rate, deciding.size or self.demand.size, per_frame, credit.bytes_at_rest(now))

@@ -150,10 +150,10 @@ class Viewer:
         if self._latest is None or not self.visible or self._latest[0] == self._sent:
             return None
         sequence, message = self._latest
-        if not self.credit.available(now):
+        if not self.credit.available(len(message), now):
             return None
         self._sent = sequence
-        self.credit.take(sequence, now)
+        self.credit.take(sequence, len(message), now)
         return message
 
     def rate(self, now: float) -> float:

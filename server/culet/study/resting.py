@@ -125,7 +125,7 @@ def _at_rest(renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Ta
         work.start(renderer)
         for _ in work.pieces:
             pass
-        jpeg.encode(picture.rgb(), moving=False)
+        jpeg.encode(picture.rgb(), jpeg.RESTING_QUALITY)
         spent += time.perf_counter() - begun
         final = work.final
         yield spent

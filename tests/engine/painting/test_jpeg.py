@@ -1,4 +1,5 @@
 import io
+import math
 
 import numpy as np
 from PIL import Image
@@ -16,17 +17,42 @@ def decoded(data: bytes) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
 
 
 def test_fine_saturated_colour_survives() -> None:
-    error = np.abs(decoded(jpeg.encode(CHECKER, moving=True)) - CHECKER).mean()
+    error = np.abs(decoded(jpeg.encode(CHECKER, jpeg.MOVING_QUALITY)) - CHECKER).mean()
     assert error < 5  # measured 2.4; with 4:2:0 it is 89
 
 
 def test_a_picture_at_rest_is_closer_to_the_truth() -> None:
     rng = np.random.default_rng(1)
     noise = rng.integers(0, 256, (64, 64, 3), dtype=np.uint8)
-    moving, resting = (np.abs(decoded(jpeg.encode(noise, moving=m)) - noise).mean() for m in (True, False))
+    moving, resting = (
+        np.abs(decoded(jpeg.encode(noise, quality)) - noise).mean()
+        for quality in (jpeg.MOVING_QUALITY, jpeg.RESTING_QUALITY)
+    )
     assert resting < 0.75 * moving  # measured 0.55
 
 
 def test_a_view_that_is_not_contiguous_is_encoded_as_what_it_shows() -> None:
-    flipped = jpeg.encode(CHECKER[:, ::-1], moving=False)
-    assert flipped == jpeg.encode(np.ascontiguousarray(CHECKER[:, ::-1]), moving=False)
+    flipped = jpeg.encode(CHECKER[:, ::-1], jpeg.RESTING_QUALITY)
+    assert flipped == jpeg.encode(np.ascontiguousarray(CHECKER[:, ::-1]), jpeg.RESTING_QUALITY)
+
+
+def test_a_picture_is_encoded_in_the_bytes_that_it_may_have() -> None:
+    """Of a lower quality first, and then of half the size."""
+    rng = np.random.default_rng(1)
+    picture = rng.integers(0, 256, (360, 640, 3), dtype=np.uint8)
+    whole = jpeg.encode_within(picture, 92, math.inf)
+    assert (whole.width, whole.height, whole.quality) == (640, 360, 92)
+    assert whole.data == jpeg.encode(picture, 92)
+    lower = jpeg.encode_within(picture, 92, len(whole.data) / 2)
+    assert (lower.width, lower.height) == (640, 360)
+    assert jpeg.LEAST_QUALITY <= lower.quality < 92
+    assert len(lower.data) <= len(whole.data) / 2
+    halved = jpeg.encode_within(picture, 92, len(whole.data) / 12)
+    assert (halved.width, halved.height) == (320, 180)
+    assert len(halved.data) <= len(whole.data) / 12
+    assert decoded(halved.data).shape == (180, 320, 3)
+
+
+def test_a_picture_that_cannot_have_so_few_bytes_is_encoded_all_the_same() -> None:
+    tiny = jpeg.encode_within(CHECKER, 92, 1)
+    assert (tiny.width, tiny.height, tiny.quality) == (32, 32, jpeg.LEAST_QUALITY)

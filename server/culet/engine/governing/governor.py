@@ -15,8 +15,9 @@ from functools import lru_cache
 from importlib.resources import files
 
 from culet.engine.governing.measured_errors import SettingErrors, read_setting_errors
+from culet.engine.governing.thrift import Encoding
 from culet.scene import Scene
-from culet_protocol.messages import EXACTEST_RATE, FASTEST_RATE, Balance
+from culet_protocol.messages import Balance, balance_rate
 
 SHARE = 0.8
 """Of a frame's time that the render thread may work for it; the rest is for encoding and the rest of the machine."""
@@ -101,6 +102,8 @@ class Plan:
     error: float
     """Root mean square error of the radiance, as measured for this scale, cut-off and bounces on the default scene; NaN
     if such ones were not, as those of a whole scene."""
+    encoding: Encoding | None = None
+    """None if no link limits it."""
 
 
 def read_ladder() -> tuple[Setting, ...]:
@@ -111,8 +114,7 @@ def read_ladder() -> tuple[Setting, ...]:
 
 def asked_rate(balance: Balance, most: float) -> float:
     """Frames per second to hold for viewers that take `most`; as many as they take if the quality is pinned."""
-    asked: float = FASTEST_RATE * (EXACTEST_RATE / FASTEST_RATE) ** balance.exactness
-    return most if balance.pinned else min(most, asked)
+    return most if balance.pinned else min(most, balance_rate(balance.exactness))
 
 
 ERRORS = read_setting_errors()
@@ -143,8 +145,11 @@ class Governor:
         """For the next moving frame, unless one is pinned."""
         return self._ladder[self._rung]
 
-    def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance) -> Plan:
-        """For the next moving frame: three indices, without polarisation; cut-off, bounces and size by the setting."""
+    def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance, reduced: float = 1.0) -> Plan:
+        """For the next moving frame: three indices, without polarisation; cut-off, bounces and size by the setting.
+
+        `wanted` are so many times, each way, the pixels that the viewer asked for.
+        """
         setting = self._pinned(wanted, balance) if balance.pinned else self.setting
         if setting is None:
             return Plan(scene, wanted, wanted, None, math.nan)
@@ -159,7 +164,7 @@ class Governor:
         simplified = scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)})
         scale = _scale(setting, wanted) * (1 if balance.pinned else SHRINK**self._shrunk)
         size = max(16, round(wanted[0] * scale)), max(16, round(wanted[1] * scale))
-        error = self._errors.radiance(scale, simplified.optics.cutoff, simplified.optics.max_bounces)
+        error = self._errors.radiance(reduced * scale, simplified.optics.cutoff, simplified.optics.max_bounces)
         return Plan(simplified, size, wanted, setting, error)
 
     def rested(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from culet.engine.painting import jpeg
+from culet.engine.governing.thrift import NO_LIMITS, Allowance, Thrift
 from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.live_frame import LiveFrame
@@ -30,6 +31,8 @@ class Outgoing:
     """s, steady clock: when that was."""
     unsent: int = 0
     """Frames that are being encoded, or wait for that."""
+    allowance: Allowance = NO_LIMITS
+    """Bytes that frames may have."""
     latest: asyncio.Task[None] | None = None
     """Encodes and sends the frame that was drawn last."""
 
@@ -58,10 +61,10 @@ class FrameSender:
         self._now = clock
         self._threads = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2), "encode")
 
-    def publish(self, session: Session, outgoing: Outgoing, frame: LiveFrame, begun_at: float) -> None:
+    def publish(self, session: Session, outgoing: Outgoing, thrift: Thrift, frame: LiveFrame, begun_at: float) -> None:
         """Encode and send a frame that was begun at that time of the clock; this does not wait for either."""
         outgoing.unsent += 1
-        work = self._encode_and_send(session, outgoing, frame, begun_at, before=outgoing.latest)
+        work = self._encode_and_send(session, outgoing, thrift, frame, begun_at, before=outgoing.latest)
         outgoing.latest = asyncio.create_task(work)
 
     def repeat(self, outgoing: Outgoing) -> None:
@@ -76,18 +79,25 @@ class FrameSender:
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     async def _encode_and_send(
-        self, session: Session, outgoing: Outgoing, frame: LiveFrame, begun_at: float, before: asyncio.Task[None] | None
+        self,
+        session: Session,
+        outgoing: Outgoing,
+        thrift: Thrift,
+        frame: LiveFrame,
+        begun_at: float,
+        before: asyncio.Task[None] | None,
     ) -> None:
+        at_rest = outgoing.allowance.at_rest or math.inf
         drawn_at, started = self._now(), time.perf_counter()
         try:
-            payload = await asyncio.get_running_loop().run_in_executor(
-                self._threads, lambda: jpeg.encode(frame.rgb, moving=frame.shown.moving)
-            )
+            encoded = await asyncio.get_running_loop().run_in_executor(self._threads, frame.encoded, at_rest)
             encode_seconds = time.perf_counter() - started
+            if frame.encoding is not None:
+                thrift.encoded((encoded.width, encoded.height), encoded.quality, len(encoded.data))
             if before is not None:
                 await asyncio.wait([before])  # so that frames leave in order
             session.sequence += 1
-            message = frame.pack(session, payload, encode_seconds)
+            message = frame.pack(session, encoded, encode_seconds)
         except Exception as error:  # one session's failure must not end the others'
             self._tell_problem(session, as_culet_error(error, what="encoding"))
             return

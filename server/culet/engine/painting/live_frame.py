@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Plan
+from culet.engine.governing.thrift import Encoding
+from culet.engine.painting import jpeg
+from culet.engine.painting.jpeg import Encoded
 from culet.engine.painting.renderer import Picture
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
@@ -51,6 +54,8 @@ class LiveFrame:
     """Of the light map: estimated, or NaN."""
     shadows_only: bool
     """Floor and walls show nothing of what goes through stones."""
+    encoding: Encoding | None
+    """Of a moving one for a link with limits."""
 
     @classmethod
     def developed(
@@ -91,19 +96,26 @@ class LiveFrame:
             light_cut=picture.light_bound(),
             light_error=picture.light_error(),
             shadows_only=picture.shows_shadows_only(),
+            encoding=None if plan is None else plan.encoding,
         )
 
-    def pack(self, session: Session, payload: bytes, encode_seconds: float) -> bytes:
+    def encoded(self, at_rest: float) -> Encoded:
+        """Its picture as it is sent; one that does not move has so many bytes at most. Takes milliseconds."""
+        if self.encoding is not None:
+            return jpeg.encode_within(self.rgb, self.encoding.quality, self.encoding.most_bytes)
+        quality = jpeg.MOVING_QUALITY if self.shown.moving else jpeg.RESTING_QUALITY
+        return jpeg.encode_within(self.rgb, quality, math.inf if self.shown.moving else at_rest)
+
+    def pack(self, session: Session, encoded: Encoded, encode_seconds: float) -> bytes:
         """The message to send."""
-        height, width, _ = self.rgb.shape
         frontier = math.isnan(self.error) and not math.isnan(self.expected_error)
         return Frame(
             watch=session.key,
             codec=Codec.JPEG,
-            flags=self._flags(frontier) | self._unseen(),
+            flags=self._flags(frontier, encoded) | self._unseen(),
             sequence=session.sequence,
-            width=width,
-            height=height,
+            width=encoded.width,
+            height=encoded.height,
             samples=self.samples,
             bands=self.optics.bands,
             max_bounces=self.optics.max_bounces,
@@ -120,12 +132,17 @@ class LiveFrame:
             light_error=self.light_error,
             shown_error=self.shown_error,
             rest_error=self.rest_error,
-            payload=payload,
+            payload=encoded.data,
         ).pack()
 
     def _with_light(self, error: float) -> float:
         """An expected error that knows nothing of the light map, and the map's."""
         return error if math.isnan(self.light_error) else math.hypot(error, self.light_error)
+
+    def _thrifty(self, encoded: Encoded) -> bool:
+        if self.encoding is not None:
+            return self.encoding.thrifty or encoded.quality < self.encoding.quality
+        return not self.shown.moving and encoded.quality < jpeg.RESTING_QUALITY
 
     def _unseen(self) -> Flags:
         """Where the nearest stone is, if no stone is in the picture."""
@@ -133,7 +150,7 @@ class LiveFrame:
         scene = self.shown.scene
         return whereabouts(scene.camera, [Ball(stone.position, stone.scale) for stone in scene.stones], width / height)
 
-    def _flags(self, frontier: bool) -> Flags:
+    def _flags(self, frontier: bool, encoded: Encoded) -> Flags:
         flags = {
             Flags.MOVING: self.shown.moving,
             Flags.FINAL: self.final,
@@ -142,5 +159,6 @@ class LiveFrame:
             Flags.SLOW: self.slow,
             Flags.KEY: True,  # as every JPEG
             Flags.SHADOWS_ONLY: self.shadows_only,
+            Flags.THRIFTY: self._thrifty(encoded),
         }
         return Flags(sum(flag for flag, is_set in flags.items() if is_set))

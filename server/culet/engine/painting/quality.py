@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from culet.engine.governing.governor import Governor, read_ladder
+from dataclasses import replace
+from typing import assert_never
+
+from culet.engine.governing.governor import Governor, Plan, read_ladder
+from culet.engine.governing.thrift import Allowance, Thrift, read_byte_ladder
 from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.scene import Scene
 from culet.scene.optics import Optics
-from culet_protocol.messages import Balance
+from culet_protocol.messages import Balance, balance_rate
 
 DEAREST_SECONDS = 2.0
 """Of work on one frame of a pinned quality. A frame that takes longer is governed as if its quality were not pinned: of
@@ -16,6 +21,9 @@ DEAR_SECONDS = 0.4
 
 LADDER = read_ladder()
 
+PACE_MEMORY = 0.2
+"""Weight of the latest frame in how long moving frames take."""
+
 
 class Quality:
     """Mutable; of one live picture."""
@@ -23,10 +31,13 @@ class Quality:
     def __init__(self) -> None:
         """Nothing is known yet."""
         self.governor = Governor(LADDER)
+        self.thrift = Thrift(read_byte_ladder())
         self.full_seconds = 0.0
         """s of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
         self.gave_up = False
         """The frame begun last was given up for something newer."""
+        self._planned_seconds = 0.0
+        """s of work on a planned frame, lately."""
         self._too_dear: tuple[Balance, Optics, tuple[int, int]] | None = None
         """The pinned balance, optics and size of which a frame took too long."""
 
@@ -35,6 +46,17 @@ class Quality:
         if self._too_dear == (chosen, optics, size):
             return chosen.model_copy(update={"pinned": False})
         return chosen
+
+    def plan(self, scene: Scene, size: tuple[int, int], balance: Balance, allowance: Allowance) -> Plan:
+        """For the next moving frame: as good as there is time for, and as large as the link has room for."""
+        room = allowance.room(balance_rate(balance.exactness), 1 / max(self._planned_seconds, 1e-3))
+        if room is None or balance.pinned:
+            return self.governor.plan(scene, size, balance)
+        scale = self.thrift.scale(size, room)
+        reduced = max(16, round(size[0] * scale)), max(16, round(size[1] * scale))
+        plan = self.governor.plan(scene, reduced, balance, scale)
+        encoding = self.thrift.encoding(plan.size, room)
+        return replace(plan, encoding=replace(encoding, thrifty=encoding.thrifty or plan.size == reduced != size))
 
     def is_too_dear(self, work: FrameWork, *, pinned: bool) -> bool:
         """Whether planned work takes so long that another plan is better."""
@@ -45,8 +67,15 @@ class Quality:
     def drew(self, work: FrameWork) -> None:
         """A frame is done."""
         self.gave_up = False
-        if work.kind is Kind.FULL:
-            self.full_seconds = work.render_seconds
+        match work.kind:
+            case Kind.FULL:
+                self.full_seconds = work.render_seconds
+            case Kind.PLANNED:
+                self._planned_seconds += PACE_MEMORY * (work.spent - self._planned_seconds)
+            case Kind.REFINED:
+                pass
+            case _:
+                assert_never(work.kind)
 
     def give_up_planned(self, work: FrameWork, chosen: Balance, rate: float, *, pinned: bool) -> None:
         """A planned frame was not finished; frames were to come `rate` times a second."""

@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any, assert_never
 
+from culet.engine.governing.thrift import Allowance
 from culet.engine.library.upload_process import Buffer
 from culet.engine.library.upload_store import MESH, SKY, UploadStore
 from culet.engine.painting.painter import Painter
@@ -165,6 +166,7 @@ class Requests:
         live = self.sessions.get(request.session)
         others = [other for other in self.sessions if other is not live]
         live.rate = request.frames_per_second
+        live.outgoing.allowance = Allowance(request.bytes_per_frame, request.bytes_at_rest)
         live.size = size_within(self._memory, live_size(request.width, request.height, self._limits), others)
         self._painter.wake()
         return {"width": live.size[0], "height": live.size[1]}
