@@ -5,13 +5,12 @@ from __future__ import annotations
 import pytest
 
 from culet.gateway.link import EngineLink
-from culet.gateway.session_record import SessionRecord
+from culet.gateway.session_record import NO_DEMAND, SessionRecord
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Engine, State, Viewers
-from culet_protocol.sizes import LIVE_SIZE
 
 SETTINGS = GatewaySettings(control="ipc://unused", frames="ipc://unused")
 
@@ -45,22 +44,40 @@ def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_w
     sessions: Sessions,
 ) -> None:
     session = SessionRecord("ab" * 16, {})
-    assert session.wanted(0) == (0, *LIVE_SIZE)
+    assert session.wanted(0) == NO_DEMAND
     desk, phone = sessions.join(session), sessions.join(session)
     now = phone.watching_since
+
+    def wanted(time: float) -> tuple[float, int, int]:
+        asked = session.wanted(time)
+        return asked.frames_per_second, *asked.size
+
     desk.resize(1280, 720)
     phone.resize(390, 844)
-    assert session.wanted(now) == (60, 1280, 720), "whoever said it last"
+    assert wanted(now) == (60, 1280, 720), "whoever said it last"
     desk.resize(1920, 1080)
-    assert session.wanted(now) == (60, 1920, 1080)
+    assert wanted(now) == (60, 1920, 1080)
     desk.show(False, now + 1)
-    assert session.wanted(now + 1) == (60, 390, 844), "a hidden viewer's size does not count"
+    assert wanted(now + 1) == (60, 390, 844), "a hidden viewer's size does not count"
     desk.show(True, now + 2)
-    assert session.wanted(now + 2) == (60, 390, 844), "who comes back has watched for less long"
+    assert wanted(now + 2) == (60, 390, 844), "who comes back has watched for less long"
     session.viewers.remove(phone)
-    assert session.wanted(now + 3) == (60, 1920, 1080)
+    assert wanted(now + 3) == (60, 1920, 1080)
     desk.show(False, now + 4)
-    assert session.wanted(now + 4) == (0, *LIVE_SIZE)
+    assert session.wanted(now + 4) == NO_DEMAND
+
+
+def test_the_bytes_that_frames_may_have_are_those_of_the_link_of_whoever_decides_their_size(sessions: Sessions) -> None:
+    session = SessionRecord("ab" * 16, {})
+    desk, phone = sessions.join(session), sessions.join(session)
+    for viewer, size, seconds in ((desk, (1280, 720), 0.1), (phone, (390, 844), 1.0)):
+        viewer.resize(*size)
+        viewer.credit.take(1, 30_000, 0)
+        viewer.credit.acknowledge(1, seconds)
+    asked = session.wanted(phone.watching_since)
+    assert (asked.bytes_per_frame, asked.bytes_at_rest) == (10_000, 225_000), "300 kB/s, at 30 frames a second"
+    desk.show(False, 1)
+    assert session.wanted(phone.watching_since + 2).bytes_per_frame == 1_000
 
 
 def test_the_words_of_a_document_are_all_its_texts() -> None:

@@ -59,7 +59,7 @@ def test_frames_have_the_bytes_that_there_is_room_for(wanted: tuple[int, int], k
     count = expected(size, quality)
     assert count <= room.slow_bytes
     if count > room.bytes:  # fewer frames come then: none that is seen well would be small enough
-        least = LEAST_PIXELS if wanted[0] * wanted[1] > LEAST_PIXELS else wanted[0] * wanted[1]
+        least = min(wanted[0] * wanted[1], LEAST_PIXELS)
         assert float(LADDER.expected(least)[-1]) > 0.7 * room.bytes
 
 

@@ -13,6 +13,15 @@ test("the status line says rate, times, size, samples and viewers", () => {
   );
 });
 
+test("what keeps moving frames from being more or better ones is named", () => {
+  const status = { framesPerSecond: 12, frame, roundTripMs: null, viewers: 1 };
+  expect(statusText({ ...status, bottleneck: "network" })).toMatch(
+    /^12\.0 frames\/s \u00b7 limited by the network \u00b7 /,
+  );
+  expect(statusText({ ...status, bottleneck: "browser" })).toContain(" \u00b7 limited by this browser \u00b7 ");
+  expect(statusText({ ...status, bottleneck: null })).not.toContain("limited");
+});
+
 test("a finished picture is called still, one that is late is not", () => {
   const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1 };
   expect(statusText({ ...status, frame: { ...frame, flags: Flag.FINAL, samples: 64 } })).toMatch(/^still picture/);

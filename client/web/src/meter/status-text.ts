@@ -2,12 +2,14 @@
 
 import { Flag, type Frame } from "@culet/protocol/frame";
 import { words } from "../words/words";
+import type { Bottleneck } from "./bottleneck";
 
 export interface Status {
   framesPerSecond: number;
   frame: Omit<Frame, "payload"> | null;
   roundTripMs: number | null;
   viewers: number;
+  bottleneck?: Bottleneck | null;
 }
 
 /** At most three significant digits before it gets noisy: 0.12, 1.75, 31.5, 2049. */
@@ -42,7 +44,7 @@ function shownErrorText({ flags, shownError, restError }: RestingFrame): string 
     : words.status.toBe(error, significant(restError));
 }
 
-export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Status): string {
+export function statusText({ framesPerSecond, frame, roundTripMs, viewers, bottleneck }: Status): string {
   const said = words.status;
   const parts: string[] = [];
   if (frame) {
@@ -50,6 +52,7 @@ export function statusText({ framesPerSecond, frame, roundTripMs, viewers }: Sta
     const atRest = samples > 1 && (flags & Flag.MOVING) === 0;
     if (flags & Flag.FINAL) parts.push(said.still);
     else parts.push(atRest ? said.refining : said.framesPerSecond(framesPerSecond));
+    if (bottleneck) parts.push(said.limitedBy[bottleneck]);
     if (flags & Flag.SLOW) parts.push(said.slowMotion);
     parts.push(
       atRest

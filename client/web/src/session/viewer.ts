@@ -2,6 +2,7 @@
 
 import type { Frame } from "@culet/protocol/frame";
 import type { ControlEvent, JsonObject, Notice, Outlined, Picked } from "@culet/protocol/messages";
+import { BottleneckMeter } from "../meter/bottleneck";
 import type { Arrival } from "../meter/frame-history";
 import type { Size } from "../picture/picture-size";
 import { words } from "../words/words";
@@ -27,6 +28,7 @@ export interface ViewerListener {
 export class Viewer {
   readonly stream: Stream;
   readonly rate = new FrameRate();
+  readonly bottleneck = new BottleneckMeter();
   readonly player: FramePlayer<ImageBitmap>;
   lastFrame: Frame | null = null;
   /** What the server needs, besides the scene, to make the session again if it loses it. */
@@ -121,6 +123,7 @@ export class Viewer {
     this.lastFrame = frame;
     const time = performance.now();
     this.rate.shown(time);
+    this.bottleneck.shown(frame, time, this.decodeMs);
     this.listener.show(picture, frame, {
       time,
       decodeMs: this.decodeMs,

@@ -282,6 +282,11 @@ export const status = {
   still: "still picture",
   refining: "refining",
   framesPerSecond: (rate: number) => `${rate.toFixed(1)} frames/s`,
+  limitedBy: {
+    rendering: "limited by rendering",
+    network: "limited by the network",
+    browser: "limited by this browser",
+  },
   slowMotion: "slow motion",
   perSample: (ms: string) => `render ${ms} ms a sample`,
   server: (all: string, simulate: string, render: string, encode: string) =>
