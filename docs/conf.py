@@ -37,7 +37,7 @@ exclude_patterns = ["_build"]
 nitpicky = True
 nitpick_ignore_regex = [
     # What belongs to other projects, whose lists of names would have to be fetched.
-    (r"py:.*", r"(numpy|np|pydantic|pydantic_core|annotated_types|collections|pathlib|typing|types|os|zmq|enum)\..*"),
+    (r"py:.*", r"(numpy|np|pydantic|pydantic_core|annotated_types|PIL|collections|pathlib|typing|os|zmq|enum)\..*"),
     (r"py:.*", r"culet\.(simulation|study)\..*|OnePath|SeveralPaths|Study|Report|Progress|Scene"),  # described in words
     (r"py:.*", r"culet_protocol\.messages\..*"),  # listed as a whole
     (r"py:.*", r"(Path|NDArray|Mapping|Callable|Sequence|PathLike|ModelWrapValidatorHandler|InitErrorDetails)"),
@@ -88,9 +88,19 @@ def _such_as(schema: dict[str, Any], schemas: dict[str, Any]) -> str:
     return f" with {', '.join(f'`{name}`' for part in parts for name in part.get('properties', {}))}"
 
 
+def notebook_text(notebook: dict[str, Any]) -> str:
+    """Its cells as Markdown, without the title."""
+    cells = [(cell["cell_type"], "".join(cell["source"])) for cell in notebook["cells"]]
+    text = "\n\n".join(f"```python\n{source}\n```" if kind == "code" else source for kind, source in cells)
+    return text.partition("\n")[2]
+
+
 def write_references(_app: Sphinx) -> None:
-    """What the interfaces say of themselves: REST as `/openapi.json` answers, the commands as their `--help` does."""
+    """What the interfaces say of themselves: REST as `/openapi.json` answers, the commands as their `--help` does. And
+    the notebook as a page."""
     MADE.mkdir(exist_ok=True)
+    notebook = json.loads((HERE / "tutorial" / "notebook.ipynb").read_text(encoding="utf-8"))
+    (MADE / "notebook.md").write_text(notebook_text(notebook), encoding="utf-8")
     (MADE / "openapi.json").write_text(json.dumps(readable(document())), encoding="utf-8")
     typer = [sys.executable, "-m", "typer", "culet.cli", "utils", "docs", "--name", "culet"]
     subprocess.run([*typer, "--output", MADE / "commands.md"], check=True, stdout=subprocess.DEVNULL)  # noqa: S603

@@ -1,4 +1,4 @@
-"""The few requests of REST that a viewer needs: a session made, told something, forgotten."""
+"""The few requests of REST that a viewer needs: a session made, told something, changed, seen, forgotten."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import urllib.error
 import urllib.request
 from typing import Any
-from urllib.parse import urlsplit, urlunsplit
+from urllib.parse import urlencode, urlsplit, urlunsplit
 
 from culet_client.errors import ClientError, RefusedError
 from culet_protocol.messages import Message
@@ -42,22 +42,39 @@ class Rest:
         """Delete it."""
         self._ask("DELETE", f"/api/sessions/{session}")
 
+    def patch(self, session: str, patch: dict[str, Any]) -> None:
+        """Change parts of a session's scene by a merge patch; RefusedError says why it cannot be."""
+        self._ask("PATCH", f"/api/sessions/{session}", patch)
+
+    def scene(self, session: str) -> dict[str, Any]:
+        """What a session shows now, with camera and stones where they are."""
+        return self._ask("GET", f"/api/sessions/{session}/scene")
+
+    def frame(self, session: str, ending: str, asked: dict[str, float | None]) -> bytes:
+        """The file of a picture of what a session shows, rendered anew; `asked` as in the query of `frame.png`."""
+        query = urlencode({name: value for name, value in asked.items() if value is not None})
+        return self._answer("GET", f"/api/sessions/{session}/frame.{ending}?{query}")
+
     def _ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+        text = self._answer(method, path, body)
+        try:
+            answered: dict[str, Any] = json.loads(text) if text else {}
+        except ValueError as error:
+            raise ClientError(f"{self.server} answered with something else than JSON; is it culet?") from error
+        return answered
+
+    def _answer(self, method: str, path: str, body: dict[str, Any] | None = None) -> bytes:
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(  # noqa: S310 - http or https, as checked above
             self.server + path, data, {"Content-Type": "application/json"}, method=method
         )
         try:
             with urllib.request.urlopen(request, timeout=self._timeout) as answer:  # noqa: S310
-                text = answer.read()
+                answered: bytes = answer.read()
         except urllib.error.HTTPError as error:
             raise _refusal(error) from error
         except (OSError, http.client.HTTPException) as error:
             raise ClientError(f"cannot reach {self.server}: {getattr(error, 'reason', error)}") from error
-        try:
-            answered: dict[str, Any] = json.loads(text) if text else {}
-        except ValueError as error:
-            raise ClientError(f"{self.server} answered with something else than JSON; is it culet?") from error
         return answered
 
 

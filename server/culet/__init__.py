@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from culet import study
     from culet.errors import CuletError
     from culet.falls import Motion, simulate
+    from culet.notebook import View, view
     from culet.scene import PRESETS, Scene
     from culet.sources import load_scene
     from culet.stills import Cost, Missed, Picture, render
@@ -26,6 +27,8 @@ _HOMES = {
     "CuletError": "culet.errors",
     "Motion": "culet.falls",
     "simulate": "culet.falls",
+    "View": "culet.notebook",
+    "view": "culet.notebook",
     "PRESETS": "culet.scene",
     "Scene": "culet.scene",
     "load_scene": "culet.sources",
@@ -38,8 +41,8 @@ _HOMES = {
 """The modules that the names come from."""
 
 __all__ = [
-    "PRESETS", "Cost", "CuletError", "Missed", "Motion", "Picture", "Scene", "__version__", "load_scene", "render",
-    "simulate", "study",
+    "PRESETS", "Cost", "CuletError", "Missed", "Motion", "Picture", "Scene", "View", "__version__", "load_scene",
+    "render", "simulate", "study", "view",
 ]  # fmt: skip
 
 

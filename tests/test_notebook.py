@@ -1,0 +1,71 @@
+"""A live view for notebooks: refusals, where its frame leads, its server's life. The tutorial's notebook shows one."""
+
+from __future__ import annotations
+
+import re
+
+import httpx
+import numpy as np
+import pytest
+
+import culet
+import culet_client
+from culet import notebook
+from culet.errors import InputError
+from culet_protocol.messages import ToggleMirror
+
+
+@pytest.mark.parametrize(
+    ("given", "field"),
+    [
+        ({"height": 49}, "height"),
+        ({"height": True}, "height"),
+        ({"rotate": float("nan")}, "rotate"),
+        ({"through": "/proxy/8000/"}, "through"),
+        ({"through": "proxy/{port}/"}, "through"),
+    ],
+)
+def test_what_a_view_cannot_be_is_refused_before_a_server_is_started(given: dict[str, object], field: str) -> None:
+    with pytest.raises(InputError, match="expected") as refused:
+        culet.view("ruby", **given)  # type: ignore[arg-type]
+    assert refused.value.field == field
+
+
+def test_under_jupyterhub_the_frame_leads_through_the_users_own_proxy(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert notebook._through(None) is None
+    monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", "/user/ada/")
+    assert notebook._through(None) == "/user/ada/proxy/{port}/"
+    assert notebook._through("https://hub.example/p/{port}") == "https://hub.example/p/{port}/"
+
+
+def test_only_what_comes_through_a_proxy_may_bear_any_name() -> None:
+    assert "--allow-host" not in notebook._options(None)
+    given = notebook._options("https://hub.example/p/{port}/")
+    assert given[given.index("--allow-host") + 1] == "*"
+    assert (
+        given[given.index("--frame-ancestor") + 1] == given[given.index("--allow-origin") + 1] == "https://hub.example"
+    )
+
+
+def test_views_share_a_server_that_ends_with_the_last() -> None:
+    first = culet.view({"floor": {"kind": "matte"}}, ui=True)
+    second = culet.view({"floor": {"kind": "none"}}, rotate=20)
+    assert first.url.split("?")[0] == second.url.split("?")[0]
+    source = re.search(
+        r'src="(http://127\.0\.0\.1:\d+/\?session=[0-9a-f]{32}&amp;ui=0&amp;rotate=20)"', second._repr_html_()
+    )
+    assert source
+    assert second.url == source[1].replace("&amp;", "&")
+    with pytest.raises(culet_client.RefusedError) as refused:
+        first.update({"floor": {"kind": "water"}})
+    assert refused.value.field == "floor.kind"
+    assert first.update({"floor": {"albedo": [0.2, 0.2, 0.2]}}).send(ToggleMirror()).scene.floor.kind == "mirror"
+    assert np.asarray(first.picture(32, 18, samples=1)).shape == (18, 32, 3)
+    policy = httpx.get(first.url).headers["Content-Security-Policy"]
+    assert "frame-ancestors 'self' http://localhost:* http://127.0.0.1:*" in policy
+    first.stop()
+    first.stop()
+    assert second.scene.floor.kind == "none"
+    second.stop()
+    with pytest.raises(httpx.ConnectError):
+        httpx.get(second.url)
