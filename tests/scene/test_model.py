@@ -184,6 +184,8 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "no bounces": ({"optics": {"max_bounces": 0}}, "optics.max_bounces", "1; got 0"),
     "half a bounce": ({"optics": {"max_bounces": 2.5}}, "optics.max_bounces", "expected a whole number; got 2.5"),
     "two bands": ({"optics": {"bands": 2}}, "optics.bands", "3; got 2"),
+    "many bands": ({"optics": {"bands": "many"}}, "optics.bands", "'auto' or a whole number from 3 to 64; got 'many'"),
+    "half a band": ({"optics": {"bands": 3.5}}, "optics.bands", "expected a whole number; got 3.5"),
     "no samples": ({"sampling": {"samples_per_pixel": 0}}, "sampling.samples_per_pixel", "1; got 0"),
     "exposure 0": ({"film": {"exposure": 0}}, "film.exposure", "greater than 0; got 0"),
     "unknown tone map": ({"film": {"tone_map": "aces"}}, "film.tone_map", "'none'; got 'aces'"),

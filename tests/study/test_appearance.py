@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
+from culet.rendering.chains import is_spectral
 from culet.rendering.features import Features
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene
@@ -92,7 +93,7 @@ def test_the_stones_pixels_are_those_that_it_changes(renderer: Renderer, brillia
 @pytest.mark.parametrize("name", WANTED)
 def test_a_preset_looks_as_it_should(renderer: Renderer, name: str) -> None:
     preset = PRESETS[name]
-    general = Features(spectral=int(preset.scene.optics.bands > 3))
+    general = Features(spectral=int(is_spectral(preset.scene)))
     if name == "falling":
         measures = in_flight(renderer, preset, WIDE, general)
     else:

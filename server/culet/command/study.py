@@ -116,15 +116,21 @@ def resting(
     ] = 0.004,
     samples: Annotated[int, typer.Option(min=16, max=MOST_SAMPLES, help="At most, as `--rest-samples`.")] = 256,
     reference: Annotated[int, typer.Option(min=16, max=MOST_SAMPLES, help="Samples of the converged picture.")] = 1024,
+    bands: Annotated[
+        str | None, typer.Option(metavar="auto|3..64", help="In place of the scene's `optics.bands`.")
+    ] = None,
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every picture.")] = None,
 ) -> None:
     """Refine a picture at rest as the engine does: how soon is it how good, and is its estimated error right?"""
     from culet.engine.process.limits import REST_LEAST
     from culet.rendering.target import Target
+    from culet.scene.patch import read_patched
     from culet.study.resting import described, measure, table
 
     with errors_in_one_line():
         stage = read_stage(scene, preset, None, None)
+        if bands is not None:
+            stage = stage.showing(read_patched(stage.scene.model_dump(mode="json"), {"optics": {"bands": bands}}))
         with opened(out) as file:
             with progress_bar("rendering") as advance:
                 rest = Target(samples, error, least=min(REST_LEAST, samples))

@@ -26,7 +26,7 @@ router = APIRouter(tags=["sessions"])
 
 
 class SessionRequest(Model):
-    """What the new session shows: a scene, or a preset by name; nothing is the default scene."""
+    """What the new session shows: a scene, or a preset by name; nothing is the preset `default`."""
 
     scene: Scene | None = None
     preset: Annotated[str, Field(description="A name from /api/presets.")] | None = None
@@ -101,7 +101,7 @@ async def create_session(
 ) -> SessionAnswer:
     """Make a session."""
     request = request or SessionRequest()
-    scene = request.scene or (preset(request.preset) if request.preset is not None else Scene())
+    scene = request.scene or preset(request.preset or "default")
     shown, client = scene.model_dump(mode="json"), client_of(http.scope)
     if request.id is None:
         session = await gateway.sessions.open(shown, client)

@@ -8,8 +8,7 @@ from enum import IntEnum
 
 from culet.errors import SceneError
 from culet.geometry.shape import Shape
-from culet.optics.dispersion import channel_indices
-from culet.rendering.chains import is_coloured, is_spectral
+from culet.rendering.chains import disperses, is_coloured, is_spectral
 from culet.rendering.light.sources import mapped_surfaces
 from culet.rendering.mirrors import makes_finite_group
 from culet.rendering.placed_stone import camera_stone, placed_stones
@@ -131,7 +130,6 @@ def features_of(stage: Stage) -> Features:
             "optics.estimator",
         )
     lit = floor.kind in ("matte", "mirror") or walls.kind != "none"
-    indices = [channel_indices(material) for material in {stone.material for stone in scene.stones}]
     return Features(
         geometry=geometry_of(shapes),
         floor=SURFACE[floor.kind],
@@ -144,7 +142,7 @@ def features_of(stage: Stage) -> Features:
         head=int(scene.head is not None),
         backdrop=int(scene.backdrop.kind != "none"),
         glare=int(optics.glare),
-        dispersion=int(any(len(set(each)) > 1 for each in indices)),
+        dispersion=int(disperses(scene)),
         absorption=RUNTIME if is_coloured(scene) else 0,
         fresnel=FRESNEL[optics.fresnel],
         end=END[optics.end],

@@ -29,6 +29,7 @@ from culet.rendering.shown_difference import ShownDifference, film_arguments
 from culet.rendering.softening import Softening
 from culet.rendering.sums import Fold, Sums
 from culet.rendering.target import Target
+from culet.rendering.tracing import Tracing, Tracings, needed_features
 from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene
 from culet.stage import Stage
@@ -137,16 +138,17 @@ class Renderer:
         """What is known of that program's steps, with stones of about so many triangles."""
         return self._paces.setdefault((kernel, triangles.bit_length()), Pace())
 
-    def is_ready(self, stage: Stage) -> bool:
-        """Whether a picture can be begun without waiting for a compiler, a mesh's tree or a cut's symmetry."""
-        features = features_of(stage)
+    def is_ready(self, stage: Stage, samples: int = 0) -> bool:
+        """Whether the next sample of a picture that has so many can be begun without waiting for a compiler, a mesh's
+        tree or a cut's symmetry."""
+        features = needed_features(stage, samples)
         found = all(has_facet_rows(shape) if by_half_spaces(shape) else has_tree(shape) for shape in stage.shapes)
-        programs_are = self.programs.is_ready(features.general, self.variant) and self.lighting.is_ready(stage)
-        return found and programs_are
+        has_program = any(self.programs.is_ready(each, self.variant) for each in (features, features.general))
+        return found and has_program and self.lighting.is_ready(stage)
 
-    def make_ready(self, stage: Stage) -> None:
+    def make_ready(self, stage: Stage, samples: int = 0) -> None:
         """Have what `is_ready` asks for made, while pictures are refined in another thread."""
-        features = features_of(stage)
+        features = needed_features(stage, samples)
         for shape in stage.shapes:
             if by_half_spaces(shape):
                 facet_rows(shape)
@@ -205,13 +207,20 @@ class Picture:
             raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
         if features.stones < needed.stones:
             raise ValueError(f"features: expected stones {needed.stones}, the scene's, got {features.stones}")
-        get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
-        self._kernel = get(features, renderer.variant)
         self._effort, self._light = effort or Effort.PATIENT, None
         if effort is not None and light_map is None and features.light_map != 0:
             self._light = renderer.lighting.of(stage)
         bound = self._light.bound if self._light else light_map
-        self._inputs = Inputs(renderer.device, stage, width, height, features, real, bound)
+        triangles = sum(len(shape.triangles) for shape in stage.shapes)
+
+        def tracing(traced: Stage, wanted: Features) -> Tracing:
+            get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
+            kernel = get(wanted, renderer.variant)
+            inputs = Inputs(renderer.device, traced, width, height, wanted, real, bound)
+            return Tracing(kernel, inputs, renderer.pace_of(kernel, triangles))
+
+        self._tracings = Tracings(stage, features, tracing)
+        self._tracings.of(0)  # what cannot be drawn is refused at once
         self._lit_by = 0
         """Version of the map that its samples saw."""
         self._light_errors: list[float] = []
@@ -224,7 +233,6 @@ class Picture:
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
         self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
-        self._pace = renderer.pace_of(self._kernel, sum(len(shape.triangles) for shape in stage.shapes))
 
     @property
     def scene(self) -> Scene:
@@ -238,7 +246,7 @@ class Picture:
 
     def prepare(self) -> None:
         """Have on the device what the next sample needs, which `refine` does by itself."""
-        self._inputs.of_sample(self.samples)
+        self._tracings.of(self.samples).inputs.of_sample(self.samples)
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
@@ -327,25 +335,26 @@ class Picture:
     def _one_sample(self, seconds: float) -> Iterator[float]:
         """Yields the part of the tiles that were begun, between launches, and at last 1."""
         device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
+        tracing = self._tracings.of(self.samples)
         x, y = jitter(self.samples, self.scene.sampling.filter)
         target, accumulate = self._sums.target()
         progress = np.zeros(progress_size(device.units), np.uint32)
         of_items = progress[OF_ITEMS:].reshape(device.units, 2)
-        buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * self._kernel.kept_bytes)
+        buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * tracing.kernel.kept_bytes)
         start = time.perf_counter()
         cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
         while True:
-            event = self._kernel.launch(
+            event = tracing.kernel.launch(
                 device.queue,
                 device.units,
                 {
-                    **self._inputs.of_sample(self.samples),
+                    **tracing.inputs.of_sample(self.samples),
                     "image": target,
                     "accumulate": accumulate,
                     "tallies": self._tallies,
                     "jitter_x": x,
                     "jitter_y": y,
-                    "steps": self._pace.steps(seconds),
+                    "steps": tracing.pace.steps(seconds),
                     "count": count,
                     "progress": buffer,
                     "kept": kept,
@@ -356,7 +365,7 @@ class Picture:
             taken = time.perf_counter() - start
             self.seconds += taken
             under_way, steps = of_items.T
-            self._pace.made(int(steps.max()), taken)
+            tracing.pace.made(int(steps.max()), taken)
             part = min(int(progress[TILES_DEALT]) / count, ALMOST)
             if progress[TILES_DEALT] >= count and not under_way.any():
                 break
@@ -368,8 +377,8 @@ class Picture:
 
     @property
     def program(self) -> Any:  # noqa: ANN401 - pyopencl has no types
-        """The built program that renders this picture."""
-        return self._kernel.entry.program
+        """The built program that rendered this picture's last sample."""
+        return self._tracings.of(max(0, self.samples - 1)).kernel.entry.program
 
     def linear(self, rows: slice = slice(None)) -> NDArray[np.floating[Any]]:
         """(height, width, 3) mean linear radiance, or those rows of it."""

@@ -4,17 +4,39 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from culet.scene.fields import Model
+
+MOST_BANDS = 64
+
+
+def _form_of_bands(value: object) -> str | None:
+    if value == "auto":
+        return "<auto>"
+    return "<number>" if not isinstance(value, str) or value.strip().isdigit() else None
+
+
+Bands = Annotated[
+    Annotated[Literal["auto"], Tag("<auto>")] | Annotated[int, Field(ge=3, le=MOST_BANDS), Tag("<number>")],
+    Discriminator(
+        _form_of_bands,
+        custom_error_type="bands",
+        custom_error_message=f"Input should be 'auto' or a whole number from 3 to {MOST_BANDS}",
+    ),
+]
+"""Of the two forms only the one that was meant is judged. The tags are told from fields by their brackets."""
 
 
 class Optics(Model):
     """How light is followed."""
 
     fresnel: Literal["exact", "schlick"] = "exact"
-    bands: Annotated[int, Field(ge=3, le=64)] = Field(
-        3, description="3: an index for each channel. More: that many sampled wavelengths for each pixel and sample."
+    bands: Bands = Field(
+        3,
+        description="3: an index for each channel. More: that many sampled wavelengths for each pixel and sample. "
+        "auto: 3 while things move and for the first sample of a picture at rest, then wavelengths if a stone "
+        "disperses.",
     )
     polarised: bool = Field(
         False, description="Carry polarisation along each path, with the phases of total reflection; else average it."
@@ -45,3 +67,8 @@ class Optics(Model):
         "counted as cut.",
     )
     estimator: Literal["chain", "classic"] = "chain"
+
+
+SPECTRAL_AT_REST = Optics(bands="auto")
+"""Of presets that are looked at for their fire. A document that names no bands keeps its three: it shows what it has
+shown ever since, to the last bit."""

@@ -15,6 +15,7 @@ from culet.scene.camera import Camera
 from culet.scene.emitters import PointLight
 from culet.scene.model import Scene
 from culet.scene.motion import Simulation
+from culet.scene.optics import SPECTRAL_AT_REST
 from culet.scene.room import Plane
 from culet.scene.stone import StoneSettings
 
@@ -25,7 +26,11 @@ def _pile(name: str) -> tuple[StoneSettings, ...]:
     return tuple(StoneSettings.model_validate(stone) for stone in _PILES[name])
 
 
-TRIO = Scene(stones=_pile("trio"), camera=Camera(position=(0, 7.4, 11.4), target=(0.05, -0.5, 0.35), fov_degrees=20))
+TRIO = Scene(
+    stones=_pile("trio"),
+    camera=Camera(position=(0, 7.4, 11.4), target=(0.05, -0.5, 0.35), fov_degrees=20),
+    optics=SPECTRAL_AT_REST,
+)
 HEAP = Scene(
     stones=_pile("heap"),
     emitters=(*LAMPS, PointLight(position=(2, 5, 2), colour=(0.3, 0.3, 0.3))),

@@ -12,6 +12,7 @@ from culet.scene import daylight, piles, showcase
 from culet.scene.camera import Camera
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import Scene
+from culet.scene.optics import SPECTRAL_AT_REST
 from culet.scene.report_scenes import CLASSIC, classic, tinted
 
 Group = Literal["diamonds", "instruments", "coloured stones", "several stones", "the report"]
@@ -34,7 +35,13 @@ class Preset:
 _FIG_1 = classic(position=(0, 2, 0), camera=Camera(position=(0, 1.6, 8), target=(0, 0.6, 0), fov_degrees=45))
 
 _ALL = (
-    Preset("default", "Atelier", "A diamond at rest under soft boxes, before a dark backdrop.", "diamonds", Scene()),
+    Preset(
+        "default",
+        "Atelier",
+        "A diamond at rest under soft boxes, before a dark backdrop.",
+        "diamonds",
+        Scene(optics=SPECTRAL_AT_REST),
+    ),
     Preset("white", "On white", "The same diamond on white, as shops show it.", "diamonds", showcase.WHITE),
     Preset(
         "fire", "Fire", "Small lamps in the dark: the colours that a diamond makes of white.", "diamonds", showcase.FIRE

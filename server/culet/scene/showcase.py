@@ -10,7 +10,7 @@ from culet.scene.emitters import AnyEmitter, BoxLamp
 from culet.scene.fields import Colour
 from culet.scene.film import Film
 from culet.scene.model import SPIN, Scene
-from culet.scene.optics import Optics
+from culet.scene.optics import SPECTRAL_AT_REST, Optics
 from culet.scene.room import Plane, StudioFloor
 from culet.scene.sky import Environment, ImageEnvironment, StudioEnvironment
 from culet.scene.stone import MaterialName, StoneSettings
@@ -20,6 +20,7 @@ WHITE = Scene(
     backdrop=GradientBackdrop(kind="gradient", centre=(0.96, 0.965, 0.975), edge=(0.62, 0.635, 0.66)),
     environment=StudioEnvironment(ambient=AMBIENT),
     emitters=(*boxes(1.9), *low_boxes(1.1), *small_lamps(11)),
+    optics=SPECTRAL_AT_REST,
 )
 FIRE = Scene(
     floor=StudioFloor(kind="studio", colour=grey(0.004)),
@@ -36,6 +37,7 @@ FALLING = Scene(
     emitters=(*boxes(3.2, half_width=18, half_height=18), *low_boxes(1.8), *small_lamps(11)),
     stones=(StoneSettings(position=(-0.6, 1.5, 0), velocity=(0.8, 1.5, 0), spin=(1.5, 5, -2)),),
     camera=Camera(position=(0, 7.2, 12), target=(0, 0, 0), fov_degrees=17),
+    optics=SPECTRAL_AT_REST,
 )
 
 _FACE_UP_CAMERA = Camera(kind="orthographic", position=(0, 12.5, 0), target=(0, 0.5, 0), up=(0, 0, -1), height=2.4)
@@ -93,6 +95,7 @@ def _coloured(
         backdrop=GradientBackdrop(kind="gradient", centre=(0.86, 0.865, 0.88), edge=(0.5, 0.51, 0.53)),
         environment=StudioEnvironment(ambient=ground),
         emitters=(*boxes(2.3, half_width=17, half_height=17), *low_boxes(1.8), *small_lamps(10, count=8)),
+        optics=SPECTRAL_AT_REST,
         film=Film(exposure=exposure),
     )
 

@@ -11,6 +11,7 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
+from culet.rendering.chains import is_spectral
 from culet.rendering.features import Features
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene.presets import PRESETS, Preset
@@ -96,7 +97,7 @@ def shown(
 ) -> Shown:
     """At full size, unless another is asked for."""
     size = size or size_of(preset)
-    samples = samples or (SPECTRAL_SAMPLES if preset.scene.optics.bands > 3 else SAMPLES)
+    samples = samples or (SPECTRAL_SAMPLES if is_spectral(preset.scene) else SAMPLES)
     picture = picture_of(renderer, preset, size, samples, features)
     measures: dict[str, float] = {}
     if len(picture.stage.shapes) == 1 and picture.stage.shapes[0].convex:

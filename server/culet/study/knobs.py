@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import NamedTuple
 
+from culet.rendering.chains import bands_seen
 from culet.rendering.features import Geometry, features_of
 from culet.scene.model import Scene
 from culet.scene.optics import Optics
@@ -73,7 +74,7 @@ def base_knobs(stage: Stage, lanes: int) -> Knobs:
         end=optics.end,
         cutoff=optics.cutoff,
         max_bounces=optics.max_bounces,
-        bands=optics.bands,
+        bands=bands_seen(stage.scene, 1),
         polarised=optics.polarised,
         fresnel=optics.fresnel,
         lanes=lanes,

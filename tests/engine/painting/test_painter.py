@@ -82,6 +82,9 @@ class World:
         """To which pictures are refined."""
         self.sent: list[tuple[float, Frame]] = []
         """When, and what."""
+        self.compiled = threading.Event()
+        """Set when more than the first sample of a picture can be made, as it is unless a test says otherwise."""
+        self.compiled.set()
         self.events: list[float] = []
         """When the camera turns a little."""
 
@@ -107,11 +110,11 @@ class World:
         gc.collect()
         return len(self.pictures)
 
-    def is_ready(self, stage: Stage) -> bool:
-        return True
+    def is_ready(self, stage: Stage, samples: int = 0) -> bool:
+        return samples == 0 or self.compiled.is_set()
 
-    def make_ready(self, stage: Stage) -> None:
-        """There is nothing to be made."""
+    def make_ready(self, stage: Stage, samples: int = 0) -> None:
+        self.compiled.wait(60)
 
     def describe(self) -> dict[str, str]:
         return {}
@@ -303,6 +306,23 @@ async def test_the_first_frame_of_a_drag_is_as_quick_as_the_picture_at_rest_lets
     first = world.drawn[0]
     assert not first.full
     assert first.ended - first.begun < 1 / 30
+
+
+async def test_what_moves_does_not_wait_for_the_program_that_refines(play: Play) -> None:
+    world = World(0.1)
+    world.compiled.clear()
+    await play(world, 1)
+    assert world.samples == 1
+    world.drawn.clear()
+    world.turn(since=0, seconds=1)
+    await play(world, 2)
+    assert sum(not drawn.full for drawn in world.drawn) > 29
+    assert (world.drawn[-1].full, world.samples) == (True, 1)
+    world.compiled.set()
+    async with asyncio.timeout(60):
+        while world.samples == 1:
+            await play(world, 0.1)
+            await asyncio.sleep(0.001)  # the thread that waits for the compiler is a real one
 
 
 async def test_one_sample_of_each_pixel_asked_for_is_softened_and_nothing_else_is(play: Play) -> None:

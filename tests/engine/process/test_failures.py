@@ -48,11 +48,11 @@ class FailingRenderer:
 
     cut_out = picture
 
-    def is_ready(self, stage: Stage) -> bool:
-        return self.renderer.is_ready(stage)
+    def is_ready(self, stage: Stage, samples: int = 0) -> bool:
+        return self.renderer.is_ready(stage, samples)
 
-    def make_ready(self, stage: Stage) -> None:
-        self.renderer.make_ready(stage)
+    def make_ready(self, stage: Stage, samples: int = 0) -> None:
+        self.renderer.make_ready(stage, samples)
 
     def describe(self) -> Mapping[str, Any]:
         return self.renderer.describe()

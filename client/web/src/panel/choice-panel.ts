@@ -11,6 +11,7 @@ import { words } from "../words/words";
 import { LiveControls } from "./live-controls";
 import {
   BANDS,
+  type Bands,
   type Choices,
   CUTOFFS,
   choicesOf,
@@ -54,7 +55,7 @@ export class ChoicePanel {
     const numbers = (values: readonly number[]) => values.map((value) => ({ label: String(value), value }));
     const said = words.optics;
     const none = NOTHING_CHOSEN;
-    this.controls.listen("bands", optics.add(new Choice(said.bands, numbers(BANDS), none.bands)).hint(said.bandsHint));
+    this.controls.listen("bands", optics.add(new Choice<Bands>(said.bands, BANDS, none.bands)).hint(said.bandsHint));
     this.controls.listen("polarised", optics.add(new Toggle(said.polarised)).hint(said.polarisedHint));
     this.controls.listen(
       "cutoff",

@@ -1,6 +1,7 @@
 import { describe, expect, it, test } from "vitest";
 import { object } from "../json";
 import {
+  BANDS,
   type Choices,
   choicesOf,
   ENDS,
@@ -37,6 +38,13 @@ describe("the choices of a scene", () => {
   it("are what it says", () => {
     expect(choicesOf(SCENE)).toEqual(CHOSEN);
     expect(choicesOf({ environment: { kind: "studio" } }).sky).toBe("studio");
+  });
+
+  it("leave the number of wavelengths to the server, which moves fewer", () => {
+    expect(choicesOf({ optics: { bands: "auto" } }).bands).toBe("auto");
+    expect(choicesOf({ optics: { bands: "many" } }).bands).toBe(3);
+    expect(patchOf(SCENE, "bands", "auto")).toEqual({ optics: { bands: "auto" } });
+    expect(BANDS[0]?.value).toBe("auto");
   });
 
   it("call a material by indices what it is", () => {

@@ -8,20 +8,28 @@ import { stoneOf, stonePatch, stonesOf } from "../stones/stones";
 import { words } from "../words/words";
 import { imageSky, skyPatch } from "./sky-choice";
 
+/** A number of wavelengths; or more of them by themselves while the picture rests. */
+export type Bands = number | "auto";
+
 export interface Choices {
   /** A material's name; OWN_INDICES of one that the scene describes by its indices. */
   material: string;
   /** The kind of the environment, or, of an image, which one: see `imageSky`. */
   sky: string;
-  bands: number;
+  bands: Bands;
   polarised: boolean;
   cutoff: number;
   end: string;
   toneMap: string;
 }
 
+/** One index for each of red, green and blue. */
+const INDICES = 3;
 /** Values to choose from; a scene may have others. */
-export const BANDS = [3, 8, 16, 32];
+export const BANDS: readonly Option<Bands>[] = [
+  { label: words.optics.autoBands, value: "auto", summary: words.optics.autoBandsHint },
+  ...[INDICES, 8, 16, 32].map((value) => ({ label: String(value), value })),
+];
 export const CUTOFFS = [0.1, 0.03, 0.01, 0.003, 0.001, 0.0001];
 export const ENDS = optionsOf(words.ends, ["cut", "roulette", "sky"]);
 export const TONE_MAPS = optionsOf(words.toneMaps, ["neutral", "srgb", "filmic", "classic", "none"]);
@@ -50,7 +58,7 @@ export function materialOption({ name, title, summary, indices }: Material): Opt
 export const NOTHING_CHOSEN: Choices = {
   material: "",
   sky: "",
-  bands: 3,
+  bands: INDICES,
   polarised: false,
   cutoff: 0.01,
   end: "cut",
@@ -66,7 +74,7 @@ export function choicesOf(scene: JsonObject | null): Choices {
   return {
     material: text(material, material === undefined ? none.material : OWN_INDICES.value),
     sky: kind === "image" ? imageSky(text(environment.image, "")) : kind,
-    bands: number(optics.bands, none.bands),
+    bands: optics.bands === "auto" ? "auto" : number(optics.bands, INDICES),
     polarised: optics.polarised === true,
     cutoff: number(optics.cutoff, none.cutoff),
     end: text(optics.end, none.end),

@@ -167,6 +167,9 @@ export const skies = {
 export const optics = {
   bands: "Bands",
   bandsHint: "Wavelengths that are followed. 3: one each of red, green and blue; more spread the fire into a spectrum",
+  autoBands: "3, more at rest",
+  autoBandsHint:
+    "Red, green and blue while things move; a spectrum while the picture rests, if the material spreads light",
   polarised: "Polarised",
   polarisedHint: "Follow how reflections polarise the light; without it, light is averaged at each one",
   cutoff: "Cut-off",

@@ -16,6 +16,7 @@ from importlib.resources import files
 
 from culet.engine.governing.measured_errors import SettingErrors, read_setting_errors
 from culet.engine.governing.thrift import Encoding
+from culet.rendering.chains import bands_seen
 from culet.scene import Scene
 from culet_protocol.messages import Balance, balance_rate
 
@@ -178,7 +179,7 @@ class Governor:
         if self._unit is not None:
             return
         optics = scene.optics
-        dearer = optics.bands / MOVING_BANDS * (POLARISED_COST if optics.polarised else 1.0)
+        dearer = bands_seen(scene, 1) / MOVING_BANDS * (POLARISED_COST if optics.polarised else 1.0)
         self._unit = seconds / (size[0] * size[1] * dearer * self._ladder[0].pixel_cost)
         self._adapt(size, frames_per_second, share)
 

@@ -77,6 +77,11 @@ class FrameWork:
         """As it is drawn: what is shown, by the plan."""
         return self.shown.stage if self.plan is None else self.shown.stage.showing(self.plan.scene)
 
+    @property
+    def samples(self) -> int:
+        """That the picture has already."""
+        return 0 if self.picture is None else self.picture.samples
+
     def start(self, renderer: Renderer) -> None:
         """To be called once, before any piece."""
         self.pieces = self._made(renderer)
@@ -93,9 +98,9 @@ class FrameWork:
 
     def _made(self, renderer: Renderer) -> Iterator[object]:
         width, height = self.wanted if self.plan is None else self.plan.size
+        if not renderer.is_ready(self.stage, self.samples):
+            raise Unprepared
         if self.picture is None:
-            if not renderer.is_ready(self.stage):
-                raise Unprepared
             effort = Effort.RESTING if self.plan is None else Effort.MOVING
             self.picture = renderer.picture(self.stage, width, height, effort=effort)
         picture = self.picture

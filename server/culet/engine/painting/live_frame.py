@@ -16,6 +16,7 @@ from culet.engine.painting.jpeg import Encoded
 from culet.engine.painting.renderer import Picture
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
+from culet.rendering.chains import bands_seen
 from culet.rendering.target import Target
 from culet.scene.optics import Optics
 from culet_protocol.frame import Codec, Flags, Frame
@@ -30,6 +31,8 @@ class LiveFrame:
     shown: Shown
     optics: Optics
     """As drawn."""
+    bands: int
+    """Of the last sample."""
     samples: int
     simulate_seconds: float
     render_seconds: float
@@ -82,6 +85,7 @@ class LiveFrame:
             rgb=rgb,
             shown=shown,
             optics=picture.scene.optics,
+            bands=bands_seen(picture.scene, picture.samples),
             samples=picture.samples,
             simulate_seconds=spent[0],
             render_seconds=spent[1],
@@ -117,7 +121,7 @@ class LiveFrame:
             width=encoded.width,
             height=encoded.height,
             samples=self.samples,
-            bands=self.optics.bands,
+            bands=self.bands,
             max_bounces=self.optics.max_bounces,
             cutoff=self.optics.cutoff,
             step=self.shown.step,

@@ -144,7 +144,10 @@ class LivePainter:
         try:
             more = await self._thread.run(work.account, proceed, work.pieces, self._now, work.hold_seconds)
         except Unprepared:
-            live.making = Preparing(asyncio.create_task(self._prepare(live, work)))
+            if work.kind is Kind.REFINED:
+                live.making, live.preparing_more = None, asyncio.create_task(self._prepare_more(live, work))
+            else:
+                live.making = Preparing(asyncio.create_task(self._prepare(live, work)))
             return
         except Exception as error:  # one session's failure must not end the others'
             self._refuse(live, work.shown, error)
@@ -167,11 +170,22 @@ class LivePainter:
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
         try:
-            await in_daemon_thread(lambda: self._renderer.make_ready(work.stage))
+            await in_daemon_thread(lambda: self._renderer.make_ready(work.stage, work.samples))
         except Exception as error:  # as above
             self._refuse(live, work.shown, error)
         finally:
             live.making = None
+            self._wake()
+
+    async def _prepare_more(self, live: LivePicture, work: FrameWork) -> None:
+        """The same of a refinement: what is shown may change meanwhile."""
+        try:
+            await in_daemon_thread(lambda: self._renderer.make_ready(work.stage, work.samples))
+        except Exception as error:  # as above
+            if live.painted is work.shown:
+                self._refuse(live, work.shown, error)
+        finally:
+            live.preparing_more = None
             self._wake()
 
     def _refuse(self, live: LivePicture, shown: Shown, error: Exception) -> None:

@@ -94,6 +94,8 @@ class LivePicture:
     """Of all samples of the picture."""
     making: Making | None = None
     """The next frame, or a better one of what is shown; None while nothing is under way."""
+    preparing_more: asyncio.Task[None] | None = None
+    """What refining the picture needs is being made; meanwhile other frames can be."""
     outgoing: Outgoing = field(default_factory=Outgoing)
     quality: Quality = field(default_factory=Quality)
     settles_at: float = 0.0
@@ -245,7 +247,7 @@ class LivePicture:
 
     def wants_refinement(self) -> bool:
         """Whether more samples would improve what is seen, as far as is wanted, and nothing is in their way."""
-        idle = self.making is None and not self.outgoing.full
+        idle = self.making is None and self.preparing_more is None and not self.outgoing.full
         return self.watched and self.at_rest and self.state is State.FULL and idle
 
     def refuse(self, shown: Shown) -> None:

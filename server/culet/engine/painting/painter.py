@@ -117,9 +117,10 @@ class Painter:
             self._sender.repeat(repeat.outgoing)
         return chosen is not None or repeat is not None
 
-    async def make_ready(self, stage: Stage) -> None:
-        """Have what a picture of the stage needs compiled, while others are drawn."""
-        await in_daemon_thread(lambda: self._renderer.make_ready(stage))
+    async def make_ready(self, stage: Stage, samples: int = 0) -> None:
+        """Have what the next sample of a picture of the stage needs compiled that has so many, while others are
+        drawn."""
+        await in_daemon_thread(lambda: self._renderer.make_ready(stage, samples))
 
     async def _rest(self) -> None:
         try:

@@ -106,10 +106,10 @@ class Renderer(Protocol):
     def release(self) -> None:
         """Give back the memory of pictures that are gone."""
 
-    def is_ready(self, stage: Stage) -> bool:
-        """Whether a picture can be begun at once."""
+    def is_ready(self, stage: Stage, samples: int = 0) -> bool:
+        """Whether the next sample of a picture that has so many can be begun at once."""
 
-    def make_ready(self, stage: Stage) -> None:
+    def make_ready(self, stage: Stage, samples: int = 0) -> None:
         """Make it so: have programs compiled and trees made, which may take seconds. Called from any thread."""
 
     def describe(self) -> Mapping[str, Any]:

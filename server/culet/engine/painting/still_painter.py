@@ -13,6 +13,7 @@ from culet.engine.painting.render_thread import RenderThread
 from culet.engine.painting.renderer import Picture, Renderer
 from culet.engine.painting.still import Still, StillQueue
 from culet.errors import TooLargeError
+from culet.rendering.chains import band_count
 
 
 class StillPainter:
@@ -72,7 +73,7 @@ class StillPainter:
             raise TooLargeError(
                 f"expected a picture that takes at most {self._most_seconds:g} s to render, got one of "
                 f"{still.width} x {still.height} pixels, {still.target.samples} samples and "
-                f"{still.stage.scene.optics.bands} bands that is not done after them; ask for less of each",
+                f"{band_count(still.stage.scene)} bands that is not done after them; ask for less of each",
                 "samples",
             )
 

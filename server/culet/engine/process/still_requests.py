@@ -17,6 +17,7 @@ from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.picture_memory import picture_bytes
 from culet.engine.session import events
 from culet.errors import InputError
+from culet.rendering.chains import band_count
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Library, Stage
@@ -68,7 +69,8 @@ class StillRequests:
         check_still_size(width, height, self._limits, pictures=pictures_of(scene))
         target = self._target(request, scene, width, height)
         still = Still(stage, width, height, target, request.format, request.client, time.monotonic())
-        await self._painter.make_ready(stage)
+        for samples in range(min(2, target.samples)):  # the second sample may need another program than the first
+            await self._painter.make_ready(stage, samples)
         self._make_room_for(still)
         data = await self._painted(still)
         reached = {"width": width, "height": height, "step": step, "format": request.format, **quality(still)}
@@ -81,7 +83,7 @@ class StillRequests:
             target = replace(rest, samples=max(rest.samples, own), least=max(rest.least, own))
         else:
             target = Target.of(request.samples, request.error, scene)
-        bands = scene.optics.bands * pictures_of(scene)
+        bands = band_count(scene) * pictures_of(scene)
         if target.error is None or request.samples is not None:
             check_still_work(width, height, target.samples, bands, self._limits)
             return target
