@@ -17,7 +17,7 @@ export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 # Kernels compiled for tests are kept here, apart from the user's own.
 test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench study compose-test compilers opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench delay study compose-test compilers opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(DONE)/solver $(WEB_BUILD)
@@ -79,6 +79,10 @@ reliability: $(DONE)/soak opencl
 
 bench: opencl
 	$(BIN)/culet bench --against tests/benchmarks/baseline.jsonl $(ARGS)
+
+# From a key that is pressed to pixels that have changed, in a browser.
+delay: $(DONE)/dev opencl browser $(DONE)/solver $(WEB_BUILD)
+	PYTHONPATH=tests $(BIN)/python -m e2e.control_to_photon $(ARGS)
 
 study: $(DONE)/study opencl
 	$(BIN)/culet study rendering $(ARGS)

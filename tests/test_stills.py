@@ -48,7 +48,7 @@ def test_a_picture_is_the_renderers_to_the_last_bit(renderer: Renderer) -> None:
 
 
 def test_what_a_picture_took_grows_with_its_samples() -> None:
-    one, four = (culet.render("white", *SIZE, samples=samples) for samples in (1, 4))
+    one, four = (culet.render("mirror", *SIZE, samples=samples) for samples in (1, 4))
     assert (one.cost.samples, four.cost.samples) == (1, 4)
     assert four.cost.rays == pytest.approx(4 * one.cost.rays, rel=0.1)  # measured 0.01
     assert one.cost.rays > 24 * 16, "a stone is in the picture, and light within the stone"

@@ -126,6 +126,7 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.Balance(exactness=0.75, pinned=True),
     messages.Pick(number=3, x=0.25, y=-0.125),
     messages.Outline(stone="stone", step=42),
+    messages.Reach(number=4),
     messages.Resize(width=1280, height=720),
     messages.Visibility(visible=False),
     messages.Ack(sequence=7),
@@ -155,6 +156,7 @@ NOTICES: tuple[messages.Message, ...] = (
     messages.Pong(time=1234.5),
     messages.Picked(number=3, stone=None),
     messages.Outlined(stone="stone", step=42, points=(0.5, 0.25, -0.5, 0.25, 0, -0.75)),
+    messages.Reached(number=4, step=43),
 )
 
 REFUSED_CONTROL = {

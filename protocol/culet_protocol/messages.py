@@ -223,6 +223,14 @@ class Outline(Message):
     step: Annotated[int, Field(ge=0, le=2**53)]
 
 
+class Reach(Message):
+    """Asks which step is the first that shows what this viewer has sent before; the answer, a `reached`, has the same
+    number. A stone that was let go or struck is seen to move with later steps alone."""
+
+    type: Literal["reach"] = "reach"
+    number: Annotated[int, Field(ge=0, le=0xFFFFFFFF)]
+
+
 class Resize(Message):
     """The size that this viewer would like, in device pixels."""
 
@@ -258,7 +266,7 @@ SessionEvent = (
 )  # fmt: skip
 """What changes a session, and so travels on to the engine."""
 
-Question = Pick | Outline
+Question = Pick | Outline | Reach
 """What one viewer asks about the session's picture: the engine's answer is for that viewer alone."""
 
 ViewerEvent = Resize | Visibility | Ack | Ping
@@ -380,10 +388,18 @@ class Outlined(Message):
     points: tuple[float, ...]
 
 
-Answer = Picked | Outlined
+class Reached(Message):
+    """The answer to a Reach: the step that a frame's header has from then on, or a later one."""
+
+    type: Literal["reached"] = "reached"
+    number: int
+    step: int
+
+
+Answer = Picked | Outlined | Reached
 """What a Question is answered by."""
 
-AnyNotice = Hello | State | Change | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined
+AnyNotice = Hello | State | Change | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined | Reached
 Notice = Annotated[AnyNotice, Field(discriminator="type")]
 
 control_event: TypeAdapter[SessionEvent | Question | ViewerEvent] = TypeAdapter(ControlEvent)

@@ -224,6 +224,16 @@ export interface Outline {
   step: number;
 }
 
+/**
+ * Asks which step is the first that shows what this viewer has sent before; the answer, a `reached`, has the same
+ * number. A stone that was let go or struck is seen to move with later steps alone.
+ */
+export interface Reach {
+  type: "reach";
+  /** integer, 0 to 4294967295 */
+  number: number;
+}
+
 /** The size that this viewer would like, in device pixels. */
 export interface Resize {
   type: "resize";
@@ -274,6 +284,7 @@ export type ControlEvent =
   | Balance
   | Pick
   | Outline
+  | Reach
   | Resize
   | Visibility
   | Ack
@@ -387,7 +398,25 @@ export interface Outlined {
   points: number[];
 }
 
-export type Notice = Hello | State | Change | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined;
+/** The answer to a Reach: the step that a frame's header has from then on, or a later one. */
+export interface Reached {
+  type: "reached";
+  number: number;
+  step: number;
+}
+
+export type Notice =
+  | Hello
+  | State
+  | Change
+  | Snapshot
+  | Viewers
+  | Problem
+  | Engine
+  | Pong
+  | Picked
+  | Outlined
+  | Reached;
 
 /** What each field of a notice may be. */
 export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly string[]>> = {
@@ -422,4 +451,5 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
   pong: { time: ["number"] },
   picked: { number: ["integer"], stone: ["string", "null"] },
   outlined: { stone: ["string"], step: ["integer"], points: ["array"] },
+  reached: { number: ["integer"], step: ["integer"] },
 };

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from culet.scene import Scene
+from culet.scene import PRESETS
 from culet.scene.cuts import CUTS
 from culet.scene.motion import Simulation
 from culet.scene.stone import MaterialName
@@ -242,10 +242,10 @@ async def test_a_session_is_made_asked_changed_and_forgotten(gateway: Gateway) -
         assert_problem(await gateway.http.get(f"{path}/{name}"), 404)
 
 
-async def test_a_session_without_a_body_shows_the_default_scene(gateway: Gateway) -> None:
+async def test_a_session_without_a_body_shows_the_preset_default(gateway: Gateway) -> None:
     made = await gateway.http.post("/api/sessions")
     assert made.status_code == 201
-    assert made.json()["scene"] == Scene().model_dump(mode="json")
+    assert made.json()["scene"] == PRESETS["default"].scene.model_dump(mode="json")
 
 
 @pytest.mark.parametrize(

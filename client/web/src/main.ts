@@ -7,10 +7,12 @@ import { Opening } from "./files/opening";
 import { Saving } from "./files/saving";
 import { type Action, actionNamed } from "./input/actions";
 import { FallButton } from "./input/fall-button";
+import { inputTime } from "./input/input-time";
 import { KeyCard } from "./input/key-card";
 import { listenToKeys } from "./input/keys";
 import { Performing } from "./input/performing";
 import { steer } from "./input/steering";
+import { Delays } from "./meter/delays";
 import { Meter } from "./meter/meter";
 import { showStatus } from "./meter/status-line";
 import { element } from "./page";
@@ -19,7 +21,7 @@ import { ChosenStone } from "./picture/chosen-stone";
 import { type Embedding, embeddingOf, SHOWN, Turntable } from "./picture/embedding";
 import { refines } from "./picture/fade";
 import { OutlineView } from "./picture/outline-view";
-import { Screen } from "./picture/screen";
+import { afterPainting, Screen } from "./picture/screen";
 import { Whereabouts } from "./picture/whereabouts";
 import { exposeVisit } from "./probe";
 import { SceneStrip } from "./scenes/scene-strip";
@@ -70,10 +72,15 @@ const visit = new Visit(
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
       meter.take(frame, arrival);
       clips.take(frame, arrival.time);
+      if (delays.on) afterPainting((time) => meter.delayed(delays.painted(frame, arrival, time)));
       chosen.shown(frame.step, arrival.time);
     },
     state: stateChanged,
-    answer: (answer) => chosen.heard(answer),
+    answer: (answer) => {
+      if (answer.type === "reached") meter.delayed(delays.heard(answer, performance.now()));
+      else chosen.heard(answer);
+    },
+    sent: (event) => delays.sent(event, inputTime(), performance.now()),
     tell: (text) => toasts.finding(text),
   },
   signs,
@@ -162,7 +169,15 @@ const panel = new Panel(element("panel", HTMLElement), {
 const strip = new SceneStrip(element("scenes", HTMLElement), element("scenes-toggle", HTMLButtonElement));
 const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
 const welcome = new Welcome(element("welcome", HTMLElement));
-const meter = new Meter(element("meter", HTMLElement), (balance) => visit.send(balance), clamped);
+const delays = new Delays((question) => visit.viewer?.ask(question));
+const meter = new Meter(
+  element("meter", HTMLElement),
+  (balance) => visit.send(balance),
+  (open) => {
+    delays.on = open;
+  },
+  clamped,
+);
 
 function perform(action: Action): void {
   if (!embedding.ui && action.effect.kind !== "move" && !VIEWING.has(action.name)) return;
@@ -225,7 +240,7 @@ window.addEventListener("keydown", ({ key }) => {
 // A link that is pasted over one that could not be read is no other page to the browser.
 window.addEventListener("hashchange", () => location.reload());
 showStatus(element("status", HTMLElement), visit);
-exposeVisit(visit, screen, complaints.kept);
+exposeVisit(visit, screen, delays, complaints.kept);
 panel.update(visit.state);
 if (embedding.ui) loadCatalogues();
 attempt(() => visit.start());

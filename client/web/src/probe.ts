@@ -1,6 +1,7 @@
 /** `window.culet`: what end-to-end tests, and the curious, may read. */
 
 import type { Frame } from "@culet/protocol/frame";
+import type { Delay, Delays } from "./meter/delays";
 import type { Screen } from "./picture/screen";
 import type { Target } from "./session/events";
 import type { Connection } from "./session/stream";
@@ -22,6 +23,9 @@ export interface Probe {
   readonly connection: Connection["status"];
   readonly roundTripMs: number | null;
   readonly problems: readonly string[];
+  /** From input to picture, of inputs since delays are watched: while the meter is open, or `watchDelays` was called. */
+  readonly delays: readonly Delay[];
+  readonly watchDelays: () => void;
 }
 
 declare global {
@@ -38,7 +42,7 @@ function expose(probe: Probe): void {
   Object.defineProperty(window, "culet", { value: Object.freeze(probe), enumerable: true });
 }
 
-export function exposeVisit(visit: Visit, screen: Screen, problems: readonly string[]): void {
+export function exposeVisit(visit: Visit, screen: Screen, delays: Delays, problems: readonly string[]): void {
   expose({
     get session() {
       return visit.session;
@@ -68,5 +72,9 @@ export function exposeVisit(visit: Visit, screen: Screen, problems: readonly str
       return visit.viewer?.stream.latency.milliseconds ?? null;
     },
     problems,
+    delays: delays.kept,
+    watchDelays: () => {
+      delays.on = true;
+    },
   });
 }

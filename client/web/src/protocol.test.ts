@@ -90,6 +90,7 @@ test("every control event has a TypeScript type", () => {
     { type: "balance", exactness: 0.75, pinned: true },
     { type: "pick", number: 3, x: 0.25, y: -0.125 },
     { type: "outline", stone: "stone", step: 42 },
+    { type: "reach", number: 4 },
     { type: "resize", width: 1280, height: 720 },
     { type: "visibility", visible: false },
     { type: "ack", sequence: 7 },

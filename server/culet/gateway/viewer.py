@@ -20,6 +20,7 @@ from culet_protocol.messages import (
     Picked,
     Pong,
     Problem,
+    Reached,
     Snapshot,
     State,
     Viewers,
@@ -114,7 +115,7 @@ class Viewer:
                 key = type(notice)
             case Problem():
                 key = notice
-            case Pong() | Hello() | Picked() | Outlined():
+            case Pong() | Hello() | Picked() | Outlined() | Reached():
                 self._numbers += 1
                 key = self._numbers
             case _:

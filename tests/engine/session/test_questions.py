@@ -13,7 +13,7 @@ from culet.engine.session.picking import Placed
 from culet.engine.session.session import Session
 from culet.engine.session.viewpoint import axes
 from culet.scene import Camera, Scene
-from culet_protocol.messages import Answer, Outline, Outlined, Pick, Picked, Question
+from culet_protocol.messages import Answer, Outline, Outlined, Pick, Picked, Question, Reach, Reached
 from shared import stones
 from shared.stages import staged
 
@@ -88,6 +88,16 @@ def test_the_outline_is_that_of_the_picture_of_its_step() -> None:
     subject.change(subject.stage.showing(subject.scene.model_copy(update={"camera": camera})))
     assert answer(subject, before) == first
     assert answer(subject, Outline(stone="left", step=subject.shown.step)) != first
+
+
+def test_what_was_done_is_reached_with_the_step_that_shows_it() -> None:
+    subject = session(**ASIDE)
+    before = subject.shown.step
+    assert answer(subject, Reach(number=1)) == Reached(number=1, step=before)
+    camera = AHEAD.model_copy(update={"fov_degrees": 30})
+    subject.change(subject.stage.showing(subject.scene.model_copy(update={"camera": camera})))
+    assert answer(subject, Reach(number=2)) == Reached(number=2, step=subject.shown.step)
+    assert subject.shown.step > before
 
 
 @pytest.mark.parametrize(("stone", "step"), [("gone", 1), ("left", 99)])

@@ -11,8 +11,10 @@ import { LiveControls } from "../panel/live-controls";
 import { INITIAL, type ViewState } from "../session/view-state";
 import { words } from "../words/words";
 import { askedRate, type BalanceShown, balanceText, settingsText } from "./balance";
+import { DELAY_STAGES, type Delay } from "./delays";
 import { type Arrival, FrameHistory } from "./frame-history";
 import type { Plots } from "./plots";
+import { milliseconds } from "./status-text";
 
 const WIDTH = 330;
 const MARGIN = 12;
@@ -26,14 +28,22 @@ export class Meter {
   private state: BalanceShown = balanceOf(INITIAL);
   private readonly meaning = paragraph();
   private readonly settings = paragraph();
+  private readonly delay = paragraph();
   private readonly figures = document.createElement("div");
   private readonly history = new FrameHistory();
+  private readonly watched: (open: boolean) => void;
   private latest: Frame | null = null;
   private plots: Plots | null = null;
   private open = false;
   private drawing: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(container: HTMLElement, send: (balance: Balance) => void, clamped: Clamped) {
+  constructor(
+    container: HTMLElement,
+    send: (balance: Balance) => void,
+    watched: (open: boolean) => void,
+    clamped: Clamped,
+  ) {
+    this.watched = watched;
     this.section.fold(true);
     this.controls = new LiveControls<BalanceShown>(
       () => ({ ...this.state }),
@@ -44,7 +54,7 @@ export class Meter {
     this.controls.listen("exactness", exactness.hint(words.meter.exactnessHint));
     this.controls.listen("pinned", pinned.hint(words.meter.pinnedHint));
     this.figures.className = "figures";
-    this.section.body.append(this.meaning, this.settings, this.figures);
+    this.section.body.append(this.meaning, this.settings, this.delay, this.figures);
     this.section.onFold((open) => this.fold(open));
     this.section.element.append(new Hints(this.section.element).element);
     container.append(this.section.element);
@@ -65,12 +75,18 @@ export class Meter {
     this.drawing ??= setTimeout(() => this.draw(), DRAW_MS);
   }
 
+  /** An input is seen. */
+  delayed(delay: Delay | null): void {
+    if (this.open && delay) this.delay.textContent = delayText(delay);
+  }
+
   private get width(): number {
     return Math.min(WIDTH, window.innerWidth) - MARGIN;
   }
 
   private fold(open: boolean): void {
     this.open = open;
+    this.watched(open);
     if (!this.open) this.history.clear();
     else if (!this.plots) void this.load();
   }
@@ -95,6 +111,12 @@ export class Meter {
 
 function balanceOf({ exactness, pinned }: BalanceShown): BalanceShown {
   return { exactness, pinned };
+}
+
+function delayText({ total, stages }: Delay): string {
+  const { delay, delayStages } = words.meter;
+  const parts = DELAY_STAGES.map((stage, index) => `${delayStages[stage]} ${milliseconds(stages[index] ?? 0)}`);
+  return delay(milliseconds(total), parts.join(", "));
 }
 
 function paragraph(): HTMLParagraphElement {

@@ -110,6 +110,11 @@ export class Screen {
   }
 }
 
+/** When what was drawn just now has been painted, ms of the page's clock. */
+export function afterPainting(told: (time: number) => void): void {
+  requestAnimationFrame(() => setTimeout(() => told(performance.now())));
+}
+
 function copyOf(canvas: HTMLCanvasElement): HTMLCanvasElement {
   const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
   copy.getContext("2d", { alpha: false })?.drawImage(canvas, 0, 0);

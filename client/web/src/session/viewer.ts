@@ -1,7 +1,7 @@
 /** One session on this page: stream, frames and state together. */
 
 import type { Frame } from "@culet/protocol/frame";
-import type { ControlEvent, JsonObject, Notice, Outlined, Picked } from "@culet/protocol/messages";
+import type { ControlEvent, JsonObject, Notice, Outlined, Picked, Reached } from "@culet/protocol/messages";
 import { BottleneckMeter } from "../meter/bottleneck";
 import type { Arrival } from "../meter/frame-history";
 import type { Size } from "../picture/picture-size";
@@ -18,7 +18,7 @@ export interface ViewerListener {
   connection: (connection: Connection) => void;
   state: (before: ViewState, after: ViewState) => void;
   /** A question of this viewer is answered. */
-  answer: (answer: Picked | Outlined) => void;
+  answer: (answer: Picked | Outlined | Reached) => void;
   /** A new render process lacks what the session needs. */
   lacking: () => void;
   /** `about`: the field of the scene that was refused, if it was that. */
@@ -103,7 +103,8 @@ export class Viewer {
 
   private heard(notice: Notice): void {
     if (notice.type === "hello" || notice.type === "engine") this.player.forget();
-    if (notice.type === "picked" || notice.type === "outlined") this.listener.answer(notice);
+    if (notice.type === "picked" || notice.type === "outlined" || notice.type === "reached")
+      this.listener.answer(notice);
     else if (notice.type === "snapshot") this.snapshot = notice.snapshot;
     else if (notice.type === "problem") {
       this.ended ||= notice.code === "session_closed";

@@ -1,7 +1,7 @@
 /** The page's session: found by the address or made, watched, and made again if the server has lost it. */
 
 import type { Frame } from "@culet/protocol/frame";
-import { CloseCode, type Outlined, type Picked } from "@culet/protocol/messages";
+import { CloseCode, type Outlined, type Picked, type Reached } from "@culet/protocol/messages";
 import { fitted, LinkError, unpackedView } from "../files/view-link";
 import type { Arrival } from "../meter/frame-history";
 import { type Embedding, queryOf } from "../picture/embedding";
@@ -27,7 +27,9 @@ export interface VisitWorld {
   show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
   state: (before: ViewState, after: ViewState) => void;
   /** A question of this viewer is answered. */
-  answer: (answer: Picked | Outlined) => void;
+  answer: (answer: Picked | Outlined | Reached) => void;
+  /** Something that a user did goes to the server. */
+  sent: (event: SessionEvent) => void;
   /** Something went well that the user should know of. */
   tell: (text: string) => void;
 }
@@ -63,6 +65,7 @@ export class Visit {
 
   send(event: SessionEvent): void {
     this.viewer?.send(event);
+    this.world.sent(event);
   }
 
   /** Leave for a new session. */

@@ -12,7 +12,7 @@ from culet.engine.session.session import Session
 from culet.errors import NotFoundError
 from culet.scene import Camera, Scene
 from culet.stage import Stage
-from culet_protocol.messages import Answer, Outline, Outlined, Pick, Picked, Question
+from culet_protocol.messages import Answer, Outline, Outlined, Pick, Picked, Question, Reach, Reached
 
 
 def answering(session: Session, question: Question) -> Callable[[], Answer]:
@@ -27,6 +27,8 @@ def answering(session: Session, question: Question) -> Callable[[], Answer]:
             except NotFoundError:
                 past = None
             return partial(_outlined, past, session.shown.stage, question)
+        case Reach(number=number):
+            return partial(Reached, number=number, step=session.shown.step)
         case _:
             assert_never(question)
 
