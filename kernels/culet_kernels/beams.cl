@@ -710,6 +710,14 @@ static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
   corner_t part[CORNERS];
   const int count = facet_in_room(job, facet, entry.z, entry.w, part);
   if (count < 3) return;
+#if !DIVERGING
+  // What is cut here would tell a gauge of nothing that goes through.
+  if (job->light->gauges) {
+    real towards = 0;
+    for (int k = 0; k < 3; k++) towards += plane_of(job, k, facet) * job->light->place[k];
+    if (towards * (real)0.5 * measure(part, count) < job->cutoff) return;
+  }
+#endif
 #if SEVERAL
   if (inside < 0 && is_screened(job)) {
     flight_t flight;
@@ -795,7 +803,13 @@ __kernel void cast_shadows(GEOMETRY_BUFFERS, int begin, int end) {
     job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
     if (job.light->inside >= 0) continue; // everything is in shadow
     job.colour *= 1 - seeping_part(room, job.light, seeping);
-    int alone = 1;                        // no other stone is in the way of its light
+#if SEVERAL && !DIVERGING
+    if (!room->sunk) {
+      shade_beyond_earlier(&job);
+      continue;
+    }
+#endif
+    int alone = 1; // no other stone is in the way of its light
 #if SEVERAL
     alone = !is_screened(&job);
 #endif

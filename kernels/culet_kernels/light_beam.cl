@@ -44,6 +44,7 @@ typedef struct {
   int present[MAX_SURFACES];
   int mapped[MAX_SURFACES]; // whether the surface has a map
   int maps, stones, lights, bands, entries, points, gauges;
+  int sunk;                 // a stone reaches so far through a surface that what is beyond must not throw a shadow
 } throwing_t;
 
 // Light of one direction, or of one point.

@@ -50,6 +50,10 @@ __kernel void sum_map(__constant const throwing_t *room, __constant const light_
     float4 sum = 0;
     for (int block = 0; block < MAP_SIZE / MAP_BLOCK; block++) {
       const int touched = marks >> block & 1;
+      if (keep == 0 && !(marks << (31 - block))) { // nothing has begun yet
+        for (int k = 0; k < 3 * MAP_BLOCK; k++) texel[3 * block * MAP_BLOCK + k] = 0;
+        continue;
+      }
       for (int x = block * MAP_BLOCK; x < (block + 1) * MAP_BLOCK; x++) {
         if (touched) {
           sum += light[x];

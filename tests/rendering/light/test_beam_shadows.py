@@ -55,6 +55,37 @@ def test_a_hard_shadow_lies_where_rays_to_the_light_meet_the_stone(beams: Beams,
     assert 0.001 < expected.mean() < 0.4
 
 
+PILE: list[tuple[tuple[float, float, float], float]] = [
+    ((0, -0.2, 0), 0.7),
+    ((0.9, -0.4, -0.3), 0.5),
+    ((-0.1, 1.3, -0.2), 0.6),
+    ((0.5, 0.5, 0.9), 0.4),
+    ((-0.6, 0.6, 0.7), 0.3),
+    ((-0.3, 2.2, 0.1), 0.35),
+]
+"""Places and sizes of upright stones, each in the way of another's light."""
+
+
+@pytest.mark.parametrize("ray", [sun(), sun((0.03, 1, 0.01)), lamp()], ids=["parallel", "from above", "point"])
+@pytest.mark.parametrize("turn", [1, -1], ids=["in order", "reversed"])
+@pytest.mark.parametrize("kind", ["brilliant", "box"])
+def test_what_several_stones_hide_is_dark_once(beams: Beams, brilliant: Shape, ray: Ray, turn: int, kind: str) -> None:
+    shape = brilliant if kind == "brilliant" else exact_box()
+    pile = PILE[::turn]
+    stones = [{**UPRIGHT, "position": list(place), "scale": scale} for place, scale in pile]
+    made = thrown(beams, [only_shadow(ray)], shape, stones=stones)
+    columns, rows = made.frame.texels(0, 0)
+    points = places(columns[::4], rows[::4])
+    ways = np.tile(np.array(ray.towards), (len(points), 1)) if ray.towards else np.array(ray.position) - points
+    shade = made.map[0, 0, ::4, ::4, 1].ravel() / (-ways[:, 1] / np.linalg.norm(ways, axis=1))
+    alone = [hidden(shape, (points - place) / scale, ways) for place, scale in pile]
+    assert np.sum(alone, axis=0).max() >= 2, "in each other's light"
+    expected, clear = np.any(alone, axis=0), abs(shade - 0.5) > 0.499
+    assert clear.mean() > 0.96
+    assert (shade[clear] > 0.5).tolist() == expected[clear].tolist()
+    assert shade[clear & expected] == pytest.approx(1, abs=1e-3)
+
+
 def disc(middle: Array, degrees: float, count: int) -> Array:
     """(count, 3) directions of an even disc, by equal solid angles."""
     u = (np.arange(count) + 0.5) * 0.7548776662466927 % 1 * (1 - math.cos(math.radians(degrees)))

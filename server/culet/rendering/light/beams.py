@@ -130,6 +130,7 @@ class Beams:
         room["gauges"] = len(gauged)
         seeping = self._upload(np.zeros((self.items, max(1, len(gauged)), 2, 4), np.float32))
         solids = Solids.of(stones, first_chains, origin, room["surface"][room["present"] != 0].astype(float), self.real)
+        room["sunk"] = solids.sunk
         room["entries"] = int(solids.solids["last_entry"].max(initial=0))
         arrays = [self._upload(array) for array in (
             solids.planes, solids.vertices, solids.start, solids.corners, solids.across, solids.entries, chains,

@@ -17,6 +17,8 @@ from culet.rendering.placed_stone import PlacedStone
 
 ABREAST = 16
 """Planes that are looked at at a time: each stone's number is filled up to a multiple."""
+SUNK = 1e-3
+"""R that a stone may reach through a surface and throw its shadow as if it did not: a tenth of the finest texel."""
 FEW, MANY = 96, 512
 """Facets of a stone that the programs for beams are made for."""
 
@@ -40,6 +42,8 @@ class Solids:
     """(E, 4) stone, and a part of its surface: see FacetLoops."""
     most_facets: int
     """FEW or MANY."""
+    sunk: bool
+    """Whether one reaches through a surface by more than SUNK."""
 
     @classmethod
     def of(
@@ -54,6 +58,7 @@ class Solids:
         rows = np.zeros(max(1, len(stones)), struct("solid_t", real, "light_beam.cl"))
         planes, vertices, starts, corners, across, entries = [], [], [], [], [], []
         plane = vertex = corner = entry = facet = 0
+        least = 0.0
         for number, (row, stone, chain) in enumerate(zip(rows, stones, first_chains, strict=False)):
             loops, shape, centre = facet_loops(stone.shape), stone.shape, stone.centre - origin
             count = len(shape.planes)
@@ -70,7 +75,8 @@ class Solids:
             row["first_vertex"], row["vertices"] = vertex, len(points)
             row["first_entry"], row["last_entry"] = entry, entry + len(loops.entries)
             row["first_chain"] = chain
-            row["pierces"] = bool((points @ surfaces[:, :3].T < surfaces[:, 3]).any())
+            gap = float((points @ surfaces[:, :3].T - surfaces[:, 3]).min(initial=0))
+            row["pierces"], least = gap < 0, min(least, gap)
             planes.append(placed.ravel())
             vertices.append(points)
             starts.append(loops.start[:-1] + corner)
@@ -90,4 +96,5 @@ class Solids:
             np.concatenate([*across, np.zeros(1, np.int32)]).astype(np.int32),
             np.concatenate([*entries, np.zeros((1, 4), np.int32)]).astype(np.int32),
             FEW if most <= FEW else MANY,
+            least < -SUNK,
         )
