@@ -703,8 +703,30 @@ static inline void enter(job_t *job, tally_t *tally, int facet, const corner_t *
     planes, vertices, start, corners, across                                                                           \
   }
 
+// Bands of light that a job follows: of several stones all, since what reaches a facet past the others is the same for all.
+typedef struct {
+  __global const chain_t *chains; // of the first of all
+  int first, end;
+  int stands_for_all;             // of a lamp that is gauged
+} bands_t;
+
+static inline void enter_bands(job_t *job, tally_t *tally, bands_t bands, int facet, const corner_t *part, int count) {
+  for (int band = bands.first; band < bands.end; band++) {
+    take_band(job, bands.chains + band);
+    if (!job->light->gauges) {
+      enter(job, tally, facet, part, count);
+      continue;
+    }
+    tally_t own = {0};
+    job->weight = 1;
+    if (bands.stands_for_all) job->share = 1;
+    enter(job, &own, facet, part, count);
+    job->seeping[1] += job->share * (float)(own.incident - own.cut);
+  }
+}
+
 // The light of a facet's part.
-static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
+static inline void throw_at(job_t *job, tally_t *tally, bands_t bands, int4 entry) {
   const int facet = entry.y, inside = DIVERGING ? job->light->inside : -1;
   if (inside < 0 ? !is_lit(job, facet) : inside != entry.x) return;
   corner_t part[CORNERS];
@@ -723,39 +745,45 @@ static inline void throw_at(job_t *job, tally_t *tally, int4 entry) {
     flight_t flight;
     piece_t lit;
     begin_lighting(job, part, count, &flight);
-    while (next_lit(job, &flight, &lit)) enter(job, tally, facet, lit.corner, lit.count);
+    while (next_lit(job, &flight, &lit)) enter_bands(job, tally, bands, facet, lit.corner, lit.count);
     return;
   }
 #endif
-  enter(job, tally, facet, part, count);
+  enter_bands(job, tally, bands, facet, part, count);
 }
 
-// Jobs are dealt out by their numbers, and not to who is free first: so sums are rounded in the same order every time. Turns
-// change from one entry to the next, lest a work-item have one band of all.
-static inline int is_mine(__constant const throwing_t *room, int number) {
-  const int turn = number + number / max(1, room->lights * room->bands);
-  return turn % (int)get_global_size(0) == (int)get_global_id(0);
+// Jobs are dealt out by their numbers, and not to who is free first: so sums are rounded in the same order every time. Where
+// each entry would begin with the same work-item, turns change from one to the next, lest a work-item have one band of all.
+static inline int is_mine(int number, int of_entry) {
+  const int items = get_global_size(0), turn = of_entry % items == 0 ? number + number / of_entry : number;
+  return turn % items == (int)get_global_id(0);
 }
 
-// Jobs are numbered: of each entry the lights, of each light the bands.
-static inline job_t job_number(__constant const throwing_t *room, int number, __constant const light_t *lights,
-                               __constant const solid_t *solids, facets_t facets, __global const int4 *entries,
-                               __global const chain_t *chains, canvas_t canvas, int4 *entry) {
-  const int rest = number % (room->lights * room->bands);
-  *entry = entries[number / (room->lights * room->bands)];
-  return job_of(room, lights + rest / room->bands, solids, entry->x, facets, chains + rest % room->bands, canvas);
+// Jobs are numbered: of each entry the lights, of each light the bands, if they are apart.
+static inline int jobs_of_entry(__constant const throwing_t *room) {
+  return room->lights * (SEVERAL ? 1 : room->bands);
+}
+static inline bands_t bands_of(__constant const throwing_t *room, int number, __global const chain_t *chains) {
+  const int one = number % room->bands;
+  const bands_t bands = {chains, SEVERAL ? 0 : one, SEVERAL ? room->bands : one + 1, 0};
+  return bands;
+}
+static inline __constant const light_t *light_of(__constant const throwing_t *room, int number,
+                                                 __constant const light_t *lights) {
+  return lights + number % jobs_of_entry(room) / (SEVERAL ? 1 : room->bands);
 }
 
 __kernel void throw_light(GEOMETRY_BUFFERS, int begin, int end) {
   tally_t tally = tallies[get_global_id(0)];
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
+  const int of_entry = jobs_of_entry(room);
   for (int number = begin; number < end; number++) {
-    if (!is_mine(room, number)) continue;
-    if (!lights[number % (room->lights * room->bands) / room->bands].follows) continue;
-    int4 entry;
-    job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
-    throw_at(&job, &tally, entry);
+    __constant const light_t *light = light_of(room, number, lights);
+    if (!is_mine(number, of_entry) || !light->follows) continue;
+    const int4 entry = entries[number / of_entry];
+    job_t job = job_of(room, light, solids, entry.x, facets, canvas);
+    throw_at(&job, &tally, bands_of(room, number, chains), entry);
   }
   tallies[get_global_id(0)] = tally;
 }
@@ -765,19 +793,22 @@ __kernel void throw_light(GEOMETRY_BUFFERS, int begin, int end) {
 __kernel void gauge_light(GEOMETRY_BUFFERS, int begin, int end, int band) {
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
+  const int of_entry = jobs_of_entry(room);
   for (int number = begin; number < end; number++) {
-    if (!is_mine(room, number)) continue;
-    if (!lights[number % (room->lights * room->bands) / room->bands].gauges) continue;
-    if (band > 0 && number % room->bands != band - 1) continue;
-    int4 entry;
-    job_t job = job_number(room, number, lights, solids, facets, entries, chains, canvas, &entry);
-    tally_t tally = {0};
+    __constant const light_t *light = light_of(room, number, lights);
+    if (!is_mine(number, of_entry) || !light->gauges) continue;
+    bands_t bands = bands_of(room, number, chains);
+    if (band > 0) {
+      if (!SEVERAL && bands.first != band - 1) continue;
+      bands.first = band - 1;
+      bands.end = band;
+      bands.stands_for_all = 1;
+    }
+    const int4 entry = entries[number / of_entry];
+    job_t job = job_of(room, light, solids, entry.x, facets, canvas);
     job.cutoff *= COARSER;
-    job.weight = 1;
-    if (band > 0) job.share = 1;
-    job.seeping = seeping + 2 * (get_global_id(0) * room->gauges + job.light->gauge);
-    throw_at(&job, &tally, entry);
-    job.seeping[1] += job.share * (float)(tally.incident - tally.cut);
+    job.seeping = seeping + 2 * (get_global_id(0) * room->gauges + light->gauge);
+    throw_at(&job, 0, bands, entry);
   }
 }
 
@@ -799,8 +830,8 @@ __kernel void cast_shadows(GEOMETRY_BUFFERS, int begin, int end) {
   const facets_t facets = GEOMETRY_OF;
   const canvas_t canvas = canvas_of(room, light_maps, shade_maps, lit_rows, shaded_rows);
   for (int number = begin; number < end; number++) {
-    if (!is_mine(room, number)) continue;
-    job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, 0, canvas);
+    if (!is_mine(number, room->lights)) continue;
+    job_t job = job_of(room, lights + number % room->lights, solids, number / room->lights, facets, canvas);
     if (job.light->inside >= 0) continue; // everything is in shadow
     job.colour *= 1 - seeping_part(room, job.light, seeping);
 #if SEVERAL && !DIVERGING

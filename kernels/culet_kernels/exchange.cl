@@ -81,7 +81,12 @@ static inline real plane_at(const job_t *job, int solid, int k, int facet) {
 static inline int crossing_of(const job_t *job, int solid, const real *p, const real *d, real *in, real *out) {
   *in = -1e30f;
   *out = 1e30f;
-  for (int f = 0; f < job->solids[solid].facets; f++) {
+  __constant const solid_t *of = job->solids + solid;
+  real apart[3];
+  for (int k = 0; k < 3; k++) apart[k] = of->centre[k] - p[k];
+  const real along = dot_3(apart, d), wide = of->radius * (real)1.0001;
+  if (dot_3(apart, apart) - along * along > wide * wide) return 0; // past its sphere
+  for (int f = 0; f < of->facets; f++) {
     const real normal[3] = {plane_at(job, solid, 0, f), plane_at(job, solid, 1, f), plane_at(job, solid, 2, f)};
     const real speed = dot_3(normal, d), gap = plane_at(job, solid, 3, f) - dot_3(normal, p);
     if (fabs(speed) < (real)1e-9) {
@@ -121,16 +126,19 @@ static inline int cut_by_outline(const job_t *job, int solid, piece_t *piece, co
   int side = 0, count = piece->count;
   const int before = flight->waiting;
   for (int i = 0; i < count; i++) now[0][i] = piece->corner[i];
+  ulong met[MOST_FACETS / 64 + 1];
+  for (int i = 0; i <= MOST_FACETS / 64; i++) met[i] = 0;
   for (int f = 0; f < of->facets; f++) {
     const real speed =
         plane_at(job, solid, 0, f) * d[0] + plane_at(job, solid, 1, f) * d[1] + plane_at(job, solid, 2, f) * d[2];
-    if (speed >= 0) continue;
+    met[f >> 6] |= (ulong)(speed < 0) << (f & 63);
+  }
+  for (int f = 0; f < of->facets; f++) {
+    if (!(met[f >> 6] >> (f & 63) & 1)) continue;
     const int begin = job->facets.start[of->first_facet + f], end = job->facets.start[of->first_facet + f + 1];
     for (int e = begin; e < end; e++) {
       const int beyond = job->facets.across[e];
-      const real other = plane_at(job, solid, 0, beyond) * d[0] + plane_at(job, solid, 1, beyond) * d[1] +
-                         plane_at(job, solid, 2, beyond) * d[2];
-      if (other < 0) continue;
+      if (met[beyond >> 6] >> (beyond & 63) & 1) continue;
       real inside[CORNERS];
       const int out = beside(job, job->facets.corners[e], job->facets.corners[e + 1 == end ? begin : e + 1], now[side],
                              count, common, inside);

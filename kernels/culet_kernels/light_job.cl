@@ -8,7 +8,7 @@ typedef struct {
   __constant const throwing_t *room;
   __constant const light_t *light;
   __constant const solid_t *solids, *solid; // all of them, and this one
-  __global const chain_t *chains;           // of this light's band, by solid's first_chain
+  __global const chain_t *chains; // of the band that it has taken up, by solid's first_chain; null of a shadow
   facets_t facets;
   canvas_t canvas;
   float4 colour;
@@ -80,15 +80,14 @@ static inline void go_to(job_t *job, int solid) {
   job->absorption = chain->absorption;
 }
 
-// `chains` of the light's band, or null of its shadow.
+// Of its shadow, until it takes up a band.
 static inline job_t job_of(__constant const throwing_t *room, __constant const light_t *light,
-                           __constant const solid_t *solids, int solid, facets_t facets, __global const chain_t *chains,
-                           canvas_t canvas) {
+                           __constant const solid_t *solids, int solid, facets_t facets, canvas_t canvas) {
   job_t job;
   job.room = room;
   job.light = light;
   job.solids = solids;
-  job.chains = chains;
+  job.chains = 0;
   job.facets = facets;
   job.canvas = canvas;
   job.colour = (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
@@ -99,14 +98,18 @@ static inline job_t job_of(__constant const throwing_t *room, __constant const l
   job.absorption = 0;
   job.cutoff = room->cutoff * light->dimness;
   go_to(&job, solid);
-  if (chains) {
-    __global const real *share = chains[job.solid->first_chain].share;
-    job.share = (float4)((float)share[0], (float)share[1], (float)share[2], 0);
-    job.colour *= job.share;
-    job.weight = (fabs(job.colour.x) + fabs(job.colour.y) + fabs(job.colour.z)) / 3;
-    job.power = dot(job.colour, job.colour) / 3;
-  }
   return job;
+}
+
+// Takes up the light of a band, whose chains these are.
+static inline void take_band(job_t *job, __global const chain_t *chains) {
+  job->chains = chains;
+  go_to(job, job->solid - job->solids);
+  __global const real *share = chains[job->solid->first_chain].share;
+  job->share = (float4)((float)share[0], (float)share[1], (float)share[2], 0);
+  job->colour = (float4)(job->light->colour[0], job->light->colour[1], job->light->colour[2], 0) * job->share;
+  job->weight = (fabs(job->colour.x) + fabs(job->colour.y) + fabs(job->colour.z)) / 3;
+  job->power = dot(job->colour, job->colour) / 3;
 }
 
 #endif

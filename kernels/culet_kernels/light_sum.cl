@@ -37,6 +37,15 @@ static inline float unshaded(__constant const throwing_t *room, int s, __constan
   return (float)fmax(cosine * rsqrt(fmax(dot_3(way, way), (real)1e-12)), (real)0);
 }
 
+// Most of a map is even, and far more than caches hold: what is stored need not be read before.
+static inline void store_past_caches(float16 values, __global float *to) {
+#if __has_builtin(__builtin_nontemporal_store)
+  __builtin_nontemporal_store(values, (__global float16 *)to);
+#else
+  vstore16(values, 0, to);
+#endif
+}
+
 // Each work-item takes rows by turns. The map becomes keep x what it was + gain x what is summed.
 __kernel void sum_map(__constant const throwing_t *room, __constant const light_t *points, __global float4 *light_maps,
                       __global float *shade_maps, __global uint *lit_rows, __global uint *shaded_rows, int copies,
@@ -50,8 +59,13 @@ __kernel void sum_map(__constant const throwing_t *room, __constant const light_
     float4 sum = 0;
     for (int block = 0; block < MAP_SIZE / MAP_BLOCK; block++) {
       const int touched = marks >> block & 1;
-      if (keep == 0 && !(marks << (31 - block))) { // nothing has begun yet
-        for (int k = 0; k < 3 * MAP_BLOCK; k++) texel[3 * block * MAP_BLOCK + k] = 0;
+      if (keep == 0 && !touched) { // as before
+        const float4 even = gain * sum;
+        __global float *to = texel + 3 * block * MAP_BLOCK;
+        const float16 first = even.xyzxyzxyzxyzxyzx, second = even.yzxyzxyzxyzxyzxy, third = even.zxyzxyzxyzxyzxyz;
+        store_past_caches(first, to);
+        store_past_caches(second, to + 16);
+        store_past_caches(third, to + 32);
         continue;
       }
       for (int x = block * MAP_BLOCK; x < (block + 1) * MAP_BLOCK; x++) {

@@ -153,7 +153,8 @@ class Beams:
             buffers = (
                 self._upload(room), light_buffer, solid_buffer, *arrays, *scratch, seeping, tally_buffer,
             )  # fmt: skip
-            entries = int(room["entries"]) * len(group) * bands
+            # Of several stones a job follows all bands of a light.
+            entries = int(room["entries"]) * len(group) * (bands if len(stones) == 1 else 1)
             if gauged and not diverging:
                 band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
                 for _ in self._launches(program.gauge_light, buffers, entries, seconds, band):
