@@ -51,6 +51,7 @@ async def test_files_named_by_their_content_are_kept_and_others_are_asked_for_ag
         assert first.headers["Cache-Control"] == "no-cache"
         again = await page.http.get(path, headers={"If-None-Match": first.headers["ETag"]})
         assert (again.status_code, again.content) == (304, b"")
+        assert "Content-Security-Policy" not in again.headers, "which would take the place of the page's own"
 
 
 async def test_the_element_alone_may_be_loaded_by_pages_of_other_sites(page: Gateway) -> None:

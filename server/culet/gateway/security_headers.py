@@ -12,6 +12,9 @@ _PAGE = (
     "connect-src 'self'; base-uri 'none'; form-action 'none'"
 )
 """Its own scripts and styles, none within the document; pictures that it decodes, and icons within its styles."""
+NOT_MODIFIED = 304
+"""Its headers take the place of those that a browser has kept, and it does not say of what kind the answer was: a page
+that is asked for again keeps its own policy."""
 _DATA = "default-src 'none'; base-uri 'none'; form-action 'none'"
 
 
@@ -35,7 +38,8 @@ class SecurityHeaders:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 is_page = headers.get("content-type", "").startswith("text/html")
-                headers.setdefault("Content-Security-Policy", self._page if is_page else self._data)
+                if message["status"] != NOT_MODIFIED:
+                    headers.setdefault("Content-Security-Policy", self._page if is_page else self._data)
                 for name, value in self._headers.items():
                     headers.setdefault(name, value)
             await send(message)
