@@ -1,5 +1,6 @@
 /** The page: its rooms, and what they tell each other. */
 
+import { Flag, type Frame } from "@culet/protocol/frame";
 import { Clips } from "./clip/clips";
 import { listenToDrops } from "./files/file-drop";
 import { chooseFile, MESH_TYPES, SCENE_TYPES, SKY_TYPES } from "./files/files";
@@ -19,7 +20,7 @@ import { element } from "./page";
 import { Panel } from "./panel/panel";
 import { ChosenStone } from "./picture/chosen-stone";
 import { type Embedding, embeddingOf, SHOWN, Turntable } from "./picture/embedding";
-import { refines } from "./picture/fade";
+import { isWorse, refines } from "./picture/fade";
 import { OutlineView } from "./picture/outline-view";
 import { afterPainting, Screen } from "./picture/screen";
 import { Whereabouts } from "./picture/whereabouts";
@@ -59,14 +60,13 @@ const signs = new Signs(
 const screen = new Screen(canvas, (size) => visit.viewer?.resize(size));
 const aspect = () => canvas.clientWidth / Math.max(canvas.clientHeight, 1);
 const whereabouts = new Whereabouts();
-let shownStep: bigint | null = null;
+let shown: Frame | null = null;
 const visit = new Visit(
   {
     size: () => screen.size,
     aspect,
     show: (picture, frame, arrival) => {
-      screen.show(picture, refines(frame, shownStep));
-      shownStep = frame.step;
+      show(picture, frame);
       if (visit.viewer?.player.shown === 0) firstShown();
       signs.arrived();
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
@@ -208,6 +208,18 @@ function stateChanged(before: ViewState, after: ViewState): void {
   meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
+}
+
+/** Put a picture on the screen, if it is no worse than what is there; one that is finished is followed by one of all pixels. */
+function show(picture: ImageBitmap, frame: Frame): void {
+  if (isWorse(frame, shown)) {
+    picture.close();
+    return;
+  }
+  screen.show(picture, refines(frame, shown?.step ?? null));
+  shown = frame;
+  if (frame.flags & Flag.FINAL) screen.sharpen();
+  else if (frame.flags & Flag.MOVING) screen.hurry();
 }
 
 function firstShown(): void {

@@ -1,6 +1,6 @@
 import { Flag } from "@culet/protocol/frame";
 import { expect, test } from "vitest";
-import { coveredAfter, FADE_MS, refines } from "./fade";
+import { coveredAfter, FADE_MS, isWorse, refines } from "./fade";
 
 test("a picture comes up steadily, and is there at the end", () => {
   expect([0, FADE_MS / 3, FADE_MS, 10 * FADE_MS].map(coveredAfter)).toEqual([0, 1 / 3, 1, 1]);
@@ -12,4 +12,21 @@ test("only another picture of what is seen already comes up, and none while thin
   expect(refines({ step: 5n, flags: 0 }, 4n)).toBe(false);
   expect(refines({ step: 4n, flags: Flag.MOVING }, 4n)).toBe(false);
   expect(refines({ step: 4n, flags: 0 }, null)).toBe(false);
+});
+
+test("a picture of more pixels is waited for until it is no worse to look at than the finished one before", () => {
+  const shown = { step: 4n, flags: Flag.FINAL, width: 1920, shownError: 0.004 };
+  const sharp = (shownError: number) => ({ step: 4n, flags: 0, width: 3840, shownError });
+  expect([Number.NaN, 0.02, 0.0081].map((error) => isWorse(sharp(error), shown))).toEqual([true, true, true]);
+  expect(isWorse(sharp(0.008), shown)).toBe(false);
+  expect(isWorse({ ...sharp(0.02), width: 1920 }, shown)).toBe(false); // as after another viewer's wish
+});
+
+test("a picture of another state, or one that moves, is never waited with", () => {
+  const shown = { step: 4n, flags: Flag.FINAL, width: 1920, shownError: 0.004 };
+  const other = { step: 5n, flags: 0, width: 3840, shownError: 0.1 };
+  expect(isWorse(other, shown)).toBe(false);
+  expect(isWorse({ ...other, step: 4n, flags: Flag.MOVING }, shown)).toBe(false);
+  expect(isWorse(other, null)).toBe(false);
+  expect(isWorse({ ...other, step: 4n }, { ...shown, shownError: Number.NaN })).toBe(false);
 });

@@ -10,6 +10,19 @@ export function coveredAfter(ms: number): number {
   return Math.min(1, Math.max(0, ms / FADE_MS));
 }
 
+/** What of a frame tells how good it is. */
+export type Judged = Pick<Frame, "step" | "flags" | "width" | "shownError">;
+
+/**
+ * Whether a picture is of the same state as the one that is shown, and worse to look at: one of more pixels has begun
+ * anew. Seen from where the other's pixels cannot be told apart, its noise is less by as much as its pixels are smaller.
+ */
+export function isWorse(frame: Judged, shown: Judged | null): boolean {
+  if (!shown || frame.step !== shown.step || (frame.flags | shown.flags) & Flag.MOVING) return false;
+  const error = Number.isNaN(frame.shownError) ? Number.POSITIVE_INFINITY : frame.shownError; // of a first sample
+  return frame.width > shown.width && error * shown.width > shown.shownError * frame.width;
+}
+
 /** Whether a frame is a better picture of the state that was shown last. */
 export function refines({ step, flags }: Pick<Frame, "step" | "flags">, shown: bigint | null): boolean {
   return step === shown && !(flags & Flag.MOVING);

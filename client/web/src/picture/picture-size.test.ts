@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { deviceLength, letterbox, pictureSize } from "./picture-size";
+import { deviceLength, letterbox, pictureSize, SHARP } from "./picture-size";
 
 describe("the size asked for", () => {
   it("is the device's pixels up to full HD, either way round", () => {
@@ -11,6 +11,12 @@ describe("the size asked for", () => {
     expect(pictureSize(3840, 2160)).toEqual({ width: 1920, height: 1080 });
     expect(pictureSize(2400, 2400)).toEqual({ width: 1080, height: 1080 });
     expect(pictureSize(1125, 2436)).toEqual({ width: 887, height: 1920 });
+  });
+
+  it("at rest is the device's pixels up to 4K", () => {
+    expect(pictureSize(3840, 2160, SHARP)).toEqual({ width: 3840, height: 2160 });
+    expect(pictureSize(2880, 1800, SHARP)).toEqual({ width: 2880, height: 1800 });
+    expect(pictureSize(5120, 2880, SHARP)).toEqual({ width: 3840, height: 2160 });
   });
 
   it("is never less than the protocol allows", () => {

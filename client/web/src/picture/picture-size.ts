@@ -5,9 +5,16 @@ export interface Size {
   height: number;
 }
 
-/** The largest picture asked for, either way round: a full HD screen. */
-const LONG_SIDE = 1920;
-const SHORT_SIDE = 1080;
+/** The largest picture of its kind, either way round. */
+export interface Largest {
+  long: number;
+  short: number;
+}
+
+/** Of pictures that move, or come first: a full HD screen. */
+export const QUICK: Largest = { long: 1920, short: 1080 };
+/** Of pictures at rest: a 4K screen. */
+export const SHARP: Largest = { long: 3840, short: 2160 };
 /** The protocol's smallest. */
 const SMALLEST = 16;
 
@@ -21,10 +28,10 @@ export function deviceLength(css: number, ratio: number, exact?: number): number
 }
 
 /** A size of device pixels within the limits, with the same aspect. */
-export function pictureSize(width: number, height: number): Size {
+export function pictureSize(width: number, height: number, largest = QUICK): Size {
   const long = Math.max(width, height, 1);
   const short = Math.max(Math.min(width, height), 1);
-  const scale = Math.min(1, LONG_SIDE / long, SHORT_SIDE / short);
+  const scale = Math.min(1, largest.long / long, largest.short / short);
   const pixels = (side: number) => Math.max(SMALLEST, Math.round(side * scale));
   return { width: pixels(width), height: pixels(height) };
 }

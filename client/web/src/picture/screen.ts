@@ -1,7 +1,7 @@
 /** The canvas: as many device pixels as it covers, and the picture last shown. */
 
 import { coveredAfter } from "./fade";
-import { deviceLength, letterbox, pictureSize, type Rectangle, type Size } from "./picture-size";
+import { deviceLength, letterbox, pictureSize, type Rectangle, SHARP, type Size } from "./picture-size";
 
 /** Device pixels. */
 const SLACK = 3;
@@ -11,6 +11,10 @@ export class Screen {
   private readonly canvas: HTMLCanvasElement;
   private readonly onResize: (size: Size) => void;
   private picture: ImageBitmap | null = null;
+  /** What pictures are asked for: quick ones, and sharp ones once those are finished. */
+  private quick: Size = { width: 0, height: 0 };
+  private sharp: Size = { width: 0, height: 0 };
+  private asked: Size;
   /** What the canvas showed when the picture that comes up began to, and when, ms of the page's clock. */
   private fade: { under: HTMLCanvasElement; since: number } | null = null;
   private next = 0;
@@ -21,6 +25,7 @@ export class Screen {
     const context = canvas.getContext("2d", { alpha: false });
     if (!context) throw new Error("expected a 2D canvas, got none from this browser");
     this.context = context;
+    this.asked = this.quick = this.sharp = { width: canvas.width, height: canvas.height };
     const observer = new ResizeObserver(([entry]) => entry && this.resize(devicePixels(entry)));
     try {
       observer.observe(canvas, { box: "device-pixel-content-box" });
@@ -29,13 +34,24 @@ export class Screen {
     }
   }
 
+  /** Of the pictures that are asked for. */
   get size(): Size {
-    return { width: this.canvas.width, height: this.canvas.height };
+    return this.asked;
+  }
+
+  /** The quick picture is finished: on a screen of more pixels than full HD has, ask for one that has them too. */
+  sharpen(): void {
+    this.ask(this.sharp);
+  }
+
+  /** Things move: many pixels would take too long. */
+  hurry(): void {
+    this.ask(this.quick);
   }
 
   /** Where the picture is on the canvas, css pixels: another viewer's picture may have another shape. */
   get area(): Rectangle {
-    const { x, y, width, height } = letterbox(this.picture ?? this.size, this.size);
+    const { x, y, width, height } = letterbox(this.picture ?? this.canvas, this.canvas);
     const css = this.canvas.clientWidth / this.canvas.width;
     return { x: x * css, y: y * css, width: width * css, height: height * css };
   }
@@ -53,12 +69,15 @@ export class Screen {
     const comesUp = refines && !document.hidden && this.covers(picture);
     this.picture?.close();
     this.picture = picture;
-    if (!comesUp) {
+    const under = comesUp ? copyOf(this.canvas) : null;
+    const larger = picture.width > this.quick.width || picture.height > this.quick.height;
+    this.become(larger ? this.sharp : this.quick);
+    if (!under) {
       this.draw();
       return;
     }
     cancelAnimationFrame(this.next);
-    this.fade = { under: copyOf(this.canvas), since: performance.now() };
+    this.fade = { under, since: performance.now() };
     this.next = requestAnimationFrame((time) => this.comeUp(time));
   }
 
@@ -78,16 +97,28 @@ export class Screen {
       return;
     }
     this.context.globalAlpha = 1;
-    this.context.drawImage(this.fade.under, 0, 0);
+    this.context.drawImage(this.fade.under, 0, 0, this.canvas.width, this.canvas.height);
     this.paint(covered);
     this.next = requestAnimationFrame((later) => this.comeUp(later));
   }
 
   private resize(pixels: Size): void {
-    const size = pictureSize(pixels.width, pixels.height);
-    if (size.width === this.canvas.width && size.height === this.canvas.height) return;
-    Object.assign(this.canvas, size);
+    const before = [this.quick, this.sharp];
+    this.quick = pictureSize(pixels.width, pixels.height);
+    this.sharp = pictureSize(pixels.width, pixels.height, SHARP);
+    if ([this.quick, this.sharp].every((size, kind) => isSame(size, before[kind] as Size))) return;
+    this.become(this.quick);
     this.draw(); // a canvas forgets its picture when its size changes
+    this.ask(this.quick);
+  }
+
+  private become({ width, height }: Size): void {
+    if (!isSame({ width, height }, this.canvas)) Object.assign(this.canvas, { width, height });
+  }
+
+  private ask(size: Size): void {
+    if (isSame(size, this.asked)) return;
+    this.asked = size;
     this.onResize(size);
   }
 
@@ -113,6 +144,10 @@ export class Screen {
 /** When what was drawn just now has been painted, ms of the page's clock. */
 export function afterPainting(told: (time: number) => void): void {
   requestAnimationFrame(() => setTimeout(() => told(performance.now())));
+}
+
+function isSame(a: Size, b: Size): boolean {
+  return a.width === b.width && a.height === b.height;
 }
 
 function copyOf(canvas: HTMLCanvasElement): HTMLCanvasElement {
