@@ -1,17 +1,27 @@
-/** A button. */
+/** A button, with the key that does the same. */
 
 export class Command {
   readonly element = document.createElement("button");
+  private readonly text = document.createElement("span");
 
-  constructor(label: string, act: () => void) {
+  constructor(label: string, act: () => void, key = "") {
     this.element.type = "button";
     this.element.className = "command";
-    this.element.textContent = label;
     this.element.onclick = act;
+    this.text.textContent = label;
+    this.element.append(this.text);
+    if (key) this.element.append(keyMark(key));
   }
 
   label(text: string): void {
-    if (this.element.textContent !== text) this.element.textContent = text;
+    if (this.text.textContent !== text) this.text.textContent = text;
+  }
+
+  /** What the button is called, if what is seen of it is less; a tooltip says the same. */
+  name(text: string): this {
+    this.element.setAttribute("aria-label", text);
+    this.element.title = text;
+    return this;
   }
 
   show(shown: boolean): this {
@@ -23,4 +33,12 @@ export class Command {
     this.element.disabled = !enabled;
     return this;
   }
+}
+
+/** A key as it is printed: drawn by the style sheet, as no part of the button's name; screen readers have the list of keys. */
+export function keyMark(key: string): HTMLElement {
+  const mark = document.createElement("kbd");
+  mark.dataset.key = key;
+  mark.setAttribute("aria-hidden", "true");
+  return mark;
 }

@@ -1,5 +1,7 @@
 /** What is common to the controls of the panel: native elements with a label, and words about them. */
 
+import { keyMark } from "./command";
+
 let made = 0;
 
 /** An id that no other element of the page has. */
@@ -21,6 +23,12 @@ export abstract class Control<T> {
     this.element.className = `control ${kind}`;
     this.text.textContent = label;
     this.element.append(this.text);
+  }
+
+  /** A key does the same. */
+  key(name: string): this {
+    this.element.append(keyMark(name));
+    return this;
   }
 
   abstract get value(): T;

@@ -24,11 +24,11 @@ export interface SavedWorld {
   note: (text: string) => () => void;
 }
 
-/** What a picture may be saved as, in the panel's order, with the panel's words. */
-export const FORMATS: readonly (readonly [rest.Format, string])[] = [
-  ["webp", words.panel.saveWebp],
-  ["tga", words.panel.saveTga],
-  ["exr", words.panel.saveExr],
+/** What a picture may be saved as, in the panel's order, with what the format and the button are called. */
+export const FORMATS: readonly (readonly [rest.Format, string, string])[] = [
+  ["webp", "WebP", words.panel.saveWebp],
+  ["tga", "TGA", words.panel.saveTga],
+  ["exr", "EXR", words.panel.saveExr],
 ];
 
 export class Saving {

@@ -118,9 +118,14 @@ export function keyName({ key }: Pick<Action, "key">): string {
   return words.keyNames[key] ?? key.toUpperCase();
 }
 
+/** What an action is called in a scene. */
+export function labelOf(action: Pick<Action, "label">, scene: JsonObject | null = null): string {
+  return worded(action.label, scene);
+}
+
 /** "Reset the camera  [F]": the label for a scene, with its key as it is printed. */
 export function labelWithKey(action: Pick<Action, "label" | "key">, scene: JsonObject | null = null): string {
-  return `${worded(action.label, scene)}  [${keyName(action)}]`;
+  return `${labelOf(action, scene)}  [${keyName(action)}]`;
 }
 
 /** The action of that name; throws if there is none. */

@@ -5,6 +5,8 @@ import { words } from "../words/words";
 import type { Bottleneck } from "./bottleneck";
 
 export interface Status {
+  /** Pictures come, or would if anything changed. */
+  connected: boolean;
   framesPerSecond: number;
   frame: Omit<Frame, "payload"> | null;
   roundTripMs: number | null;
@@ -44,8 +46,22 @@ function shownErrorText({ flags, shownError, restError }: RestingFrame): string 
     : words.status.toBe(error, significant(restError));
 }
 
-export function statusText({ framesPerSecond, frame, roundTripMs, viewers, bottleneck }: Status): string {
+/** What everybody wants to know: whether the picture is finished, or how fast it moves; and who else looks. */
+export function briefText({ connected, framesPerSecond, frame, viewers }: Status): string {
   const said = words.status;
+  if (!connected) return said.offline;
+  if (!frame) return said.waiting;
+  const moves = frame.samples === 1 || (frame.flags & Flag.MOVING) !== 0;
+  const parts = [moves ? said.framesPerSecond(framesPerSecond) : said.refining];
+  if (frame.flags & Flag.FINAL) parts[0] = said.still;
+  if (frame.flags & Flag.SLOW) parts.push(said.slowMotion);
+  if (viewers > 1) parts.push(said.viewers(viewers));
+  return parts.join(" \u00b7 ");
+}
+
+export function statusText({ connected, framesPerSecond, frame, roundTripMs, viewers, bottleneck }: Status): string {
+  const said = words.status;
+  if (!connected) return said.offline;
   const parts: string[] = [];
   if (frame) {
     const { flags, samples, simulateMs, renderMs, encodeMs } = frame;

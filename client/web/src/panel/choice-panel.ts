@@ -16,6 +16,8 @@ import {
   CUTOFFS,
   choicesOf,
   ENDS,
+  indicesOf,
+  materialFacts,
   materialOption,
   NOTHING_CHOSEN,
   OWN_INDICES,
@@ -39,6 +41,8 @@ export class ChoicePanel {
   private readonly controls: LiveControls<Choices>;
   private readonly material = new Choice<string>(words.material.label, [OWN_INDICES], NOTHING_CHOSEN.material);
   private readonly sky = new Choice<string>(words.skies.label, SKIES, NOTHING_CHOSEN.sky);
+  private readonly facts = document.createElement("p");
+  private materials: readonly Material[] = [];
   private readonly size: SizeControl;
   private readonly studio = new SkyChoice();
   private skies: readonly Option<string>[] = SKIES;
@@ -50,6 +54,10 @@ export class ChoicePanel {
       (name, value) => send(name === "sky" ? this.skyPatch(String(value)) : patchOf(this.scene, name, value)),
     );
     this.controls.listen("material", stone.add(this.material));
+    this.facts.className = "facts";
+    this.facts.dataset.hint = words.material.factsHint;
+    this.facts.tabIndex = 0; // what the numbers mean is said to the keyboard too
+    stone.body.append(this.facts);
     this.size = new SizeControl(stone, send, clamped);
     this.controls.listen("sky", surroundings.add(this.sky));
     const numbers = (values: readonly number[]) => values.map((value) => ({ label: String(value), value }));
@@ -73,7 +81,15 @@ export class ChoicePanel {
     this.studio.see(scene);
     this.controls.display();
     this.material.show(hasStone(scene));
+    this.showFacts();
     this.size.update({ scene });
+  }
+
+  private showFacts(): void {
+    const indices = indicesOf(this.scene, this.materials);
+    this.facts.hidden = indices === null;
+    const said = indices ? materialFacts(indices) : "";
+    if (this.facts.textContent !== said) this.facts.textContent = said;
   }
 
   /** The merge patch for a sky. */
@@ -87,6 +103,8 @@ export class ChoicePanel {
   }
 
   addMaterials(materials: readonly Material[]): void {
+    this.materials = materials;
+    this.showFacts();
     this.material.offer(materials.map((material) => materialOption(material)));
     this.size.setColoured(materials.filter(({ coloured }) => coloured).map(({ name }) => name));
   }

@@ -1,7 +1,7 @@
 /** The panel's buttons that undo an edit and make one again. */
 
 import { Command } from "../controls/command";
-import { type Action, actionNamed, labelWithKey } from "../input/actions";
+import { type Action, actionNamed, keyName, labelOf } from "../input/actions";
 import type { ViewState } from "../session/view-state";
 
 export class EditButtons {
@@ -12,7 +12,11 @@ export class EditButtons {
   constructor(perform: (action: Action) => void) {
     this.element.className = "edits";
     const button = (name: string) => {
-      const made = new Command(labelWithKey(actionNamed(name)), () => perform(actionNamed(name)));
+      const made = new Command(
+        labelOf(actionNamed(name)),
+        () => perform(actionNamed(name)),
+        keyName(actionNamed(name)),
+      );
       this.element.append(made.element);
       return made.enable(false);
     };

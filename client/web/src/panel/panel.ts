@@ -4,10 +4,11 @@ import "../controls/controls.css";
 import { Choice } from "../controls/choice";
 import { Command } from "../controls/command";
 import { Hints } from "../controls/hints";
+import { Row } from "../controls/row";
 import { Section } from "../controls/section";
 import { Toggle } from "../controls/toggle";
 import { FORMATS } from "../files/saving";
-import { type Action, actionNamed, labelWithKey } from "../input/actions";
+import { type Action, actionNamed, keyName, labelOf, labelWithKey } from "../input/actions";
 import type { CutKind } from "../session/catalogue";
 import type { Target } from "../session/events";
 import type { Format } from "../session/rest";
@@ -21,6 +22,7 @@ import { EditButtons } from "./edit-buttons";
 import { FallPanel } from "./fall-panel";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { SurfacePanel } from "./surface-panel";
+import { TiltControl } from "./tilt-control";
 
 export interface PanelActions {
   perform: (action: Action) => void;
@@ -51,6 +53,7 @@ export class Panel {
   private readonly stones: StonePanel;
   private readonly cut: CutPanel;
   private readonly surfaces: SurfacePanel;
+  private readonly tilt: TiltControl;
   private readonly actions: PanelActions;
   private readonly target: Choice<Target>;
   private readonly toggles: [keyof Shown, Toggle][] = [];
@@ -67,12 +70,12 @@ export class Panel {
     this.edits = root.add(new EditButtons(actions.perform));
     const stone = root.section(said.stone.one);
     const surroundings = root.section(said.surroundings);
+    const files = root.section(said.files);
     const move = root.section(said.move);
     const cut = root.section(said.cut).fold(true);
     const fall = root.section(said.fall).fold(true);
     const surfaces = root.section(said.surfaces).fold(true);
     const optics = root.section(said.optics).fold(true);
-    const files = root.section(said.files);
     const page = root.section(said.page);
     this.stone = stone;
     this.choices = new ChoicePanel({ stone, surroundings, optics }, actions.patch, actions.clamped);
@@ -84,6 +87,7 @@ export class Panel {
     this.addToggle(surroundings, "walls", "walls", said.walls);
     this.surfaces = new SurfacePanel(surroundings, surfaces, actions.patch, actions.clamped);
     this.target = this.addMoves(move);
+    this.tilt = new TiltControl(move, actions.patch, actions.clamped);
     this.cut = new CutPanel(cut, actions.patch, actions.clamped);
     this.fall = new FallPanel(fall, actions.patch, actions.clamped);
     this.addFiles(files);
@@ -103,9 +107,10 @@ export class Panel {
     this.edits.update(state);
     this.target.value = state.target;
     for (const [name, toggle] of this.toggles) toggle.value = shown[name];
-    for (const [button, action] of this.counted) button.label(labelWithKey(action, state.scene));
+    for (const [button, action] of this.counted) button.label(labelOf(action, state.scene));
     this.stone.title(worded(words.panel.stone, state.scene));
     this.stones.update(state, this.actions.removals());
+    this.tilt.update(state);
     const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
     this.fall.update(chosen);
     this.cut.update(chosen);
@@ -115,8 +120,9 @@ export class Panel {
 
   /** The next seconds are being recorded, or not any more. */
   recording(on: boolean): void {
-    const action = actionNamed("clip_next");
-    this.clip?.label(labelWithKey(on ? { ...action, label: words.clip.stopRecording } : action));
+    const { clip, files } = words;
+    this.clip?.label(on ? files.stop : files.nextSeconds);
+    this.clip?.name(on ? clip.stopRecording : labelOf(actionNamed("clip_next")));
   }
 
   addCuts(cuts: readonly CutKind[]): void {
@@ -136,24 +142,33 @@ export class Panel {
   }
 
   private addFiles(section: Section): void {
-    const said = words.panel;
-    const button = (label: string, act: () => void) => section.add(new Command(label, act));
-    this.addButton(section, actionNamed("download"));
-    for (const [format, label] of FORMATS) button(label, () => this.actions.savePicture(format));
-    this.addButton(section, actionNamed("copy_picture"));
-    this.addButton(section, actionNamed("copy_link"));
-    this.addButton(section, actionNamed("clip_last"));
-    this.clip = this.addButton(section, actionNamed("clip_next"));
-    button(said.saveScene, () => this.actions.saveScene());
-    button(said.openScene, () => this.actions.openScene());
-    button(said.openMesh, () => this.actions.openMesh());
-    button(said.openSky, () => this.actions.openSky());
-    button(said.newSession, () => this.actions.newSession());
+    const { panel: said, files } = words;
+    const row = (label: string) => section.add(new Row(label));
+    const acting = (to: Row, name: string, seen: string) => {
+      const action = actionNamed(name);
+      return to.add(seen, labelOf(action), () => this.actions.perform(action), keyName(action));
+    };
+    const pictures = row(files.picture);
+    acting(pictures, "download", "PNG");
+    for (const [format, seen, label] of FORMATS) pictures.add(seen, label, () => this.actions.savePicture(format));
+    const copies = row(files.copy);
+    acting(copies, "copy_picture", files.copiedPicture);
+    acting(copies, "copy_link", files.copiedLink);
+    const clips = row(files.clip);
+    acting(clips, "clip_last", files.lastSeconds);
+    this.clip = acting(clips, "clip_next", files.nextSeconds);
+    const scenes = row(files.scene);
+    scenes.add(files.save, said.saveScene, () => this.actions.saveScene());
+    scenes.add(files.open, said.openScene, () => this.actions.openScene());
+    const opens = row(files.openRow);
+    opens.add(files.mesh, said.openMesh, () => this.actions.openMesh());
+    opens.add(files.sky, said.openSky, () => this.actions.openSky());
+    section.add(new Command(said.newSession, () => this.actions.newSession()));
   }
 
   private addToggle(section: Section, name: keyof Shown, command: string, label: string): void {
     const action = actionNamed(command);
-    const toggle = section.add(new Toggle(labelWithKey({ label, key: action.key })));
+    const toggle = section.add(new Toggle(label).key(keyName(action)));
     toggle.onInput(() => {
       if (this.state) this.update(this.state); // shows what is, until the server says that it changed
       this.actions.perform(action);
@@ -162,7 +177,7 @@ export class Panel {
   }
 
   private addButton(section: Section, action: Action): Command {
-    const button = section.add(new Command(labelWithKey(action), () => this.actions.perform(action)));
+    const button = section.add(new Command(labelOf(action), () => this.actions.perform(action), keyName(action)));
     if (typeof action.label !== "string") this.counted.push([button, action]);
     return button;
   }

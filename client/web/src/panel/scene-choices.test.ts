@@ -5,6 +5,8 @@ import {
   type Choices,
   choicesOf,
   ENDS,
+  indicesOf,
+  materialFacts,
   materialOption,
   NOTHING_CHOSEN,
   OWN_INDICES,
@@ -17,6 +19,7 @@ import {
 } from "./scene-choices";
 import { imageSky } from "./sky-choice";
 
+const INDICES = [1.95, 2, 2.05] as const;
 const STONE = { id: "stone", cut: "brilliant", material: "ruby", position: [0, 4, 0] };
 const SCENE = {
   stones: [STONE],
@@ -98,10 +101,23 @@ it("explains each sky, end and tone map", () => {
   }
 });
 
-it("calls a material what people call it, and tells what its index does", () => {
-  const summary = "The usual reference.";
-  const diamond = { name: "diamond", title: "Diamond", summary, coloured: false };
-  const option = materialOption({ ...diamond, indices: [2.4, 2, 2.5] as const });
-  expect([option.label, option.value]).toEqual(["Diamond", "diamond"]);
-  expect(option.summary).toBe(`${summary}\nIndex 2.00 for green; critical angle 30.0\u00b0`);
+it("calls a material what people call it", () => {
+  const diamond = { name: "diamond", title: "Diamond", summary: "The usual.", coloured: false, indices: INDICES };
+  expect(materialOption(diamond)).toEqual({ label: "Diamond", value: "diamond", summary: "The usual." });
+});
+
+it("tells what the indices of a material do to light", () => {
+  const facts = materialFacts(INDICES);
+  expect(facts).toContain("index 2.000"); // of green
+  expect(facts).toContain("dispersion 0.100"); // of blue over red
+  expect(facts).toContain("critical angle 30.0\u00b0"); // the sine of which is 1 over 2
+  expect(facts).toContain("Brewster's 63.4\u00b0"); // the tangent of which is 2
+});
+
+it("knows the indices of a stone by its material's name, or as the scene says them", () => {
+  const materials = [{ name: "ruby", title: "Ruby", summary: "", coloured: true, indices: INDICES }];
+  expect(indicesOf(SCENE, materials)).toBe(INDICES);
+  expect(indicesOf(SCENE, [])).toBeNull();
+  expect(indicesOf({ stones: [{ material: { ior: [1.5, 1.6, 1.7] } }] }, [])).toEqual([1.5, 1.6, 1.7]);
+  expect(indicesOf({ stones: [] }, materials)).toBeNull();
 });

@@ -2,7 +2,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import type { Option } from "../controls/choice";
-import { number, part, text } from "../json";
+import { number, object, part, text, triple } from "../json";
 import type { Material } from "../session/catalogue";
 import { stoneOf, stonePatch, stonesOf } from "../stones/stones";
 import { words } from "../words/words";
@@ -46,12 +46,23 @@ function optionsOf<K extends string>(
 /** A material that the scene describes by its indices: shown, and not to be chosen. No name has brackets. */
 export const OWN_INDICES: Option<string> = { label: words.material.own, value: "(indices)" };
 
-/** A material under the name that people use, with what its index does: beyond the critical angle all light stays inside. */
-export function materialOption({ name, title, summary, indices }: Material): Option<string> {
-  const index = indices[1];
-  const critical = (Math.asin(1 / index) * 180) / Math.PI;
-  const said = `${summary}\n${words.material.index(index, critical)}`;
-  return { label: title, value: name, summary: said };
+/** A material under the name that people use. */
+export function materialOption({ name, title, summary }: Material): Option<string> {
+  return { label: title, value: name, summary };
+}
+
+/** What the indices of a material for red, green and blue do to light, in degrees for green. */
+export function materialFacts([red, green, blue]: Material["indices"]): string {
+  const critical = (Math.asin(1 / green) * 180) / Math.PI;
+  const brewster = (Math.atan(green) * 180) / Math.PI;
+  return words.material.facts(green, critical, brewster, blue - red);
+}
+
+/** The indices of the stone's material, by its name or as the scene says them; null if they are not known. */
+export function indicesOf(scene: JsonObject | null, materials: readonly Material[]): Material["indices"] | null {
+  const { material } = stoneOf(scene);
+  if (typeof material === "string") return materials.find(({ name }) => name === material)?.indices ?? null;
+  return triple(object(material).ior);
 }
 
 /** The scene's before there is one. */

@@ -3,7 +3,7 @@
 import { Choice } from "../controls/choice";
 import { Command } from "../controls/command";
 import type { Section } from "../controls/section";
-import { type Action, actionNamed, labelWithKey } from "../input/actions";
+import { type Action, actionNamed, keyName, labelOf } from "../input/actions";
 import type { ViewState } from "../session/view-state";
 import { idsOf } from "../stones/stones";
 import { words } from "../words/words";
@@ -30,8 +30,11 @@ export class StonePanel {
 
   constructor(section: Section, perform: (action: Action) => void, actions: StoneActions) {
     section.add(this.list).onInput((id) => actions.choose(id || null));
-    const button = (label: string, act: () => void) => section.add(new Command(label, act));
-    const acting = (name: string) => button(labelWithKey(actionNamed(name)), () => perform(actionNamed(name)));
+    const button = (label: string, act: () => void, key = "") => section.add(new Command(label, act, key));
+    const acting = (name: string) => {
+      const action = actionNamed(name);
+      return button(labelOf(action), () => perform(action), keyName(action));
+    };
     this.ofOne = [
       button(words.stones.look, () => actions.look()),
       button(words.stones.putBack, () => actions.reset()),
@@ -52,7 +55,7 @@ export class StonePanel {
     }
     this.list.value = stone ?? NONE.value;
     for (const button of this.ofOne) button.show(stone !== null);
-    this.remove.label(labelWithKey(actionNamed("remove_stone"), scene));
+    this.remove.label(labelOf(actionNamed("remove_stone"), scene));
     this.putBack.enable(removed > 0);
   }
 }

@@ -54,8 +54,8 @@ export const actions = {
   download: "Save the picture (.png)",
   copy_picture: "Copy the picture",
   copy_link: "Copy a link to this view",
-  clip_last: "Save a clip of the last seconds",
-  clip_next: "Record a clip of the next seconds",
+  clip_last: "Save a clip of the last 10 s",
+  clip_next: "Record a clip of the next 10 s",
   keys: "All keys",
   hide: "Hide all but the picture",
   full: "Fill the screen",
@@ -109,12 +109,14 @@ export const panel = {
   lightSky: "Light sky",
   walls: "Walls",
   moved: "What",
+  tilt: "Tilt, \u00b0",
+  tiltHint: "Of the camera: 0 looks straight down, which shows a stone face up; 90 looks from the side",
   saveWebp: "Save the picture (.webp)",
   saveTga: "Save the picture (.tga)",
   saveExr: "Save the picture's light (.exr)",
   saveScene: "Save the scene (.json)",
   openScene: "Open a scene\u2026",
-  openMesh: "Open a mesh or a design\u2026",
+  openMesh: "Open a mesh or design\u2026",
   openSky: "Open a sky\u2026",
   newSession: "New session",
 };
@@ -149,8 +151,13 @@ export const stones = {
 export const material = {
   label: "Material",
   own: "its own indices",
-  index: (green: number, criticalDegrees: number) =>
-    `Index ${green.toFixed(2)} for green; critical angle ${criticalDegrees.toFixed(1)}\u00b0`,
+  facts: (index: number, criticalDegrees: number, brewsterDegrees: number, dispersion: number) =>
+    `index ${index.toFixed(3)} \u00b7 dispersion ${dispersion.toFixed(3)}\n` +
+    `critical angle ${criticalDegrees.toFixed(1)}\u00b0 \u00b7 Brewster's ${brewsterDegrees.toFixed(1)}\u00b0`,
+  factsHint:
+    "Index of refraction, for green light; dispersion, how much greater the index is for blue than for red. Inside the " +
+    "stone, beyond the critical angle from a facet's normal, all light is reflected; outside, at Brewster's angle, what " +
+    "is reflected is polarised",
   radius: "Radius, mm",
   radiusHint: "Of the girdle: the longer the ways through the stone, the deeper its colour. One carat is 3.25 mm",
 };
@@ -305,6 +312,7 @@ export const status = {
   server: (all: string, simulate: string, render: string, encode: string) =>
     `server ${all} ms (simulate ${simulate}, render ${render}, encode ${encode})`,
   waiting: "waiting for the first picture",
+  offline: "not connected",
   roundTrip: (ms: string) => `round trip ${ms} ms`,
   samples: (count: number) => (count === 1 ? "1 sample" : `${count} samples`),
   viewers: (count: number) => (count === 1 ? "1 viewer" : `${count} viewers`),
@@ -400,6 +408,20 @@ export const connection = {
 
 /** Files, pictures and links, in and out. */
 export const files = {
+  picture: "Picture",
+  copy: "Copy",
+  copiedPicture: "picture",
+  copiedLink: "link",
+  clip: "Clip",
+  lastSeconds: "last 10 s",
+  nextSeconds: "next 10 s",
+  scene: "Scene",
+  save: "save",
+  stop: "stop",
+  open: "open",
+  openRow: "Open",
+  mesh: "mesh or design",
+  sky: "sky",
   rendering: "Rendering the picture at full quality\u2026",
   pictureCopied: "The picture is on the clipboard.",
   linkCopied: "The link to this view is on the clipboard.",
