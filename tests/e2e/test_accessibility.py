@@ -74,6 +74,7 @@ def test_every_entry_of_a_list_is_reached_by_arrows_and_letters_act_meanwhile(vi
     for _ in range(3):
         view.page.keyboard.press("ArrowDown")
     view.until("() => culet.state.scene.stones[0].material === 'cubic-zirconia'")
+    view.page.locator("#panel .facts", has_text="index 2.1").wait_for()
     view.page.keyboard.press("m")
     view.until("() => culet.state.mirror")
     assert materials.evaluate("list => list === document.activeElement")

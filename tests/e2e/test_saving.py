@@ -56,7 +56,7 @@ def test_s_saves_the_finished_picture_as_png(view: View, server: Server) -> None
 def test_the_panel_offers_png_first_and_the_same_picture_as_targa(view_of: ViewOf) -> None:
     view = view_of(viewport=WITH_PANEL).open()
     offered = view.page.get_by_role("button", name="Save the picture")
-    assert [button.get_attribute("aria-label") for button in offered.all()] == [
+    assert [button.get_attribute("title") for button in offered.all()] == [
         "Save the picture (.png)",
         "Save the picture (.webp)",
         "Save the picture (.tga)",

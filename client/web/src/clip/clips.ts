@@ -4,7 +4,7 @@ import type { Frame } from "@culet/protocol/frame";
 import { download } from "../files/files";
 import type { Task } from "../signs/toasts";
 import { words } from "../words/words";
-import { ClipFrames, LONGEST_MS } from "./clip-frames";
+import { type ClipFrame, ClipFrames, LONGEST_MS } from "./clip-frames";
 import { timeline } from "./clip-timeline";
 import { filmOf } from "./film";
 
@@ -25,7 +25,8 @@ export class Clips {
   private readonly world: ClipWorld;
   /** Ends the recording that goes on. */
   private stop: (() => void) | null = null;
-  private making: AbortController | null = null;
+  /** Settled once no clip is being made any more. */
+  private made: Promise<void> = Promise.resolve();
 
   constructor(world: ClipWorld) {
     this.world = world;
@@ -73,19 +74,21 @@ export class Clips {
     this.world.recording(false);
   }
 
-  /** A file of what was seen from one time to another, ms. */
-  private async save(from: number, to: number): Promise<void> {
-    this.making?.abort(); // one at a time
+  /** A file of what was seen from one time to another, ms: after those that are being made. */
+  private save(from: number, to: number): Promise<void> {
+    const frames = this.frames.between(from, to); // now: they are not kept for long
+    const begin = Math.max(from, frames[0]?.time ?? from);
+    const before = this.made;
+    const made = before.then(() => this.make(timeline(frames, begin, to)));
+    this.made = made.catch(() => undefined); // whoever asked for that one is told
+    return made;
+  }
+
+  private async make(frames: readonly ClipFrame[]): Promise<void> {
     const making = new AbortController();
-    this.making = making;
     const task = this.world.task(words.clip.making, words.clip.cancel, () => making.abort());
     try {
-      const frames = this.frames.between(from, to);
-      const begin = Math.max(from, frames[0]?.time ?? from);
-      const film = await filmOf(timeline(frames, begin, to), {
-        progress: (part) => task.progress(part),
-        signal: making.signal,
-      });
+      const film = await filmOf(frames, { progress: (part) => task.progress(part), signal: making.signal });
       download(film.file, `culet-clip.${film.ending}`);
     } catch (error) {
       if (!making.signal.aborted) throw error;

@@ -3,6 +3,7 @@
 export class Command {
   readonly element = document.createElement("button");
   private readonly text = document.createElement("span");
+  private called: HTMLElement | null = null;
 
   constructor(label: string, act: () => void, key = "") {
     this.element.type = "button";
@@ -19,8 +20,13 @@ export class Command {
 
   /** What the button is called, if what is seen of it is less; a tooltip says the same. */
   name(text: string): this {
-    this.element.setAttribute("aria-label", text);
-    this.element.title = text;
+    if (!this.called) {
+      this.called = document.createElement("span");
+      this.called.className = "for-screen-readers";
+      this.text.setAttribute("aria-hidden", "true");
+      this.element.prepend(this.called);
+    }
+    this.called.textContent = this.element.title = text;
     return this;
   }
 

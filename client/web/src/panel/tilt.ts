@@ -5,45 +5,50 @@ import { part, triple } from "../json";
 
 type Vector = readonly [number, number, number];
 
-/** Degrees: straight down, the camera's up would be parallel to its line of sight. */
-const STEEPEST = 0.01;
+const VERTICAL: Vector = [0, 1, 0];
+/** Cosine of the angle from which on the camera's up counts as along its line of sight: 20 degrees. */
+const ALONG = 0.94;
+/** R, of what counts as no way aside. */
+const NOTHING = 1e-6;
 
-/** Degrees from the camera's up to where it stands, seen from what it looks at: 0 face up, 90 from the side. */
+/** Degrees from straight above to where the camera stands, seen from what it looks at: 0 face up, 90 from the side. */
 export function tiltOf(scene: JsonObject | null): number {
-  const { offset, up } = standOf(scene);
-  return degrees(Math.acos(Math.min(Math.max(dot(unit(offset), up), -1), 1)));
+  const { offset } = standOf(scene);
+  return (Math.acos(Math.min(Math.max(unit(offset)[1], -1), 1)) * 180) / Math.PI;
 }
 
-/** The camera at that tilt, as far off as it was, in the direction in which it stood. */
+/**
+ * The camera at that tilt, as far off as it was, on the side on which it stood; from straight above, on the side of the
+ * picture's lower edge. An up that would lie along the line of sight gives way to one that leaves the picture upright.
+ */
 export function tiltPatch(scene: JsonObject | null, tilt: number): JsonObject {
   const { offset, up, target } = standOf(scene);
-  const aside = minus(offset, scaled(up, dot(offset, up)));
-  const level = Math.hypot(...aside) > 0 ? unit(aside) : anyLevel(up);
-  const angle = (Math.max(tilt, STEEPEST) * Math.PI) / 180;
-  const distance = Math.hypot(...offset);
-  const at = (k: 0 | 1 | 2) => target[k] + distance * (Math.cos(angle) * up[k] + Math.sin(angle) * level[k]);
-  return { camera: { position: [at(0), at(1), at(2)] } };
+  const level = levelOf(offset) ?? levelOf(scaled(up, -1)) ?? [0, 0, 1];
+  const angle = (tilt * Math.PI) / 180;
+  const ray = plus(scaled(VERTICAL, Math.cos(angle)), scaled(level, Math.sin(angle)));
+  const position = plus(target, scaled(ray, Math.hypot(...offset)));
+  const upright = Math.abs(dot(ray, up)) < ALONG ? up : tilt < 45 ? scaled(level, -1) : VERTICAL;
+  return { camera: { position: [...position], up: [...upright] } };
 }
 
 function standOf(scene: JsonObject | null): { offset: Vector; up: Vector; target: Vector } {
   const camera = part(scene, "camera");
   const target = triple(camera.target) ?? [0, 0, 0];
-  const offset = minus(triple(camera.position) ?? [0, 1, 1], target);
-  return { offset, up: unit(triple(camera.up) ?? [0, 1, 0]), target };
+  const offset = plus(triple(camera.position) ?? [0, 1, 1], scaled(target, -1));
+  return { offset, up: unit(triple(camera.up) ?? VERTICAL), target };
 }
 
-/** A direction across `up`, whichever. */
-function anyLevel(up: Vector): Vector {
-  const other: Vector = Math.abs(up[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
-  return unit(minus(other, scaled(up, dot(other, up))));
+/** The direction of a way on the ground; null of one that goes up and down alone. */
+function levelOf([x, , z]: Vector): Vector | null {
+  return Math.hypot(x, z) > NOTHING ? unit([x, 0, z]) : null;
 }
 
 function dot(a: Vector, b: Vector): number {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-function minus(a: Vector, b: Vector): Vector {
-  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+function plus(a: Vector, b: Vector): Vector {
+  return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 }
 
 function scaled(a: Vector, by: number): Vector {
@@ -52,8 +57,4 @@ function scaled(a: Vector, by: number): Vector {
 
 function unit(a: Vector): Vector {
   return scaled(a, 1 / (Math.hypot(...a) || 1));
-}
-
-function degrees(radians: number): number {
-  return (radians * 180) / Math.PI;
 }
