@@ -71,3 +71,16 @@ def test_a_finished_picture_costs_a_small_part_of_a_moving_one(bouncing: View, s
     assert after["engine_frames_repeated"] > before["engine_frames_repeated"], "but the last frame is sent again"
     assert resting < 0.3 * moving, "measured 0.09, of which looking at the metrics is most"
     assert view.number("outOfOrder") == 0
+
+
+def test_the_time_from_a_key_to_its_picture_is_made_up_of_stages(view: View) -> None:
+    view.page.evaluate("() => culet.watchDelays()")
+    before = view.number("framesShown")
+    view.page.keyboard.press("ArrowLeft")
+    view.until("() => culet.delays.length === 1")
+    assert view.number("framesShown") > before
+    (delay,) = view.page.evaluate("() => culet.delays")
+    assert len(delay["stages"]) == 7
+    assert all(stage >= 0 for stage in delay["stages"])
+    assert sum(delay["stages"]) >= delay["total"] - 1e-6
+    assert view.page.evaluate("() => culet.lastFrame.renderMs") > 0

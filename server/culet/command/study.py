@@ -144,6 +144,39 @@ def resting(
 
 
 @app.command()
+def motion(
+    scene: SceneFile = None,
+    preset: Preset = None,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of what is seen.")] = 1280,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of what is seen.")] = 720,
+    seconds: Annotated[float, typer.Option(min=0.1, max=60, help="Of the fall.")] = 3,
+    moments: Annotated[int, typer.Option(min=1, max=1000, help="Of the fall that are judged.")] = 9,
+    reference: Annotated[int, typer.Option(min=2, max=MOST_SAMPLES, help="Samples of the converged pictures.")] = 64,
+    dearer: Annotated[
+        list[float] | None,
+        typer.Option(min=0.1, max=100, help="Judge too what could be held if frames took so many times as long."),
+    ] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON of all figures.")] = None,
+) -> None:
+    """Judge what a viewer sees of a recorded fall against the converged pictures, by FLIP: filtered and not, at equal
+    frame rates. Without a scene the preset `falling`."""
+    from culet.study.moving_pictures import measure, table
+
+    with errors_in_one_line():
+        stage = read_stage(scene, preset or (None if scene else "falling"), None, None)
+        with opened(out) as file:
+            with progress_bar("judging") as advance:
+                found = measure(
+                    stage, (width, height), seconds=seconds, moments=moments, samples=reference,
+                    dearer=(1.0, *(dearer or ())), progress=advance,
+                )  # fmt: skip
+            if file is not None:
+                file.truncate(0)
+                file.write(found.document() + "\n")
+        report_console().print(table(found))
+
+
+@app.command()
 def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh = False) -> None:
     """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers.
 

@@ -18,6 +18,7 @@ from culet.rendering.build import OF_ITEMS, TILES_DEALT, Kernel, Variant, build,
 from culet.rendering.device import Device, Real, open_device
 from culet.rendering.facet_rows import facet_rows, has_facet_rows
 from culet.rendering.features import Features, by_half_spaces, features_of
+from culet.rendering.fireflies import Fireflies, FireflyKernels
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
 from culet.rendering.light.effort import Effort
@@ -76,6 +77,7 @@ class Renderer:
         self.develop = cl.Kernel(film, "develop")
         self.shown_difference = ShownDifference(self.device, film)
         self.softening = Softening(self.device, film, self.allocate)
+        self._firefly_kernels: FireflyKernels | None = None
         self._warm_up()
 
     def prepare(self) -> None:
@@ -120,6 +122,11 @@ class Renderer:
         buffer = self.pool.allocate(size)
         self._most = max(self._most, self.pool.active_bytes)
         return buffer
+
+    def fireflies(self, pixels: int, exposure: float) -> Fireflies:
+        """What leaves out the fireflies of a picture of so many pixels."""
+        self._firefly_kernels = self._firefly_kernels or FireflyKernels(self.device, self.variant)
+        return Fireflies(self._firefly_kernels, self.allocate, pixels, exposure)
 
     def _warm_up(self) -> None:
         """Have machine code made of what every picture needs, before any picture waits for it."""
@@ -230,6 +237,9 @@ class Picture:
         self._tiles = math.ceil(width / tile), math.ceil(height / tile)
         # Not by this picture's `_allocate`: with sums that hold their picture, both stay until garbage is collected.
         self._sums = Sums(renderer.fold, renderer.allocate, width, height, real)
+        film = stage.scene.film
+        hides = film.fireflies == "hide" and not film.cut_out
+        self._fireflies = renderer.fireflies(width * height, film.exposure) if hides else None
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
         self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
@@ -337,7 +347,8 @@ class Picture:
         device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
         tracing = self._tracings.of(self.samples)
         x, y = jitter(self.samples, self.scene.sampling.filter)
-        target, accumulate = self._sums.target()
+        run, adds = self._sums.target()
+        target, accumulate = (run, adds) if self._fireflies is None else (self._fireflies.sample, False)
         progress = np.zeros(progress_size(device.units), np.uint32)
         of_items = progress[OF_ITEMS:].reshape(device.units, 2)
         buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * tracing.kernel.kept_bytes)
@@ -371,6 +382,8 @@ class Picture:
                 break
             yield part
             start = time.perf_counter()
+        if self._fireflies is not None:
+            self._fireflies.collect(run, add=adds, sample=self.samples)
         for _ in self._sums.added():
             yield ALMOST
         yield 1.0
@@ -415,14 +428,16 @@ class Picture:
         if self._shown_samples == self.samples:
             return
         shown = np.empty((self.height, self.width, 3), np.uint8)
-        pixels, sums = self.width * self.height, self._sums
+        pixels, (earlier, later), both = self.width * self.height, self._sums.buffers, self._sums.later > 0
+        if self._fireflies is not None:
+            earlier, both = self._fireflies.left_out(earlier, later, self.samples, both=both), False
         queue, target = self._renderer.device.queue, self._allocate(shown.nbytes)
         flat = shown.reshape(-1)
         for begin in range(0, pixels, DEVELOPED):
             end = min(begin + DEVELOPED, pixels)
             items = math.ceil((end - begin) / DEVELOP_BLOCK / DEVELOP_GROUP) * DEVELOP_GROUP
             self._renderer.develop(
-                queue, (items,), (DEVELOP_GROUP,), *sums.buffers, np.int32(sums.later > 0), target,
+                queue, (items,), (DEVELOP_GROUP,), earlier, later, np.int32(both), target,
                 np.int32(begin), np.int32(end), *film_arguments(self.scene, self.samples),
             )  # fmt: skip
             cl.enqueue_copy(queue, flat[3 * begin : 3 * end], target, src_offset=3 * begin)

@@ -44,6 +44,12 @@ class Film(Model):
     gamut: Literal["desaturate", "clip"] = Field(
         "desaturate", description="What becomes of spectral colours that no screen has: towards grey, or clipped."
     )
+    fireflies: Literal["keep", "hide"] = Field(
+        "keep",
+        description="What a screen shows of pixels that a single sample of many has made bright. hide: those samples "
+        "are left out, with little of the fire; linear radiance and .exr keep them, as do stills with another "
+        "background.",
+    )
 
     @property
     def cut_out(self) -> bool:

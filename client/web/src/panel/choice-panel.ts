@@ -74,6 +74,8 @@ export class ChoicePanel {
       "toneMap",
       optics.add(new Choice(said.toneMap, TONE_MAPS, none.toneMap)).hint(said.toneMapHint),
     );
+    const hide = new Toggle(said.hideFireflies).hint(said.hideFirefliesHint);
+    this.controls.listen("hideFireflies", optics.add(hide));
   }
 
   update({ scene }: ViewState): void {

@@ -25,7 +25,7 @@ const SCENE = {
   stones: [STONE],
   environment: { kind: "image", image: "light-box", scale: 2 },
   optics: { bands: 16, polarised: true, cutoff: 0.003, end: "roulette", max_bounces: 64 },
-  film: { tone_map: "filmic", exposure: 2 },
+  film: { tone_map: "filmic", exposure: 2, fireflies: "hide" },
 };
 const CHOSEN: Choices = {
   material: "ruby",
@@ -35,6 +35,7 @@ const CHOSEN: Choices = {
   cutoff: 0.003,
   end: "roulette",
   toneMap: "filmic",
+  hideFireflies: true,
 };
 
 describe("the choices of a scene", () => {

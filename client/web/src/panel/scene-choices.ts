@@ -21,6 +21,8 @@ export interface Choices {
   cutoff: number;
   end: string;
   toneMap: string;
+  /** Whether the screen leaves out what a single sample has made bright. */
+  hideFireflies: boolean;
 }
 
 /** One index for each of red, green and blue. */
@@ -74,6 +76,7 @@ export const NOTHING_CHOSEN: Choices = {
   cutoff: 0.01,
   end: "cut",
   toneMap: "srgb",
+  hideFireflies: false,
 };
 
 export function choicesOf(scene: JsonObject | null): Choices {
@@ -90,6 +93,7 @@ export function choicesOf(scene: JsonObject | null): Choices {
     cutoff: number(optics.cutoff, none.cutoff),
     end: text(optics.end, none.end),
     toneMap: text(part(scene, "film").tone_map, none.toneMap),
+    hideFireflies: part(scene, "film").fireflies === "hide",
   };
 }
 
@@ -102,6 +106,8 @@ export function patchOf<K extends keyof Choices>(scene: JsonObject | null, name:
       return skyPatch(scene, String(value));
     case "toneMap":
       return { film: { tone_map: value } };
+    case "hideFireflies":
+      return { film: { fireflies: value ? "hide" : "keep" } };
     default:
       return { optics: { [name]: value } };
   }

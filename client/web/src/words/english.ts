@@ -184,6 +184,10 @@ export const optics = {
   end: "Below it",
   endHint: "What becomes of light below the cut-off",
   toneMap: "Tone map",
+  hideFireflies: "Hide fireflies",
+  hideFirefliesHint:
+    "Leave out samples that are far brighter than all others of their pixel: fewer dots while a picture refines, and a " +
+    "little less light. Saved radiance keeps them",
   toneMapHint: "How radiance becomes the colours of the screen",
   caustics: "Caustics",
   causticsHint:

@@ -167,7 +167,12 @@ class Requests:
         others = [other for other in self.sessions if other is not live]
         live.rate = request.frames_per_second
         live.outgoing.allowance = Allowance(request.bytes_per_frame, request.bytes_at_rest)
-        live.size = size_within(self._memory, live_size(request.width, request.height, self._limits), others)
+        live.size = size_within(
+            self._memory,
+            live_size(request.width, request.height, self._limits),
+            live.session.scene.film,
+            others,
+        )
         self._painter.wake()
         return {"width": live.size[0], "height": live.size[1]}
 

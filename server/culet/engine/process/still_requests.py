@@ -115,8 +115,8 @@ class StillRequests:
         """BusyError if it does not fit besides what is held and what waits, of which no more pixels are begun at a time
         than a largest still has."""
         waiting = [other for other in self._awaited if other.picture is None]
-        needed = sum(picture_bytes(other.pixels, 1) for other in (*waiting, still))
-        most = picture_bytes(self._limits.max_still_pixels, 1)
-        needed = max(picture_bytes(still.pixels, 1), min(needed, most))
+        needed = sum(picture_bytes(other.pixels, 1, other.stage.scene.film) for other in (*waiting, still))
+        most = picture_bytes(self._limits.max_still_pixels, 1, still.stage.scene.film)
+        needed = max(picture_bytes(still.pixels, 1, still.stage.scene.film), min(needed, most))
         with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
             pass
