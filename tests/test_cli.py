@@ -24,7 +24,7 @@ from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
 from geometry.designs.files import design, gcs_of
 
-COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record", "design"]
+COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record", "design", "grade"]
 TINY = ("--width", "48", "--height", "27")
 ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
 """A scene of whose sky nothing is hidden."""
@@ -415,3 +415,22 @@ def alive(pid: int) -> bool:
     except ProcessLookupError:
         return False
     return True
+
+
+def test_a_cut_takes_the_place_of_the_stones_shape(tmp_path: Path) -> None:
+    plain, oval = tmp_path / "plain.png", tmp_path / "oval.png"
+    assert invoke("render", *TINY, "--samples", "1", "-o", plain).returncode == 0
+    assert invoke("render", *TINY, "--samples", "1", "--cut", "oval,length_to_width=1.7", "-o", oval).returncode == 0
+    assert np.abs(np.asarray(Image.open(plain), int) - np.asarray(Image.open(oval), int)).mean() > 1
+    assert "cut.length_to_width: expected at least 1" in refused(
+        invoke("render", *TINY, "--cut", "oval,length_to_width=0", "-o", oval)
+    )
+    assert "a mesh or a cut, got both" in refused(invoke("render", "--cut", "oval", "--mesh", "x.obj", "-o", oval))
+
+
+def test_a_cuts_diagram_is_drawn_and_its_file_written(tmp_path: Path) -> None:
+    drawing, file = tmp_path / "marquise.svg", tmp_path / "marquise.asc"
+    assert invoke("design", "diagram", "marquise", "-o", drawing).returncode == 0
+    assert "Marquise" in drawing.read_text()
+    assert "91 facets" in invoke("design", "convert", "marquise", file).stdout
+    assert "91 facets" in invoke("design", "show", file).stderr + invoke("design", "show", file).stdout

@@ -120,6 +120,30 @@ class Render(Message):
     client: Annotated[str, Field(max_length=200)] = ""
 
 
+class Grade(Message):
+    """Grade a stone of a scene, or of what a session shows, the first if none is named; the reply's result is a
+    `culet.grading.answer.Report`. `error` is twice the standard error of ISO, in points."""
+
+    type: Literal["grade"] = "grade"
+    scene: dict[str, Any] | None = None
+    session: SessionId | None = None
+    stone: str | None = None
+    convention: Literal["culet", "gemray"] = "culet"
+    head_degrees: Annotated[float, Field(ge=0, le=90)] | None = None
+    coloured: bool = False
+    tilt: bool = False
+    error: Annotated[float, Field(ge=0.03, le=10)] = 0.1
+
+
+class DrawDiagram(Message):
+    """The cutting diagram of a stone of a scene, or of what a session shows, the first if none is named, as SVG."""
+
+    type: Literal["draw_diagram"] = "draw_diagram"
+    scene: dict[str, Any] | None = None
+    session: SessionId | None = None
+    stone: str | None = None
+
+
 class PutMesh(Message):
     """Parse the mesh or the design in the bytes and keep it under an id; the reply is a DescribedMesh."""
 
@@ -187,6 +211,8 @@ Request = (
     | Ask
     | Demand
     | Render
+    | Grade
+    | DrawDiagram
     | PutMesh
     | PutSky
     | Cancel

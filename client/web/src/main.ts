@@ -164,6 +164,8 @@ const panel = new Panel(element("panel", HTMLElement), {
   openSky: () => chooseFile(SKY_TYPES, open.sky),
   patch: (patch) => visit.send({ type: "patch_scene", patch }),
   newSession: () => visit.startAnew(),
+  grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
+  openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
   clamped,
 });
 const strip = new SceneStrip(element("scenes", HTMLElement), element("scenes-toggle", HTMLButtonElement));

@@ -14,7 +14,6 @@ from culet.sources import naming
 
 if TYPE_CHECKING:
     from culet.geometry.designs.design import Design
-    from culet.scene.cuts import AnyCut
 
 app = typer.Typer(
     help="Gem designs of cutters' programs: .asc, .gem and .gcs.", no_args_is_help=True, add_completion=False
@@ -85,22 +84,18 @@ def diagram(
 def read(file: Path) -> Design:
     """The design in a file, or a cut's by its name; InputError names the file or the proportion."""
     from culet.geometry.cuts.cut import shape_of_cut
+    from culet.geometry.cuts.wording import cut_headings
     from culet.geometry.designs.of_shape import design_of
     from culet.geometry.designs.reader import read_design
     from culet.scene.cut_text import cut_from_text
-    from culet.scene.cuts import CUTS, TITLES
+    from culet.scene.cuts import CUTS
 
     if str(file).partition(",")[0] in CUTS and not file.exists():
         cut = cut_from_text(str(file))
-        return design_of(shape_of_cut(cut), _headings(cut, TITLES[cut.name]))
+        return design_of(shape_of_cut(cut), cut_headings(cut))
     try:
         data = file.read_bytes()
     except OSError as error:
         raise MeshError(f"{file}: cannot be read: {error.strerror}") from error
     with naming(str(file)):
         return read_design(data, file.suffix)
-
-
-def _headings(cut: AnyCut, title: str) -> list[str]:
-    said = (f"{name.replace('_', ' ')} {value:g}" for name, value in cut.model_dump(exclude={"name"}).items())
-    return [title, ", ".join(said)]

@@ -20,6 +20,7 @@ MODULES = {
     "record": "culet.command.record",
     "study": "culet.command.study",
     "design": "culet.command.design",
+    "grade": "culet.command.grade",
 }
 """Where the commands are, in the order in which they are listed. Each module has an `app`."""
 

@@ -15,7 +15,7 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 
-from culet.gateway import catalogue, health, problems, session_routes, stills, upload_routes
+from culet.gateway import catalogue, health, problems, session_routes, stills, stone_routes, upload_routes
 from culet.gateway.access_log import AccessLog
 from culet.gateway.admission import Admission
 from culet.gateway.allowance import Allowance
@@ -36,7 +36,7 @@ from culet.version import __version__
 
 log = logging.getLogger(__name__)
 
-PARTS = (stills, session_routes, catalogue, upload_routes, health)
+PARTS = (stills, session_routes, stone_routes, catalogue, upload_routes, health)
 DOCS_FOLDER = Path(__file__).with_name("docs")
 NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
 <h1>culet runs without its page</h1>

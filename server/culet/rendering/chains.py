@@ -115,13 +115,13 @@ def _chains(scene: Scene, stone: StoneSettings, sample: int, real: Real, common:
     table = np.zeros(len(spectrum.wavelength), struct("chain_t", real))
     table["eta"] = material.index(spectrum.wavelength, clamp=True)
     own = material.absorption_per_mm(spectrum.wavelength) * scene.millimetres
-    table["absorption"] = scale * (own + _asked(stone, spectrum.wavelength))
+    table["absorption"] = scale * (own + asked_absorption(stone, spectrum.wavelength))
     table["share"] = spectrum.weights
     table["summed_share"] = abs(spectrum.weights).sum(axis=1)
     return table
 
 
-def _asked(stone: StoneSettings, wavelength: NDArray[np.float64]) -> NDArray[np.float64]:
+def asked_absorption(stone: StoneSettings, wavelength: NDArray[np.float64]) -> NDArray[np.float64]:
     """The scene's three coefficients over wavelength, per R: linear between the lines that stand for the channels."""
     red, green, blue = stone.absorption
     return np.interp(wavelength, (435.8, 546.1, 656.3), (blue, green, red))

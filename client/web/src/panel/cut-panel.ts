@@ -4,14 +4,22 @@ import { Choice } from "../controls/choice";
 import { Command } from "../controls/command";
 import type { Section } from "../controls/section";
 import { type Clamped, Slider } from "../controls/slider";
+import { text } from "../json";
 import type { CutKind } from "../session/catalogue";
 import type { ViewState } from "../session/view-state";
-import { hasStone, stonePatch } from "../stones/stones";
+import { hasStone, stoneOf, stonePatch } from "../stones/stones";
 import { words } from "../words/words";
 import { cutName, cutOf, cutPatch, type Proportion, proportionsOf, shapeName, shapePatch } from "./cut";
 import { LiveControls } from "./live-controls";
 
 type Send = (patch: Record<string, unknown>) => void;
+
+export interface CutActions {
+  patch: Send;
+  clamped: Clamped;
+  openDiagram: (stone: string) => void;
+}
+
 type Values = Record<string, number>;
 
 /** The sliders of one cut. */
@@ -47,7 +55,7 @@ export class CutPanel {
   private readonly place: HTMLElement;
   private scene: ViewState["scene"] = null;
 
-  constructor(section: Section, send: Send, clamped: Clamped) {
+  constructor(section: Section, { patch: send, clamped, openDiagram }: CutActions) {
     this.section = section.show(false);
     this.send = send;
     this.clamped = clamped;
@@ -59,6 +67,7 @@ export class CutPanel {
     this.place = section.add({ element: document.createElement("div") }).element;
     const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene) }));
     this.usual = section.add(new Command(words.cut.usual, reset));
+    section.add(new Command(words.grades.diagram, () => openDiagram(text(stoneOf(this.scene).id, ""))));
   }
 
   update({ scene }: ViewState): void {

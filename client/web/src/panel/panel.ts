@@ -20,6 +20,7 @@ import { ChoicePanel } from "./choice-panel";
 import { CutPanel } from "./cut-panel";
 import { EditButtons } from "./edit-buttons";
 import { FallPanel } from "./fall-panel";
+import { type Ask, GradePanel } from "./grade-panel";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { SurfacePanel } from "./surface-panel";
 import { TiltControl } from "./tilt-control";
@@ -36,6 +37,10 @@ export interface PanelActions {
   openSky: () => void;
   patch: (patch: Record<string, unknown>) => void;
   newSession: () => void;
+  /** Ask for a stone's grades. */
+  grades: Ask;
+  /** Show a stone's cutting diagram. */
+  openDiagram: (stone: string) => void;
   /** A number was typed that is beyond a slider's ends. */
   clamped: (typed: number, taken: number) => void;
 }
@@ -52,6 +57,7 @@ export class Panel {
   private readonly edits: EditButtons;
   private readonly stones: StonePanel;
   private readonly cut: CutPanel;
+  private readonly grades: GradePanel;
   private readonly surfaces: SurfacePanel;
   private readonly tilt: TiltControl;
   private readonly actions: PanelActions;
@@ -73,6 +79,7 @@ export class Panel {
     const files = root.section(said.files);
     const move = root.section(said.move);
     const cut = root.section(said.cut).fold(true);
+    const grades = root.section(words.grades.title).fold(true);
     const fall = root.section(said.fall).fold(true);
     const surfaces = root.section(said.surfaces).fold(true);
     const optics = root.section(said.optics).fold(true);
@@ -88,7 +95,8 @@ export class Panel {
     this.surfaces = new SurfacePanel(surroundings, surfaces, actions.patch, actions.clamped);
     this.target = this.addMoves(move);
     this.tilt = new TiltControl(move, actions.patch, actions.clamped);
-    this.cut = new CutPanel(cut, actions.patch, actions.clamped);
+    this.cut = new CutPanel(cut, actions);
+    this.grades = new GradePanel(grades, actions.grades);
     this.fall = new FallPanel(fall, actions.patch, actions.clamped);
     this.addFiles(files);
     this.addButton(page, actionNamed("keys"));
@@ -114,6 +122,7 @@ export class Panel {
     const chosen = { ...state, scene: withFirst(state.scene, state.stone) };
     this.fall.update(chosen);
     this.cut.update(chosen);
+    this.grades.update(chosen);
     this.choices.update(chosen);
     this.surfaces.update(chosen);
   }

@@ -132,6 +132,17 @@ export function integrators(): Promise<Titled[]> {
   return catalogue("integrators");
 }
 
+/** The grades of a session's stone; with `tilt` its tilt curves too. */
+export async function grades(session: string, stone: string, tilt: boolean, signal: AbortSignal): Promise<JsonObject> {
+  const query = new URLSearchParams({ stone, tilt: String(tilt), error: "0.2" });
+  return object(await (await request(`/api/sessions/${session}/grade?${query}`, { signal })).json());
+}
+
+/** Address of the cutting diagram of a session's stone. */
+export function diagramAddress(session: string, stone: string): string {
+  return `/api/sessions/${session}/diagram.svg?${new URLSearchParams({ stone })}`;
+}
+
 async function upload(path: string, file: File): Promise<JsonObject> {
   const body = new FormData();
   body.append("file", file);

@@ -233,6 +233,34 @@ export const cut = {
   },
 };
 
+/** The stone's grades: docs/reference/grading.md defines each. */
+export const grades = {
+  title: "Grades",
+  tilt: "Tilt curves",
+  diagram: "Cutting diagram",
+  degrees: "Tilt, \u00b0",
+  /** Of the tilt curves: what the stone turns about. */
+  axes: ["ISO, about its length", "about its width"],
+  size: (millimetres: string, carats: string) => `${millimetres} mm, ${carats} ct`,
+  sure: (meaning: string, error: string, bound: string) =>
+    `${meaning}. Standard error ${error}, cut off at most ${bound}`,
+  /** Name, and what it is. */
+  lines: {
+    iso: ["Brightness, ISO", "Of an even dome, dark where your head is"],
+    cos: ["Brightness, COS", "Of a dome that is brightest above"],
+    sc2: ["Brightness, SC2", "Of a dome that is brightest at 45\u00b0"],
+    contrast: ["Contrast", "Standard deviation of the brightness over the stone"],
+    fire: ["Fire", "Light whose blue and red come from directions that an eye tells apart"],
+    window: ["Window", "Light that goes straight through: what lies below is seen"],
+    extinction: ["Extinction", "Area that is darker than a tenth of the dome"],
+    leak: ["Leak", "Light from below the horizon"],
+    red: ["From above (ASET red)", "Light from 45\u00b0 to 75\u00b0 of elevation"],
+    green: ["From aside (ASET green)", "Light from below 45\u00b0 of elevation"],
+    blue: ["From the head (ASET blue)", "Light from over 75\u00b0 of elevation"],
+    weightedLightReturn: ["Weighted light return", "GIA's, a part of 1"],
+  } satisfies Record<string, Named>,
+};
+
 /** The sliders of the fall: label, and what it means. */
 export const fall = {
   height: ["Drop height, R", "From the floor to the bounding sphere"],

@@ -21,6 +21,7 @@ from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
 from culet.engine.process.still_requests import StillRequests
+from culet.engine.process.stone_requests import StoneRequests
 from culet.engine.session import events, questions
 from culet.errors import InputError
 from culet.optics.sky_files.picture import SkyPicture
@@ -80,6 +81,7 @@ class Requests:
         self._library = Library(self._meshes, self._skies)
         self.sessions = OpenSessions(painter, limits, memory, self._library)
         self._stills = StillRequests(painter, stills, self.sessions, self._library, limits, memory)
+        self._stones = StoneRequests(self.sessions, self._library)
         self._question_thread = ThreadPoolExecutor(1, "questions")
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)
@@ -110,6 +112,10 @@ class Requests:
                 return self._demand(request), None
             case protocol.Render():
                 return await self._stills.render(request)
+            case protocol.Grade():
+                return await self._stones.grade(request), None
+            case protocol.DrawDiagram():
+                return {}, await self._stones.diagram(request)
             case protocol.PutMesh():
                 return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
             case protocol.PutSky():

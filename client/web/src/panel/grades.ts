@@ -1,0 +1,71 @@
+/** A stone's grades, as the server tells them. */
+
+import type { JsonObject } from "@culet/protocol/messages";
+import { list, number, object, part, text } from "../json";
+import { stoneOf } from "../stones/stones";
+import { words } from "../words/words";
+
+/** A line of the table: what, how much, and how sure that is. */
+export interface GradeLine {
+  name: string;
+  value: string;
+  hint: string;
+}
+
+/** Points of a curve: degrees, and ISO brightness about each axis. */
+export type TiltColumns = [number[], number[], number[]];
+
+export interface Report {
+  /** "9.10 x 6.50 x 4.02 mm, 1.53 ct" */
+  size: string;
+  lines: GradeLine[];
+  tilt: TiltColumns | null;
+}
+
+type GradeName = keyof typeof words.grades.lines;
+
+const SHARES: readonly GradeName[] = ["leak", "red", "green", "blue"];
+const OWN: readonly GradeName[] = ["iso", "cos", "sc2", "contrast", "fire", "window", "extinction"];
+
+/** What the answer of a request for grades says. */
+export function reportOf(answer: JsonObject): Report {
+  const grades = part(answer, "grades");
+  const shares = part(grades, "shares");
+  const lines = [
+    ...OWN.map((name) => line(name, object(grades[name]), 1)),
+    ...SHARES.map((name) => line(name, object(shares[name]), 1)),
+  ];
+  if (answer.weighted_light_return) lines.push(line("weightedLightReturn", object(answer.weighted_light_return), 3));
+  return { size: sizeOf(part(answer, "size")), lines, tilt: tiltOf(part(answer, "tilt")) };
+}
+
+function line(name: GradeName, said: JsonObject, decimals: number): GradeLine {
+  const [label, meaning] = words.grades.lines[name];
+  const value = number(said.value, Number.NaN).toFixed(decimals);
+  const error = number(said.error, Number.NaN).toFixed(decimals + 1);
+  const bound = number(said.bound, 0).toFixed(decimals + 1);
+  return { name: label, value: decimals === 1 ? `${value} %` : value, hint: words.grades.sure(meaning, error, bound) };
+}
+
+function sizeOf(size: JsonObject): string {
+  const [length, width, depth] = [size.length, size.width, size.depth].map((side) => number(side, 0).toFixed(2));
+  return words.grades.size(
+    `${length} \u00d7 ${width} \u00d7 ${depth}`,
+    String(Number(number(size.carats, 0).toPrecision(3))),
+  );
+}
+
+function tiltOf(tilt: JsonObject): TiltColumns | null {
+  const [x, z] = [list(tilt.x), list(tilt.z)];
+  if (x.length === 0 || x.length !== z.length) return null;
+  const iso = (points: JsonObject[]) => points.map((point) => number(part(point, "iso").value, 0));
+  return [x.map(({ degrees }) => number(degrees, 0)), iso(x), iso(z)];
+}
+
+/** What of the scene grades depend on: the same text means the same grades. */
+export function gradedBy(scene: JsonObject | null): string {
+  const { id, cut, mesh, material, scale, density, mass } = stoneOf(scene);
+  return id === undefined
+    ? ""
+    : JSON.stringify([text(id, ""), cut, mesh, material, scale, density, mass, scene?.millimetres]);
+}

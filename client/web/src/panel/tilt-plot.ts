@@ -1,0 +1,28 @@
+/** ISO brightness as the stone tilts about either axis. Loaded when it is first asked for. */
+
+import uPlot from "uplot";
+import "../../node_modules/uplot/dist/uPlot.min.css"; // a style sheet of our own origin
+import { words } from "../words/words";
+import type { TiltColumns } from "./grades";
+
+const HEIGHT = 150;
+const QUIET = "#a4adbd";
+const LINE = "rgb(164 173 189 / 14%)";
+const FONT = "11px system-ui, sans-serif";
+/** Apart from each other to colour-blind eyes too. */
+const COLOURS = ["#e0be62", "#6f9bf5"] as const;
+
+export function plotTilt(container: HTMLElement, columns: TiltColumns, width: number): void {
+  const axis = { stroke: QUIET, font: FONT, grid: { stroke: LINE, width: 1 }, ticks: { stroke: LINE, width: 1 } };
+  const series = words.grades.axes.map((label, index) => ({ label, stroke: COLOURS[index] ?? QUIET, width: 1.5 }));
+  const options: uPlot.Options = {
+    width,
+    height: HEIGHT,
+    scales: { x: { time: false }, y: { range: [0, 100] } },
+    series: [{ label: words.grades.degrees }, ...series],
+    axes: [axis, { ...axis, size: 32 }],
+    cursor: { drag: { x: false, y: false } },
+  };
+  container.replaceChildren();
+  new uPlot(options, columns, container);
+}

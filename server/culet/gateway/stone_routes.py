@@ -1,0 +1,101 @@
+"""What is asked about one stone of a scene or of a session: its grades, its cutting diagram."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import Field, TypeAdapter
+
+from culet.gateway.client_address import client_of
+from culet.gateway.departure import while_waited_for
+from culet.gateway.parts import ThisGateway
+from culet.gateway.problems import answers
+from culet.grading.answer import Report
+from culet.grading.rules import Convention
+from culet.scene import Scene
+from culet.scene.fields import Model
+from culet_protocol.engine import DrawDiagram, Grade
+
+router = APIRouter(tags=["stones"])
+
+SVG = "image/svg+xml"
+REPORT: TypeAdapter[Report] = TypeAdapter(Report)
+_DRAWING: dict[int | str, dict[str, Any]] = {200: {"content": {SVG: {"schema": {"type": "string"}}}}}
+
+StoneName = Annotated[str, Field(max_length=32, description="Id of the stone; without one the first.")]
+HeadDegrees = Annotated[float, Field(ge=0, le=90, description="Half the angle of the viewer's head; 10.")]
+
+
+class GradeQuery(Model):
+    """How to grade."""
+
+    stone: StoneName | None = None
+    convention: Annotated[
+        Convention, Field(description="By whose rules: `gemray` follows ten facets alone, as that program does.")
+    ] = "culet"
+    head_degrees: (
+        Annotated[float, Field(ge=0, le=90, description="Half the angle of the viewer's head; 10.")] | None
+    ) = None
+    coloured: Annotated[bool, Field(description="Count what the material absorbs at 589.3 nm.")] = False
+    tilt: Annotated[bool, Field(description="Tilt curves about both axes too.")] = False
+    error: Annotated[float, Field(ge=0.03, le=10, description="Points: twice the standard error of ISO.")] = 0.1
+
+
+class GradeRequest(GradeQuery):
+    """A stone of a scene."""
+
+    scene: Scene = Scene()
+
+
+class DiagramRequest(Model):
+    """A stone of a scene."""
+
+    scene: Scene = Scene()
+    stone: StoneName | None = None
+
+
+@router.post("/api/grade", responses=answers(413, 422, 429, 503))
+async def grade(http: Request, request: GradeRequest, gateway: ThisGateway) -> Report:
+    """Grade a stone of a scene: brightness, leak, contrast, fire, each number with its error."""
+    scene = request.scene.model_dump(mode="json")
+    return await _graded(http, gateway, Grade(scene=scene, **request.model_dump(exclude={"scene"})))
+
+
+@router.get("/api/sessions/{session_id}/grade", responses=answers(404, 422, 429, 503))
+async def grade_session(
+    http: Request, session_id: str, query: Annotated[GradeQuery, Query()], gateway: ThisGateway
+) -> Report:
+    """Grade a stone of what a session shows."""
+    session = gateway.sessions.get(session_id)
+    return await _graded(http, gateway, Grade(session=session.id, **query.model_dump()))
+
+
+@router.post("/api/design/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(413, 422, 429, 503)})
+async def diagram(http: Request, request: DiagramRequest, gateway: ThisGateway) -> Response:
+    """The cutting diagram of a stone of a scene, to be printed on a page."""
+    scene = request.scene.model_dump(mode="json")
+    return await _drawn(http, gateway, DrawDiagram(scene=scene, stone=request.stone))
+
+
+@router.get(
+    "/api/sessions/{session_id}/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(404, 422, 503)}
+)
+async def diagram_of_session(
+    http: Request, session_id: str, gateway: ThisGateway, stone: StoneName | None = None
+) -> Response:
+    """The cutting diagram of a stone of what a session shows."""
+    session = gateway.sessions.get(session_id)
+    return await _drawn(http, gateway, DrawDiagram(session=session.id, stone=stone))
+
+
+async def _graded(http: Request, gateway: ThisGateway, message: Grade) -> Report:
+    with gateway.stills.place(client_of(http.scope)):
+        result, _ = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+    return REPORT.validate_python(result)
+
+
+async def _drawn(http: Request, gateway: ThisGateway, message: DrawDiagram) -> Response:
+    with gateway.stills.place(client_of(http.scope)):
+        _, drawing = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+    return Response(bytes(drawing), media_type=SVG)

@@ -1,0 +1,65 @@
+"""Grades and cutting diagrams by REST, of scenes and of sessions."""
+
+from __future__ import annotations
+
+import pytest
+from defusedxml import ElementTree
+
+from gateway.running import Gateway
+from gateway.test_rest import assert_problem
+
+OVAL = {"millimetres": 5, "stones": [{"id": "a"}, {"id": "b", "cut": "oval", "position": [4, 0, 0]}]}
+
+
+async def test_a_stone_of_a_scene_is_graded(gateway: Gateway) -> None:
+    asked = {"scene": OVAL, "stone": "b", "convention": "gemray", "head_degrees": 15, "error": 1}
+    answer = await gateway.http.post("/api/grade", json=asked)
+    assert answer.status_code == 200, answer.text
+    report = answer.json()
+    assert report["stone"] == "b"
+    assert report["rules"] == {"head_degrees": 15, "glare": "crown", "bounces": 9, "cutoff": 1e-3}
+    assert 40 < report["grades"]["iso"]["value"] < 90
+    assert 0 < 2 * report["grades"]["iso"]["error"] < 1
+    assert report["grades"]["iso"]["bound"] > 1
+    assert report["size"]["length"] / report["size"]["width"] == pytest.approx(1.4)
+    assert report["size"]["length"] == pytest.approx(10, rel=0.02)  # R is 5 mm
+    assert report["tilt"] is None
+    assert report["done"] == 1
+
+
+async def test_a_session_tells_grades_and_draws_the_diagram_of_what_it_shows(gateway: Gateway) -> None:
+    session = (await gateway.http.post("/api/sessions", json={"scene": OVAL})).json()["id"]
+    answer = await gateway.http.get(f"/api/sessions/{session}/grade", params={"error": 1, "tilt": True})
+    assert answer.status_code == 200, answer.text
+    report = answer.json()
+    assert report["stone"] == "a"
+    assert [point["degrees"] for point in report["tilt"]["x"]] == list(range(-90, 91, 5))
+    drawing = await gateway.http.get(f"/api/sessions/{session}/diagram.svg", params={"stone": "b"})
+    assert drawing.headers["content-type"].startswith("image/svg+xml")
+    words = "".join(ElementTree.fromstring(drawing.text).itertext())
+    assert "Oval" in words
+    assert "mm, " in words
+    assert " ct at 3.5" in words
+    await gateway.http.delete(f"/api/sessions/{session}")
+
+
+async def test_a_stone_of_a_scene_has_a_diagram(gateway: Gateway) -> None:
+    scene = {"stones": [{"cut": {"name": "princess", "chevrons": 4}}]}
+    drawing = await gateway.http.post("/api/design/diagram.svg", json={"scene": scene})
+    assert drawing.status_code == 200, drawing.text
+    assert "chevron" in "".join(ElementTree.fromstring(drawing.text).itertext())
+
+
+async def test_what_cannot_be_graded_or_drawn_is_a_problem(gateway: Gateway) -> None:
+    post = gateway.http.post
+    assert_problem(await post("/api/grade", json={"stone": "x"}), 422, "stone")
+    assert_problem(await post("/api/grade", json={"scene": {"stones": []}}), 422, "stone")
+    assert_problem(await post("/api/grade", json={"error": 0}), 422, "error")
+    assert_problem(await post("/api/grade", json={"convention": "agl"}), 422, "convention")
+    heart = {"scene": {"stones": [{"cut": "heart"}]}}
+    assert_problem(await post("/api/grade", json=heart), 422)
+    assert_problem(await post("/api/design/diagram.svg", json=heart), 422)
+    flat = {"scene": {"stones": [{"cut": {"name": "trillion", "table_percent": 88}}]}}
+    assert_problem(await post("/api/design/diagram.svg", json=flat), 422, "stones.0.cut.table_percent")
+    assert_problem(await gateway.http.get("/api/sessions/nobody/grade"), 404)
+    assert_problem(await gateway.http.get("/api/sessions/nobody/diagram.svg"), 404)
