@@ -54,15 +54,16 @@ static inline vec3L uniform3(real4 v) { return vec3(splat(v.x), splat(v.y), spla
 
 static inline realL only(maskL mask, realL value) { return blend(mask, value, splat(0)); }
 
-static inline real sum_lanes(realL value) {
-  real lanes[LANES], sum = 0;
+static inline double sum_lanes(realL value) {
+  real lanes[LANES];
+  double sum = 0;
   store_lanes(value, lanes);
   for (int k = 0; k < LANES; k++) sum += lanes[k];
   return sum;
 }
 
 // By degrees of elevation: angles to the dome's axis of so many lanes' light.
-static inline void note_elevations(real *sums, realL cosine, realL light, maskL mask) {
+static inline void note_elevations(double *sums, realL cosine, realL light, maskL mask) {
   real elevation[LANES], amount[LANES];
   store_lanes((real)90 - TO_DEGREES * acos(clamp(cosine, (realL)-1, (realL)1)), elevation);
   store_lanes(only(mask, light), amount);
@@ -152,7 +153,7 @@ static inline chainsL refracted(vec3L point, vec3L direction, vec3L normal, real
 __kernel void grade(__global const real4 *facets, int count, __global const real4 *row_table,
                     __constant const int *ends, __global const real4 *views, int items_of_view,
                     __global const uint *shifts, int packets, real eta, real eta_blue, real eta_red, real absorption,
-                    real cutoff, int bounces, real threshold, int kind, __global real *result) {
+                    real cutoff, int bounces, real threshold, int kind, __global double *result) {
   const int item = get_global_id(0);
   __global const real4 *view = views + VIEW * (item / items_of_view);
   const real4 right = view[0], up = view[1], toward = view[2];
@@ -160,7 +161,7 @@ __kernel void grade(__global const real4 *facets, int count, __global const real
   const domeL dome = {uniform3(view[3]), uniform3(view[4]), splat(view[4].w)};
   const vec3L direction = scale3(splat(-1), uniform3(toward));
   realL sums[ELEVATIONS];
-  real numbers[GRADE_NUMBERS];
+  double numbers[GRADE_NUMBERS]; // all of a plate's light is of one elevation, which single precision could not add up
   EACH (k, ELEVATIONS) sums[k] = splat(0);
   for (int k = 0; k < GRADE_NUMBERS; k++) numbers[k] = 0;
   for (int packet = 0; packet < packets; packet++) {
@@ -190,7 +191,9 @@ __kernel void grade(__global const real4 *facets, int count, __global const real
       take_from_dome(dome, sums, &own, reflect3(direction, -cos_a, entry.normal), mirrored,
                      kind & EVERY_GLARE ? counted : counted & crown);
     for (int bounce = 0; bounce < bounces && any_lane(chains.alive); bounce++) {
+      const chainsL before = chains;
       const exitL exit = follow(&chains, rows, (chainL)(eta), splat(absorption), &sums[ABSORBED]);
+      sums[LOST] += only(before.alive & !chains.alive, before.weight); // rounding put them past an edge
       const realL cosine = dot3(exit.direction, dome.axis);
       maskL leaves = exit.leaves;
       if (kind & CROWN_ALONE) leaves = leaves & (dot3(exit.normal, dome.up) > (real)1e-6);

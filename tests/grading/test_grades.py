@@ -146,7 +146,7 @@ def test_a_prism_parts_two_wavelengths_by_snells_law(light: LightSums) -> None:
     parted = out(1.53) - out(1.51)
     assert found[KERNEL["SPREAD"]] / found[KERNEL["RETURNED"]] == pytest.approx(parted, rel=2e-3)  # measured 2e-4
     assert parted < FIRE_DEGREES
-    assert found[KERNEL["FIRE"]] == 0
+    assert found[KERNEL["FIRE"]] < 2e-3 * found[KERNEL["RETURNED"]]  # where one meets a side; measured 8e-4
 
 
 def test_light_return_has_the_shape_that_gia_published(light: LightSums) -> None:

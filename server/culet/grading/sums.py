@@ -82,7 +82,7 @@ class LightSums:
         items = len(views) * batches
         packets = math.ceil(rays / self._variant.lanes)
         shifts = np.random.default_rng(seed).integers(0, 2**32, (items, 2), np.uint32)
-        result = np.zeros((items, NUMBERS), real)
+        result = np.zeros((items, NUMBERS))
         kind = {"all": KERNEL["EVERY_GLARE"], "crown": KERNEL["CROWN_GLARE"], "none": 0}[rules.glare]
         kind |= KERNEL["CROWN_ALONE"] * crown_alone | KERNEL["WITH_FIRE"] * fire
         context, queue = self._device.context, self._device.queue
@@ -101,7 +101,7 @@ class LightSums:
             found,
         )  # fmt: skip
         cl.enqueue_copy(queue, result, found)
-        return result.reshape(len(views), batches, NUMBERS).astype(np.float64)
+        return result.reshape(len(views), batches, NUMBERS)
 
     @staticmethod
     def _view(shape: Shape, view: View, rules: Rules) -> Array:
