@@ -83,7 +83,7 @@ def test_a_diagram_has_every_facet_tier_and_index_within_its_page(name: str) -> 
         assert 0 < float(text.attrib["y"]) < height
     words = " ".join(page.itertext()).split()
     for tier in given.tiers:
-        assert tier.name[:12] in words or not tier.name
+        assert tier.name[:18] in words or not tier.name
         if tier.angle > 0:
             assert all(f"{facet.index:g}" in words for facet in tier.facets)
 

@@ -15,14 +15,22 @@ const COLOURS = ["#e0be62", "#6f9bf5"] as const;
 export function plotTilt(container: HTMLElement, columns: TiltColumns, width: number): void {
   const axis = { stroke: QUIET, font: FONT, grid: { stroke: LINE, width: 1 }, ticks: { stroke: LINE, width: 1 } };
   const series = words.grades.axes.map((label, index) => ({ label, stroke: COLOURS[index] ?? QUIET, width: 1.5 }));
+  const legend = document.createElement("p");
+  for (const { label, stroke } of series) {
+    const name = document.createElement("span");
+    name.textContent = label;
+    name.style.setProperty("--colour", stroke);
+    legend.append(name, " ");
+  }
   const options: uPlot.Options = {
     width,
     height: HEIGHT,
     scales: { x: { time: false }, y: { range: [0, 100] } },
     series: [{ label: words.grades.degrees }, ...series],
-    axes: [axis, { ...axis, size: 32 }],
+    axes: [axis, { ...axis, size: 40 }],
+    legend: { show: false },
     cursor: { drag: { x: false, y: false } },
   };
-  container.replaceChildren();
+  container.replaceChildren(legend);
   new uPlot(options, columns, container);
 }

@@ -240,7 +240,7 @@ export const grades = {
   diagram: "Cutting diagram",
   degrees: "Tilt, \u00b0",
   /** Of the tilt curves: what the stone turns about. */
-  axes: ["ISO, about its length", "about its width"],
+  axes: ["ISO, about its length", "ISO, about its width"],
   size: (millimetres: string, carats: string) => `${millimetres} mm, ${carats} ct`,
   sure: (meaning: string, error: string, bound: string) =>
     `${meaning}. Standard error ${error}, cut off at most ${bound}`,

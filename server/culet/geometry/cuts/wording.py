@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import textwrap
+
 from culet.geometry.shape import Shape
 from culet.scene.cuts import TITLES, AnyCut, proportions
 from culet.scene.stone import StoneSettings
+
+LINE = 90
+"""Characters of a diagram's heading."""
 
 
 def headings_of(stone: StoneSettings, shape: Shape) -> list[str]:
@@ -17,4 +22,4 @@ def headings_of(stone: StoneSettings, shape: Shape) -> list[str]:
 def cut_headings(cut: AnyCut) -> list[str]:
     """Title and proportions."""
     said = (f"{name.replace('_', ' ')} {value:g}" for name, value in cut.model_dump(exclude={"name"}).items())
-    return [TITLES[cut.name], ", ".join(said)]
+    return [TITLES[cut.name], *textwrap.wrap(", ".join(said), LINE)]

@@ -32,15 +32,15 @@ LETTER = 0.6
 MOST_TICKS = 120
 LABELS = 16
 """Of an index wheel, at most."""
-COLUMNS = (MARGIN, MARGIN + 9, MARGIN + 34, MARGIN + 56)
+COLUMNS = (MARGIN, MARGIN + 9, MARGIN + 45, MARGIN + 65)
 """Of the table; mm from the left."""
 TITLES = ("tier", "name", "angle", "indices and notes")
 
-STYLE = (
-    "text{font-family:'DejaVu Sans Mono','Liberation Mono',Consolas,monospace;fill:#000}"
-    "polygon{fill:#fff;stroke:#000;stroke-width:.25;stroke-linejoin:round}"
-    "line{stroke:#000;stroke-width:.2}.label{text-anchor:middle;dominant-baseline:central}"
-)
+FONT = "DejaVu Sans Mono,Liberation Mono,Consolas,monospace"
+FACE = 'fill="#fff" stroke="#000" stroke-width=".25" stroke-linejoin="round"'
+TICK = 'stroke="#000" stroke-width=".2"'
+LABEL = 'class="label" text-anchor="middle" dominant-baseline="central"'
+"""Attributes, not a style sheet: a page whose policy forbids styles of its own shows the drawing too."""
 
 
 def diagram_of(solid: Solid) -> str:
@@ -72,7 +72,7 @@ def diagram_of(solid: Solid) -> str:
     y += (len(lines) + 2) // 3 * ROW + 2
     parts += [_text(x, y + ROW, title) for x, title in zip(COLUMNS, TITLES, strict=True)]
     y += ROW + 1.2
-    parts.append(f'<line x1="{MARGIN}" y1="{_short(y)}" x2="{WIDTH - MARGIN}" y2="{_short(y)}"/>')
+    parts.append(f'<line x1="{MARGIN}" y1="{_short(y)}" x2="{WIDTH - MARGIN}" y2="{_short(y)}" {TICK}/>')
     for number, tier in enumerate(design.tiers, 1):
         rows, y = _row(number, tier, y)
         parts += rows
@@ -81,11 +81,12 @@ def diagram_of(solid: Solid) -> str:
             parts.append(_text(MARGIN, y + ROW, line))
             y += ROW
     height = max(HEIGHT, y + MARGIN)
-    return (
+    head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH:g}mm" height="{HEIGHT:g}mm" '
-        f'viewBox="0 0 {WIDTH:g} {_short(height)}"><title>{escape(design.title or "Design")}</title>'
-        f'<style>{STYLE}</style><rect width="100%" height="100%" fill="#fff"/>\n' + "\n".join([*parts, "</svg>", ""])
+        f'viewBox="0 0 {WIDTH:g} {_short(height)}" font-family="{FONT}">'
+        f'<title>{escape(design.title or "Design")}</title><rect width="100%" height="100%" fill="#fff"/>'
     )
+    return "\n".join([head, *parts, "</svg>", ""])
 
 
 def _view(solid: Solid, outline: Outline, side: Side, middle: tuple[float, float], scale: float) -> Iterator[str]:
@@ -99,7 +100,7 @@ def _view(solid: Solid, outline: Outline, side: Side, middle: tuple[float, float
     for face in faces:
         placed = ((face.corners - centre) * scale).tolist()
         points = " ".join(f"{_short(middle[0] + x)},{_short(middle[1] - y)}" for x, y in placed)
-        yield f'<polygon points="{points}"/>'
+        yield f'<polygon points="{points}" {FACE}/>'
     for face in faces:
         yield from _label(face, centre, middle, scale)
     yield "</g>"
@@ -126,7 +127,7 @@ def _wheel(wheel: Wheel, middle: tuple[float, float], radius: float, *, turn: in
         end = radius + (2 if index % label == 0 else 1)
         yield (
             f'<line x1="{_short(middle[0] + radius * x)}" y1="{_short(middle[1] + radius * y)}" '
-            f'x2="{_short(middle[0] + end * x)}" y2="{_short(middle[1] + end * y)}"/>'
+            f'x2="{_short(middle[0] + end * x)}" y2="{_short(middle[1] + end * y)}" {TICK}/>'
         )
         if index % label == 0:
             at = end + 2.4
@@ -149,7 +150,7 @@ def _row(number: int, tier: Tier, y: float) -> tuple[list[str], float]:
     angle = {"table": "table", "girdle": "90.00", "culet": "culet"}.get(tier.side, f"{tier.angle:.2f}")
     words = "  ".join(text for text in (indices_of(tier), tier.notes) if text)
     lines = _lines(words, WIDTH - MARGIN - COLUMNS[3], TEXT) or [""]
-    cells = (str(number), tier.name[:12], ("-" if below and tier.angle else "") + angle)
+    cells = (str(number), tier.name[:18], ("-" if below and tier.angle else "") + angle)
     row = [_text(x, y + ROW, cell) for x, cell in zip(COLUMNS, cells, strict=False)]
     row += [_text(COLUMNS[3], y + ROW * (place + 1), line) for place, line in enumerate(lines) if line]
     return row, y + ROW * len(lines)
@@ -168,7 +169,7 @@ def _lines(text: str, width: float, size: float) -> list[str]:
 
 
 def _text(x: float, y: float, text: str, *, size: float = TEXT, label: bool = False) -> str:
-    kind = ' class="label"' if label else ' xml:space="preserve"'
+    kind = f" {LABEL}" if label else ' xml:space="preserve"'
     return f'<text x="{_short(x)}" y="{_short(y)}" font-size="{_short(size)}"{kind}>{escape(text)}</text>'
 
 
