@@ -24,6 +24,7 @@ from culet_protocol.messages import FASTEST_RATE, Message, Problem, Resize, Sess
 from culet_protocol.watch import watch_id
 
 ZEROMQ = ("tcp", "ipc")
+ONLY_LOOKS = "by a watch id one may look, and not steer: connect by the session's own id"
 
 
 class Connection(ABC):
@@ -78,22 +79,25 @@ def connect(
     scene: dict[str, Any] | None = None,
     preset: str | None = None,
     control: str | None = None,
+    token: str | None = None,
     size: tuple[int, int] | None = None,
     timeout_seconds: float = 10,
 ) -> Connection:
     """Watch a session, and steer it.
 
     Args:
-        url: the server, `http://127.0.0.1:8000`, or a session's page, `http://127.0.0.1:8000/?session=...`: everything
-            travels by WebSocket. Or where an engine publishes frames, `tcp://127.0.0.1:5556` or `ipc://...`: frames
-            travel by ZeroMQ, always the latest.
+        url: the server, `http://127.0.0.1:8000`, or a session's page, `http://127.0.0.1:8000/?session=...` or, for
+            looking alone, `?watch=...`: everything travels by WebSocket. Or where an engine publishes frames,
+            `tcp://127.0.0.1:5556` or `ipc://...`: frames travel by ZeroMQ, always the latest.
         session: the session's id, where `url` does not have it. With neither a new session is made, and forgotten when
             the connection is closed.
-        watch: over ZeroMQ: a session's watch id, by which one may look and not steer.
+        watch: a session's watch id in the place of its id: by that one may look and not steer.
         scene: what a new session shows, JSON as everywhere; without it the default scene.
         preset: what a new session shows instead, by a preset's name; over ZeroMQ only by way of a gateway.
         control: over ZeroMQ: where events go, the engine's own socket (`--control` of `culet engine`) or the gateway's
             address (`http://...`); without it one can only look.
+        token: the server's, where it has one and a new session is to be made. `url` may have it too, `#token=...`, as
+            culet prints it; without either the variable CULET_TOKEN counts.
         size: width and height that pictures should have, pixels, at most.
         timeout_seconds: for whatever is waited for, unless `image` is told otherwise.
 
@@ -105,12 +109,17 @@ def connect(
         raise ClientError("expected a scene or a preset, got both")
     scheme = urlsplit(url).scheme
     if scheme in ZEROMQ:
-        return _OverZeroMq(url, session, watch, scene, preset, control, size, timeout_seconds)
-    if watch is not None or control is not None:
-        name = "watch" if watch is not None else "control"
-        raise ClientError(f"{name}: expected with an engine's frames, such as tcp://127.0.0.1:5556; got {url!r}")
-    named = parse_qs(urlsplit(url).query).get("session", [None])[0]
-    return _OverWebSocket(url, session or named, scene, preset, size, timeout_seconds)
+        token = token or os.environ.get("CULET_TOKEN") or None
+        return _OverZeroMq(url, session, watch, scene, preset, control, token, size, timeout_seconds)
+    if control is not None:
+        raise ClientError(f"control: expected with an engine's frames, such as tcp://127.0.0.1:5556; got {url!r}")
+    if session is not None and watch is not None:
+        raise ClientError("expected a session or its watch id, got both")
+    query, entrance = parse_qs(urlsplit(url).query), parse_qs(urlsplit(url).fragment)
+    if session is None and watch is None:
+        session, watch = query.get("session", [None])[0], query.get("watch", [None])[0]
+    token = token or entrance.get("token", [None])[0] or os.environ.get("CULET_TOKEN") or None
+    return _OverWebSocket(url, session, watch, scene, preset, token, size, timeout_seconds)
 
 
 class _OverWebSocket(Connection):
@@ -118,24 +127,29 @@ class _OverWebSocket(Connection):
         self,
         url: str,
         session: str | None,
+        watch: str | None,
         scene: dict[str, Any] | None,
         preset: str | None,
+        token: str | None,
         size: tuple[int, int] | None,
         timeout_seconds: float,
     ) -> None:
         self.notices = []
         self._timeout = timeout_seconds
-        rest = Rest(url, timeout_seconds)
+        rest = Rest(url, timeout_seconds, token)
         with ExitStack() as opened:
-            self.session: str = session or _made(rest, scene, preset, opened)
-            self._stream = opened.enter_context(
-                ControlStream(rest.server, self.session, timeout_seconds=timeout_seconds)
-            )
+            self.session = session
+            if session is None and watch is None:
+                self.session = _made(rest, scene, preset, opened)
+            named = self.session or watch or ""
+            self._stream = opened.enter_context(ControlStream(rest.server, named, timeout_seconds=timeout_seconds))
             if size is not None:
                 self.send(_resize(size))
             self._opened = opened.pop_all()
 
     def send(self, event: SessionEvent | Resize) -> None:
+        if self.session is None and not isinstance(event, Resize):
+            raise ClientError(ONLY_LOOKS)
         self._stream.send(event)
 
     def image(self, timeout_seconds: float | None = None) -> Image:
@@ -161,6 +175,7 @@ class _OverZeroMq(Connection):
         scene: dict[str, Any] | None,
         preset: str | None,
         control: str | None,
+        token: str | None,
         size: tuple[int, int] | None,
         timeout_seconds: float,
     ) -> None:
@@ -170,7 +185,9 @@ class _OverZeroMq(Connection):
             raise ClientError("expected a session, its watch id, or a control address to make a session by; got none")
         if session is not None and watch is not None:
             raise ClientError("expected a session or its watch id, got both")
-        self._rest = Rest(control, timeout_seconds) if control and urlsplit(control).scheme not in ZEROMQ else None
+        self._rest = (
+            Rest(control, timeout_seconds, token) if control and urlsplit(control).scheme not in ZEROMQ else None
+        )
         self._engine = EngineControl(control, timeout_seconds) if control and self._rest is None else None
         with ExitStack() as opened:
             self.session = session
@@ -184,7 +201,7 @@ class _OverZeroMq(Connection):
 
     def send(self, event: SessionEvent | Resize) -> None:
         if self.session is None:
-            raise ClientError("by a watch id one may look, and not steer: connect by the session's own id")
+            raise ClientError(ONLY_LOOKS)
         if isinstance(event, Resize):
             if self._engine is None:
                 raise ClientError("over ZeroMQ the size is the engine's to be told: connect with its `control` socket")

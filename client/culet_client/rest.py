@@ -16,7 +16,7 @@ from culet_protocol.messages import Message
 class Rest:
     """A gateway's interface."""
 
-    def __init__(self, server: str, timeout_seconds: float) -> None:
+    def __init__(self, server: str, timeout_seconds: float, token: str | None = None) -> None:
         """The gateway at an address such as `http://127.0.0.1:8000`; ClientError for one that is none."""
         parts = urlsplit(server)
         scheme = {"http": "http", "https": "https", "ws": "http", "wss": "https"}.get(parts.scheme)
@@ -24,6 +24,9 @@ class Rest:
             raise ClientError(f"expected a server such as http://127.0.0.1:8000, got {server!r}")
         self.server = urlunsplit((scheme, parts.netloc, parts.path.rstrip("/"), "", ""))
         self._timeout = timeout_seconds
+        self._headers = {"Content-Type": "application/json"}
+        if token is not None:
+            self._headers["Authorization"] = f"Bearer {token}"
 
     def make_session(self, scene: dict[str, Any] | None, preset: str | None) -> str:
         """The id of a new session that shows a scene, or a preset, or the default scene."""
@@ -66,7 +69,7 @@ class Rest:
     def _answer(self, method: str, path: str, body: dict[str, Any] | None = None) -> bytes:
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(  # noqa: S310 - http or https, as checked above
-            self.server + path, data, {"Content-Type": "application/json"}, method=method
+            self.server + path, data, self._headers, method=method
         )
         try:
             with urllib.request.urlopen(request, timeout=self._timeout) as answer:  # noqa: S310

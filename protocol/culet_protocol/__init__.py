@@ -10,3 +10,6 @@ VERSION = 2
 
 SUBPROTOCOL = f"culet.v{VERSION}"
 """WebSocket subprotocol; a client that asks for another one is refused with a readable reason."""
+
+WATCH_SUBPROTOCOL = "culet.watch."
+"""Before a session's watch id, which a viewer of `/api/stream` offers as a further subprotocol."""

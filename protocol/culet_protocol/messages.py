@@ -284,6 +284,8 @@ class Hello(Message):
     watch: str
     """The watch id, which frames carry."""
     viewer: int
+    steers: bool = True
+    """Whether what this viewer says may change the session. If not, `session` is the watch id too."""
 
 
 class Fall(Message):

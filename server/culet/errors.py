@@ -5,6 +5,7 @@
     │   ├── SceneError          a scene, or a part of one
     │   ├── MeshError           a mesh or a cut that is not a stone
     │   └── TooLargeError       more than a configured limit
+    ├── ForbiddenError          who asks may not do that
     ├── NotFoundError           no such session, mesh or state
     ├── BusyError               a queue or a number of sessions is at its limit
     ├── EngineUnavailableError  the render process does not answer
@@ -51,6 +52,13 @@ class TooLargeError(InputError):
 
     status = 413
     title = "too large"
+
+
+class ForbiddenError(CuletError):
+    """Who asks may not do that; says who may."""
+
+    status = 403
+    title = "forbidden"
 
 
 class NotFoundError(CuletError):

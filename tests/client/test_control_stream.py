@@ -150,11 +150,16 @@ def test_a_connection_by_websocket_shows_what_its_events_make(server: str) -> No
         connection.send(BLUE_SKY)
         image = until_it_shows(connection, [0, 0, 1])
         assert image.pixels.shape == (image.frame.height, image.frame.width, 3) == (36, 64, 3)
+        assert connection.session is not None
         made = f"{server}api/sessions/{connection.session}"
         assert httpx.get(made, timeout=PATIENCE).json()["viewers"] == 1
         with connect(f"{server}?session={connection.session}", timeout_seconds=PATIENCE) as second:
             assert second.session == connection.session
             until_it_shows(second, [0, 0, 1])
+        with connect(f"{server}?watch={watch_id(connection.session)}", timeout_seconds=PATIENCE) as onlooker:
+            until_it_shows(onlooker, [0, 0, 1])
+            with pytest.raises(ClientError, match="one may look, and not steer"):
+                onlooker.send(BLUE_SKY)
         assert httpx.get(made, timeout=PATIENCE).status_code == 200, "who only joined leaves the session alone"
     assert httpx.get(made, timeout=PATIENCE).status_code == 404, "who made it takes it along"
 
@@ -192,7 +197,9 @@ def test_a_refused_event_of_a_connection_by_websocket_is_told_with_the_next_pict
     [
         ("gems", {}, "expected a server such as http"),
         ("http://127.0.0.1:1", {}, "cannot reach http://127.0.0.1:1"),
-        ("http://127.0.0.1:1", {"watch": SESSION}, "watch: expected with an engine's frames"),
+        ("http://127.0.0.1:1", {"control": "ipc:///nowhere"}, "control: expected with an engine's frames"),
+        ("http://127.0.0.1:1", {"watch": SESSION}, "cannot open ws://127.0.0.1:1/"),
+        ("http://127.0.0.1:1", {"watch": SESSION, "session": SESSION}, "got both"),
         ("http://127.0.0.1:1", {"session": SESSION}, "cannot open ws://127.0.0.1:1/"),
         ("http://127.0.0.1:1", {"scene": {}, "preset": "ruby"}, "got both"),
         ("tcp://127.0.0.1:1", {}, "expected a session, its watch id, or a control address"),

@@ -26,14 +26,16 @@ STOPPING = 20.0
 class Server:
     """Engine and gateway on a free port of loopback, for as long as the `with` lasts."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *options: str) -> None:
+        """`options` are further ones of the command."""
+        self._options = options
         self._messages = folder / "serve.log"
         self.url = ""
 
     def __enter__(self) -> Server:
         with self._messages.open("wb") as messages:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "culet", "serve", "--port", "0", *EMBEDDING],
+                [sys.executable, "-m", "culet", "serve", "--port", "0", *EMBEDDING, *self._options],
                 stdout=subprocess.PIPE,
                 stderr=messages,
             )

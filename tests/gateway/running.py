@@ -68,10 +68,17 @@ class Gateway(NamedTuple):
         return {name.removeprefix("culet_engine_"): float(value) for name, value in lines}
 
     @contextlib.asynccontextmanager
-    async def viewer(self, session: str, *, size: Message | None = SIZE, **options: Any) -> AsyncIterator[Viewer]:  # noqa: ANN401
-        """A viewer that has said its size."""
+    async def viewer(
+        self,
+        session: str,
+        *,
+        size: Message | None = SIZE,
+        path: str | None = None,
+        **options: Any,  # noqa: ANN401
+    ) -> AsyncIterator[Viewer]:
+        """A viewer that has said its size; `path` is that of the stream, where the session does not say it."""
         options = {"subprotocols": [Subprotocol(SUBPROTOCOL)], "max_size": None, "compression": None} | options
-        url = self.url.replace("http", "ws", 1) + f"api/sessions/{session}/stream"
+        url = self.url.replace("http", "ws", 1) + (path or f"api/sessions/{session}/stream")
         async with connect(url, **options) as websocket:
             viewer = Viewer(websocket)
             if size is not None:

@@ -254,9 +254,7 @@ async def test_a_message_beyond_any_use_closes_that_viewer_only(gateway: Gateway
     ],
     ids=["foreign page", "other protocol"],
 )
-async def test_a_refused_viewer_is_told_why(
-    gateway: Gateway, options: dict[str, object], code: int, reason: str
-) -> None:
+async def test_a_refused_viewer_is_told_why(gateway: Gateway, options: dict[str, Any], code: int, reason: str) -> None:
     with pytest.raises(ConnectionClosed) as closed:
         async with gateway.viewer(await gateway.session(), size=None, **options) as viewer:
             await viewer.until(lambda: False)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from culet_protocol.messages import Orbit, Resize, ToggleFall
+from culet_protocol.messages import Orbit, ResetStone, Resize, ToggleFall
 from network.shaped_link import Shape, running_link
 from network.watching import Seen, Watcher, new_session, server_at
 
@@ -16,6 +16,8 @@ FAST = Shape(megabits=20, milliseconds=40, kilobytes=200)
 SLOW = Shape(megabits=2, milliseconds=150, kilobytes=100)
 SLOWEST = Shape(megabits=0.24, milliseconds=100, kilobytes=40)
 SIZE = Resize(width=1280, height=720)
+FALL_SECONDS = 5
+"""After which the stone is dropped anew: after 7 it lies still."""
 SETTLED_SECONDS = 3.0
 """After which a stream has to have found to what a link carries."""
 
@@ -71,7 +73,8 @@ def test_stones_that_are_drawn_as_they_are_seen(what: str) -> None:
             watcher.seen(2)
             stretches = []
             for number in range(8 + 12):
-                if what == "falling" and number == 0:
+                if what == "falling" and number % FALL_SECONDS == 0:
+                    watcher.say(ResetStone())
                     watcher.say(ToggleFall())
                 stretch = turned(watcher) if what == "orbiting" else watcher.seen(1)
                 stretches.append(stretch)

@@ -21,7 +21,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 from culet_protocol import SUBPROTOCOL
-from culet_protocol.frame import Flags, Frame
+from culet_protocol.frame import Frame
 from culet_protocol.messages import Ack, Message, Ping, Resize
 from network import namespaces
 from network.shaped_link import SERVER, Link
@@ -44,6 +44,7 @@ class Arrival:
     width: int
     height: int
     moving: bool
+    """One sample of each pixel, as while something moves."""
 
 
 @dataclass
@@ -148,7 +149,7 @@ class Watcher:
                             self._asked_at = None
                         continue
                     frame = Frame.unpack(message)
-                    moving = bool(frame.flags & Flags.MOVING)
+                    moving = frame.samples == 1
                     took = now - frame.timestamp
                     self.arrivals.append(Arrival(now, took, len(message), frame.width, frame.height, moving))
                     await websocket.send(Ack(sequence=frame.sequence).model_dump_json())
@@ -176,7 +177,7 @@ class Watcher:
 def server_at(link: Link, *command: str, frames_of: str | None = None) -> Iterator[None]:
     """A culet command that serves at the near end; with `frames_of` behind a stand-in engine of those endpoints."""
     enter = partial(namespaces.enter, link.server)
-    address = ["--host", SERVER, "--port", str(PORT), "--allow-host", SERVER]
+    address = ["--host", SERVER, "--port", str(PORT), "--allow-host", SERVER, "--no-token"]
     with contextlib.ExitStack() as running:
         if frames_of is not None:
             control, frames = f"ipc://{frames_of}/control", f"ipc://{frames_of}/frames"

@@ -29,8 +29,10 @@ import { SceneStrip } from "./scenes/scene-strip";
 import { Findings } from "./session/findings";
 import { OpenedFiles } from "./session/recovery";
 import * as rest from "./session/rest";
+import { wantedSession } from "./session/session-url";
 import { describeChange, type ViewState } from "./session/view-state";
 import { Visit } from "./session/visit";
+import { ShareCard } from "./share/share-card";
 import { Bareness } from "./signs/bareness";
 import { Complaints, reasonOf } from "./signs/complaints";
 import { Signs } from "./signs/signs";
@@ -139,8 +141,11 @@ const keyCard = new KeyCard(
   element("keys-close", HTMLButtonElement),
 );
 const bareness = new Bareness(element("main", HTMLElement), () => toasts.note(words.connection.comeBack));
-const turntable = new Turntable(matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : embedding.rotate, (turn) =>
-  visit.viewer?.stream.send(turn),
+const turntable = new Turntable(
+  matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : embedding.rotate,
+  (turn) => {
+    if (visit.state.steers) visit.viewer?.stream.send(turn);
+  },
 );
 const clips = new Clips({
   task: (text, button, end) => toasts.task(text, button, end),
@@ -166,9 +171,16 @@ const panel = new Panel(element("panel", HTMLElement), {
   newSession: () => visit.startAnew(),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
+  share: () => attempt(() => share()),
   clamped,
 });
 const strip = new SceneStrip(element("scenes", HTMLElement), element("scenes-toggle", HTMLButtonElement));
+const shareCard = new ShareCard(
+  element("share", HTMLDialogElement),
+  element("share-links", HTMLElement),
+  element("share-close", HTMLButtonElement),
+  (text) => toasts.note(text),
+);
 const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
 const welcome = new Welcome(element("welcome", HTMLElement));
 const delays = new Delays((question) => visit.viewer?.ask(question));
@@ -194,7 +206,9 @@ function clamped(typed: number, taken: number): void {
 /** What the address asks for; the whole page, and words about it, if that cannot be. */
 function embeddingAsked(): Embedding {
   try {
-    return embeddingOf(location.search);
+    const asked = embeddingOf(location.search);
+    // Of a session that is only watched the picture is all that there is to use.
+    return wantedSession(location.search).kind === "watch" ? { ...asked, ui: false } : asked;
   } catch (error) {
     complaints.tell(reasonOf(error));
     return embeddingOf("");
@@ -222,6 +236,12 @@ function show(picture: ImageBitmap, frame: Frame): void {
   shown = frame;
   if (frame.flags & Flag.FINAL) screen.sharpen();
   else if (frame.flags & Flag.MOVING) screen.hurry();
+}
+
+async function share(): Promise<void> {
+  const { session, viewer } = visit;
+  if (session === null || !viewer?.watchId) throw new Error(words.connection.noSessionYet);
+  await shareCard.show({ session, watch: viewer.watchId });
 }
 
 function firstShown(): void {

@@ -89,7 +89,8 @@ def _parameters(title: str, settings: type[Settings]) -> Iterator[tuple[str, ins
         if field.default is not None:
             notes.append(f"default {shown(field.default)}")
         help_text = f"{field.description} ({'; '.join(notes)})"
-        names = [f"{option(name)}/--no-{option(name)[2:]}"] if kind == bool | None else [option(name)]
+        negated = f"/--no-{option(name)[2:]}" if kind == bool | None and not name.startswith("no_") else ""
+        names = [option(name) + negated]
         default = typer.Option(None, *names, metavar=metavar, help=help_text, show_default=False, rich_help_panel=title)
         yield name, inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
 

@@ -31,6 +31,11 @@ def url_of(listening: socket.socket, host: str) -> str:
     return f"http://{shown}:{listening.getsockname()[1]}/"
 
 
+def entrance(url: str, token: str | None) -> str:
+    """The URL by which a browser gets the token, which it keeps to itself: what follows the # is sent nowhere."""
+    return url if token is None else f"{url}#token={token}"
+
+
 def local_url_of(listening: socket.socket, host: str) -> str:
     """Where a browser of this machine finds it: nobody can go to the address that stands for all of them."""
     anywhere = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}  # noqa: S104 - what was asked for

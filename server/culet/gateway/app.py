@@ -15,7 +15,17 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.staticfiles import StaticFiles
 
-from culet.gateway import catalogue, health, problems, session_routes, stills, stone_routes, upload_routes
+from culet.gateway import (
+    catalogue,
+    health,
+    login_routes,
+    problems,
+    session_routes,
+    stills,
+    stone_routes,
+    upload_routes,
+)
+from culet.gateway.access import Access
 from culet.gateway.access_log import AccessLog
 from culet.gateway.admission import Admission
 from culet.gateway.allowance import Allowance
@@ -36,7 +46,7 @@ from culet.version import __version__
 
 log = logging.getLogger(__name__)
 
-PARTS = (stills, session_routes, stone_routes, catalogue, upload_routes, health)
+PARTS = (login_routes, stills, session_routes, stone_routes, catalogue, upload_routes, health)
 DOCS_FOLDER = Path(__file__).with_name("docs")
 NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
 <h1>culet runs without its page</h1>
@@ -84,6 +94,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
 
     # The last one is the first that a request meets.
     app.add_middleware(Methods, routes=[*app.routes, *(route for part in PARTS for route in part.router.routes)])
+    app.add_middleware(Access, settings=settings)
     app.add_middleware(Admission, settings=settings, body_limits=upload_routes.body_limits(settings))
     app.add_middleware(Allowance, clients=app.state.gateway.clients)
     if settings.allow_origin:

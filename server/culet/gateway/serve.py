@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from culet.endpoints import reachable
+from culet.gateway.address import entrance
 from culet.gateway.listener import Listener
-from culet.gateway.settings import settings_of
+from culet.gateway.settings import settings_of, with_token
 
 
 def run_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
@@ -18,17 +19,18 @@ def run_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     engine too, says so at /readyz, and finds it when it comes. Raises InputError for a setting that cannot be used or
     an address that cannot be listened on.
     """
-    settings = settings_of(given, reachable(control), reachable(frames))
+    asked = settings_of(given, reachable(control), reachable(frames))
+    settings = with_token(asked)
     with Listener(settings) as listener:
-        asyncio.run(serve_and_announce(listener))
+        asyncio.run(serve_and_announce(listener, settings.token if asked.token is None else None))
 
 
-async def serve_and_announce(listener: Listener) -> None:
-    """Serve until a stop signal; print the URL once the engine answers."""
+async def serve_and_announce(listener: Listener, token: str | None = None) -> None:
+    """Serve until a stop signal; print the URL, with a token that was made, once the engine answers."""
 
     async def announce() -> None:
         await listener.gateway.link.ready.wait()
-        print(f"culet is ready: {listener.url}", flush=True)
+        print(f"culet is ready: {entrance(listener.url, token)}", flush=True)
 
     announcement = asyncio.create_task(announce())
     try:

@@ -94,7 +94,9 @@ class SessionRecord:
         notice = Snapshot(snapshot=self.snapshot)
         size = len(notice.model_dump_json())
         self.snapshot_told, self.next_snapshot_at = self.snapshot, now + max(1.0, size / SNAPSHOT_BYTES_PER_SECOND)
-        self.tell(notice)
+        for viewer in self.viewers:
+            if viewer.steers:  # who only watches cannot have the session made again
+                viewer.tell(notice)
 
     def state(self) -> State:
         """The notice for viewers, of which each is told what is new to it."""
@@ -106,11 +108,12 @@ class SessionRecord:
             viewer.tell(notice)
 
     def wanted(self, now: float) -> Wanted:
-        """Frames per second that some viewer can take; the size that the one who has watched longest asked for, and
-        the bytes for which that one's link has room."""
+        """Frames per second that some viewer can take; the size that the one who has watched longest asked for, of
+        those who steer if there are any, and the bytes for which that one's link has room."""
         watching = [viewer for viewer in self.viewers if viewer.watches(now)]
         rate = max((viewer.rate(now) for viewer in watching), default=0.0)
         sized = [viewer for viewer in watching if viewer.size]
+        sized = [viewer for viewer in sized if viewer.steers] or sized
         deciding = min(sized or watching, key=lambda viewer: viewer.watching_since, default=None)
         if deciding is None:
             return NO_DEMAND

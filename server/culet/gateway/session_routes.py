@@ -19,6 +19,7 @@ from culet.gateway.state import Gateway
 from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Error, Height, Samples, Width, response_class_of
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
+from culet_protocol import WATCH_SUBPROTOCOL
 from culet_protocol.engine import Format, Render
 from culet_protocol.messages import PatchScene, SessionEvent, StoneMotion
 
@@ -61,8 +62,16 @@ class SessionRequest(Model):
 class SessionAnswer(Model):
     """A session as it is now."""
 
-    id: Annotated[str, Field(description="Whoever knows it may watch and change the session.")]
-    watch: Annotated[str, Field(description="Whoever knows it may look at the session's frames over ZeroMQ, no more.")]
+    id: Annotated[
+        str,
+        Field(
+            description="Whoever knows it may watch and change the session. Of a session that was asked "
+            "for by its watch id, that."
+        ),
+    ]
+    watch: Annotated[
+        str, Field(description="Whoever knows it may watch the session, no more: it takes the id's place.")
+    ]
     scene: Annotated[dict[str, Any], Field(description="With the camera and lights where they are now.")]
     falling: Annotated[bool, Field(description="Whether time goes on for the stones.")]
     asleep: Annotated[bool, Field(description="Whether all stones have come to rest for good.")]
@@ -109,7 +118,7 @@ async def create_session(
         finite(request.snapshot)
         session = await gateway.sessions.reopen(request.id, shown, request.snapshot, client)
     response.headers["Location"] = f"/api/sessions/{session.id}"
-    return _answer(session)
+    return _answer(session, session.id)
 
 
 @router.get("/api/sessions/{session_id}", responses=answers(404, 429, 503))
@@ -118,7 +127,7 @@ async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
     await gateway.sessions.settle(session_id)
     session = gateway.sessions.get(session_id)
     await gateway.sessions.describe(session)
-    return _answer(session)
+    return _answer(session, session_id)
 
 
 @router.get("/api/sessions/{session_id}/scene", responses=answers(404, 422, 429, 503))
@@ -133,7 +142,7 @@ async def get_scene(
     return await gateway.sessions.scene_shown(gateway.sessions.get(session_id), step)
 
 
-@router.patch("/api/sessions/{session_id}", responses=answers(404, 413, 422, 429, 503))
+@router.patch("/api/sessions/{session_id}", responses=answers(403, 404, 413, 422, 429, 503))
 async def patch_session(
     session_id: str,
     patch: Annotated[dict[str, Any], Body(examples=[{"floor": {"kind": "matte"}}])],
@@ -147,14 +156,14 @@ async def patch_session(
     stone, if it has a `cut` or a `mesh`. A list takes the place of all stones.
     """
     finite(patch)
-    session = gateway.sessions.get(session_id)
+    session = gateway.sessions.steered(session_id)
     async with session.room:
         await gateway.sessions.apply(session, PatchScene(patch=patch))
     await gateway.sessions.describe(session)
-    return _answer(session)
+    return _answer(session, session_id)
 
 
-@router.post("/api/sessions/{session_id}/events", responses=answers(404, 413, 422, 429, 503))
+@router.post("/api/sessions/{session_id}/events", responses=answers(403, 404, 413, 422, 429, 503))
 async def post_event(
     session_id: str,
     event: Annotated[SessionEvent, Body(discriminator="type", examples=[{"type": "toggle_fall"}])],
@@ -162,17 +171,17 @@ async def post_event(
 ) -> SessionAnswer:
     """Do to a session what a viewer can do by its stream: let the stone fall, push it, turn the camera, and so on."""
     check_numbers(event)
-    session = gateway.sessions.get(session_id)
+    session = gateway.sessions.steered(session_id)
     async with session.room:
         await gateway.sessions.apply(session, event)
     await gateway.sessions.describe(session)
-    return _answer(session)
+    return _answer(session, session_id)
 
 
-@router.delete("/api/sessions/{session_id}", status_code=204, responses=answers(404, 429, 503))
+@router.delete("/api/sessions/{session_id}", status_code=204, responses=answers(403, 404, 429, 503))
 async def delete_session(session_id: str, gateway: ThisGateway) -> None:
     """Forget a session; its viewers are told."""
-    await gateway.sessions.close(gateway.sessions.get(session_id))
+    await gateway.sessions.close(gateway.sessions.steered(session_id))
 
 
 FRAME = "/api/sessions/{session_id}/frame"
@@ -208,8 +217,16 @@ for _ending, _format in ENDINGS.items():
 
 @router.websocket("/api/sessions/{session_id}/stream")
 async def stream(websocket: WebSocket, session_id: str, gateway: ThisGateway) -> None:
-    """Frames to a viewer, its control events back."""
+    """Frames to a viewer, its control events back; by the session's watch id frames alone."""
     await streaming.stream(websocket, gateway, session_id)
+
+
+@router.websocket("/api/stream")
+async def watched_stream(websocket: WebSocket, gateway: ThisGateway) -> None:
+    """The same of a session whose watch id is one of the subprotocols offered, and so in no log of a proxy."""
+    offered: list[str] = websocket.scope["subprotocols"]
+    named = [name.removeprefix(WATCH_SUBPROTOCOL) for name in offered if name.startswith(WATCH_SUBPROTOCOL)]
+    await streaming.stream(websocket, gateway, named[0] if named else "", only_watches=True)
 
 
 async def _frame(
@@ -236,13 +253,14 @@ async def _frame(
     return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers=headers)
 
 
-def _answer(session: SessionRecord) -> SessionAnswer:
+def _answer(session: SessionRecord, name: str) -> SessionAnswer:
+    """As whoever calls the session by that name, its id or its watch id, may know it."""
     return SessionAnswer(
-        id=session.id,
+        id=name,
         watch=session.topic.hex(),
         scene=session.scene,
         **session.condition.model_dump(),
         findings=session.findings,
         viewers=len(session.viewers),
-        stream=f"/api/sessions/{session.id}/stream",
+        stream=f"/api/sessions/{name}/stream",
     )

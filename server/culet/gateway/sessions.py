@@ -12,7 +12,7 @@ from collections import OrderedDict
 from collections.abc import Iterator
 from typing import Any
 
-from culet.errors import BusyError, CuletError, EngineUnavailableError, NotFoundError
+from culet.errors import BusyError, CuletError, EngineUnavailableError, ForbiddenError, NotFoundError
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.demands import Demands
 from culet.gateway.engine_news import EngineNews
@@ -76,10 +76,21 @@ class Sessions:
         """Viewers of all sessions."""
         return sum(len(session.viewers) for session in self._sessions.values())
 
+    def steered(self, session: str) -> SessionRecord:
+        """As `get`, for somebody who is about to change the session; ForbiddenError if the id is a watch id."""
+        found = self.get(session)
+        if found.id != session:
+            raise ForbiddenError("this link lets watch the session; whoever has its other link changes it")
+        return found
+
+    def _watched_by(self, watch: str) -> SessionRecord | None:
+        """The session of that watch id."""
+        return next((session for session in self._sessions.values() if session.topic.hex() == watch), None)
+
     def get(self, session: str) -> SessionRecord:
-        """The session of that id, which thereby counts as used; NotFoundError, or EngineUnavailableError if this
-        gateway has just been started and does not know yet."""
-        found = self._sessions.get(session)
+        """The session of that id or watch id, which thereby counts as used; NotFoundError, or EngineUnavailableError if
+        this gateway has just been started and does not know yet."""
+        found = self._sessions.get(session) or self._watched_by(session)
         if found is None and not self._knows(session):
             raise EngineUnavailableError("the server has just been started; try again in a moment")
         if found is None:
@@ -89,7 +100,12 @@ class Sessions:
 
     def _knows(self, session: str) -> bool:
         """Whether it is known if there is such a session."""
-        return session in self._sessions or self._news.taken_over.is_set() or SESSION_ID.fullmatch(session) is None
+        return (
+            session in self._sessions
+            or self._watched_by(session) is not None
+            or self._news.taken_over.is_set()
+            or SESSION_ID.fullmatch(session) is None
+        )
 
     async def settle(self, session: str) -> None:
         """Wait until it is known whether there is such a session, but not for long."""
@@ -111,6 +127,8 @@ class Sessions:
         await self.settle(session)
         if session in self._sessions:
             return self.get(session)
+        if self._watched_by(session) is not None:
+            raise ForbiddenError("that is a watch id: the session that it lets watch is there")
         return await self.open(scene, client, session, snapshot)
 
     async def open(
@@ -182,17 +200,17 @@ class Sessions:
                 while self.viewers:  # noqa: ASYNC110 - each leaves by itself
                     await asyncio.sleep(0.01)
 
-    def join(self, session: SessionRecord, client: str = UNKNOWN) -> Viewer:
-        """A new viewer, told who it is and what it sees; BusyError at the limit."""
+    def join(self, session: SessionRecord, client: str = UNKNOWN, *, steers: bool = True) -> Viewer:
+        """A new viewer, who steers or only watches, told who it is and what it sees; BusyError at the limit."""
         limit, strangers = self._settings.max_viewers, sum(one.client != session.owner for one in session.viewers)
         kept = client != session.owner and strangers >= max(1, limit - 1)
         if kept or len(session.viewers) >= limit:
             raise BusyError(f"{len(session.viewers)} viewers watch this session, which is the limit")
-        viewer = Viewer(next(self._viewer_numbers), time.monotonic(), client)
+        viewer = Viewer(next(self._viewer_numbers), time.monotonic(), client, steers=steers)
         session.viewers.append(viewer)
         session.watched = True
         viewer.tell(session.state())
-        if session.snapshot is not None:
+        if session.snapshot is not None and steers:
             viewer.tell(Snapshot(snapshot=session.snapshot))
         viewer.tell(Viewers(count=len(session.viewers)))  # the others are told of many that come and go at once
         if not self._link.ready.is_set():

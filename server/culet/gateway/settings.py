@@ -13,6 +13,7 @@ from pydantic import ByteSize, Field, field_validator
 from culet.errors import InputError
 from culet.gateway.client_address import read_proxies
 from culet.gateway.origins import Hosts, read_origin
+from culet.gateway.server_token import PATTERN, made_for
 from culet.settings import MEBIBYTE, Settings, Words
 
 log = logging.getLogger(__name__)
@@ -30,6 +31,14 @@ class GatewaySettings(Settings):
     frames: str = Field(description="ZeroMQ endpoint of the engine's XPUB.")
     host: str = Field("127.0.0.1", description="Address to listen on; 0.0.0.0 for every one.")
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 for a free one.")
+    token: str | None = Field(
+        None,
+        description="Who has it may do everything here, who has none only what a session's links let do; at least 16 "
+        "letters, digits, - and _. One is made, and printed with the address, if other machines can reach the server.",
+    )
+    no_token: bool = Field(default=False, description="Make no token: whoever reaches the server may do everything.")
+    open_health: bool = Field(default=True, description="Answer /healthz and /readyz without the token.")
+    open_metrics: bool = Field(default=False, description="Answer /metrics without the token.")
     web: Path = Field(BUILT_CLIENT, description="Folder of the built web client, served at /.")
     allow_host: Words = Field(
         (),
@@ -125,6 +134,13 @@ class GatewaySettings(Settings):
         3.5, gt=1, description="Without a heartbeat (one a second) for so long, the engine counts as down."
     )
 
+    @field_validator("token")
+    @classmethod
+    def _token(cls, given: str | None) -> str | None:
+        if given is not None and PATTERN.fullmatch(given) is None:
+            raise ValueError("expected 16 to 200 letters, digits, - and _")
+        return given
+
     @field_validator("allow_host")
     @classmethod
     def _names(cls, given: tuple[str, ...]) -> tuple[str, ...]:
@@ -161,6 +177,13 @@ def settings_of(given: Mapping[str, Any], control: str, frames: str) -> GatewayS
     settings = GatewaySettings.read(given, control=control, frames=frames)
     look_for_page(settings)
     return settings
+
+
+def with_token(settings: GatewaySettings) -> GatewaySettings:
+    """The settings with a token that is made, if others can reach the server and nothing was said about one."""
+    if settings.token is not None or settings.no_token:
+        return settings
+    return settings.model_copy(update={"token": made_for(settings.host)})
 
 
 def look_for_page(settings: GatewaySettings) -> None:

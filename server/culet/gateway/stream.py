@@ -54,8 +54,8 @@ EVENT_COST = 2.5
 picture of the fastest common screens."""
 
 
-async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> None:
-    """Serve one viewer until it leaves."""
+async def stream(websocket: WebSocket, gateway: Gateway, session_id: str, *, only_watches: bool = False) -> None:
+    """Serve one viewer until it leaves; by a session's watch id, or if it `only_watches`, it cannot steer."""
     offered: list[str] = websocket.scope["subprotocols"]
     await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in offered else None)
     client = client_of(websocket.scope)
@@ -77,7 +77,8 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
     await gateway.sessions.settle(session_id)
     try:
         session = gateway.sessions.get(session_id)
-        viewer = gateway.sessions.join(session, client)
+        steers = session.id == session_id and not only_watches
+        viewer = gateway.sessions.join(session, client, steers=steers)
     except NotFoundError:
         await websocket.close(CloseCode.UNKNOWN_SESSION, "no such session; it may have expired")
         return
@@ -88,7 +89,9 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str) -> Non
         await websocket.close(CloseCode.BUSY, str(error))
         return
     try:
-        hello = Hello(protocol=VERSION, session=session.id, watch=session.topic.hex(), viewer=viewer.number)
+        watch = session.topic.hex()
+        named = session.id if viewer.steers else watch
+        hello = Hello(protocol=VERSION, session=named, watch=watch, viewer=viewer.number, steers=viewer.steers)
         await websocket.send_text(hello.model_dump_json())
         await _Stream(websocket, gateway, session, viewer, bucket).run()
     except (WebSocketDisconnect, RuntimeError):  # starlette raises either for a send after the viewer left
@@ -202,6 +205,9 @@ class _Stream:
                 continue
             except InputError as error:
                 self._refuse("unusable_input", str(error), error.field)
+                continue
+            if isinstance(event, SessionEvent) and not self._viewer.steers:
+                self._refuse("only_watching", "this link lets watch the session; whoever has its other link changes it")
                 continue
             if isinstance(event, SessionEvent | Question):
                 self._messages.spend(EVENT_COST - 1, time.monotonic())

@@ -50,9 +50,11 @@ class Standing(Enum):
 class Viewer:
     """The credit rule: wait for credit, then take the latest frame, then send. Nothing taken is ever dropped."""
 
-    def __init__(self, number: int, now: float, client: str = UNKNOWN) -> None:
+    def __init__(self, number: int, now: float, client: str = UNKNOWN, *, steers: bool = True) -> None:
         self.number = number
         self.client = client
+        self.steers = steers
+        """What it says may change the session; else it only watches."""
         self.visible = True
         self.size: tuple[int, int] | None = None
         self.watching_since = now

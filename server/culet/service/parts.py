@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from culet.gateway.settings import GatewaySettings
 from culet.service.command_lines import engine_command, gateway_command
 from culet.service.supervisor import START_SECONDS, Part
+from culet.settings import variable
 
 ENGINE_SILENCE_SECONDS = 22.0
 """An engine whose loop or render thread stands ends itself before (`culet.engine.process.watchdog`). This is for one
@@ -31,8 +32,9 @@ def gateway_part(
     number = listening.fileno()
     return Part(
         "gateway",
-        gateway_command(number, settings.model_dump_json()),
+        gateway_command(number, settings.model_dump_json(exclude={"token"})),
         GATEWAY_SILENCE_SECONDS,
+        environment={} if settings.token is None else {variable("token"): settings.token},
         inherited=(number,),
         has_spare=spare,
         start_seconds=math.inf if alone else START_SECONDS,

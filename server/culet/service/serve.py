@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from culet.endpoints import check_free, reachable
-from culet.gateway.address import listening_socket, local_url_of, url_of
-from culet.gateway.settings import settings_of
+from culet.gateway.address import entrance, listening_socket, local_url_of, url_of
+from culet.gateway.settings import GatewaySettings, settings_of, with_token
 from culet.service.keeping import keep
 from culet.service.parts import engine_part, gateway_part
 from culet.service.socket_folder import socket_folder
@@ -41,15 +41,16 @@ def serve(
         check_free(frames, "frames")
     with socket_folder() as folder:
         control, own_frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
-        settings = settings_of(given, control, own_frames)
+        asked = settings_of(given, control, own_frames)
+        settings = with_token(asked)
         if settings.uploads_folder is None:
             settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
         endpoints = [own_frames, *([frames] if frames else [])]
         engine = engine_part(control, *endpoints, options=engine_options, spare=spare)
         with listening_socket(settings.host, settings.port) as listening:
             gateway = gateway_part(listening, settings, spare=spare)
-            url = url_of(listening, settings.host)
-            page = local_url_of(listening, settings.host) if open_page else None
+            url = entrance(url_of(listening, settings.host), _made(asked, settings))
+            page = entrance(local_url_of(listening, settings.host), settings.token) if open_page else None
             asyncio.run(keep(folder, gateway, engine, ready_line=f"culet is ready: {url}", page=page))
 
 
@@ -69,9 +70,16 @@ def serve_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     `given` are its settings, `control` and `frames` the engine's endpoints. InputError for a setting that cannot be
     used or an address that cannot be listened on.
     """
-    settings = settings_of(given, reachable(control), reachable(frames))
+    asked = settings_of(given, reachable(control), reachable(frames))
+    settings = with_token(asked)
     with socket_folder() as folder, listening_socket(settings.host, settings.port) as listening:
         if settings.uploads_folder is None:
             settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
         gateway = gateway_part(listening, settings, alone=True)
-        asyncio.run(keep(folder, gateway, ready_line=f"culet is ready: {url_of(listening, settings.host)}"))
+        url = entrance(url_of(listening, settings.host), _made(asked, settings))
+        asyncio.run(keep(folder, gateway, ready_line=f"culet is ready: {url}"))
+
+
+def _made(asked: GatewaySettings, settings: GatewaySettings) -> str | None:
+    """The token, if it was made: one that was given is known, and need be told to nobody who reads what is printed."""
+    return settings.token if asked.token is None else None

@@ -9,8 +9,8 @@ import logging
 import os
 import socket
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from culet.errors import EngineUnavailableError
@@ -43,6 +43,8 @@ class Part:
     command: Sequence[str]
     silence_seconds: float
     """One that is ready and does not say for so long that it lives is replaced."""
+    environment: Mapping[str, str] = field(default_factory=dict)
+    """Variables that it is given besides this process's: a command line is no place for secrets."""
     inherited: tuple[int, ...] = ()
     """File descriptors that it is given, by the same numbers."""
     has_spare: bool = False
@@ -196,7 +198,7 @@ class _Process:
         self._process = await asyncio.create_subprocess_exec(
             *part.command,
             stdin=asyncio.subprocess.PIPE,
-            env=os.environ | {ADDRESS: str(self._address)},
+            env=os.environ | dict(part.environment) | {ADDRESS: str(self._address)},
             pass_fds=part.inherited,
             start_new_session=True,
             preexec_fn=ending_with(os.getpid()),

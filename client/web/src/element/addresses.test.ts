@@ -1,11 +1,19 @@
 import { expect, it } from "vitest";
 import { frameAddress, posterAddress } from "./addresses";
 
-const WANTED = { src: "https://gems.example", preset: "ruby & co", rotate: "20" };
+const WANTED = { src: "https://gems.example", preset: "ruby & co", watch: null, rotate: "20" };
 
 it("the live picture has no interface, and what was asked for", () => {
   expect(frameAddress(WANTED)).toBe("https://gems.example/?ui=0&preset=ruby+%26+co&rotate=20");
   expect(frameAddress({ ...WANTED, preset: null, rotate: null })).toBe("https://gems.example/?ui=0");
+});
+
+it("a session that is only watched is shown as it is", () => {
+  const watched = { ...WANTED, watch: "0123456789abcdef0123456789abcdef", rotate: null };
+  expect(frameAddress(watched)).toBe(`https://gems.example/?ui=0&watch=${watched.watch}`);
+  expect(posterAddress(watched, 400, 300, 1)).toBe(
+    `https://gems.example/api/sessions/${watched.watch}/frame.webp?width=480&height=368`,
+  );
 });
 
 it("a poster has one of a few sizes, of the area's shape", () => {

@@ -5,6 +5,8 @@ export interface Wanted {
   /** Of the server, such as https://gems.example. */
   src: string;
   preset: string | null;
+  /** The watch id of a session that somebody else moves, in place of one of the viewer's own. */
+  watch: string | null;
   /** Degrees a second. */
   rotate: string | null;
 }
@@ -15,21 +17,23 @@ const SIDES = [320, 480, 640, 960, 1280];
 const STEP = 16;
 
 /** The live picture, for an iframe. */
-export function frameAddress({ src, preset, rotate }: Wanted): string {
+export function frameAddress({ src, preset, watch, rotate }: Wanted): string {
   const address = new URL("/", src);
   address.searchParams.set("ui", "0");
-  if (preset !== null) address.searchParams.set("preset", preset);
+  if (watch !== null) address.searchParams.set("watch", watch);
+  else if (preset !== null) address.searchParams.set("preset", preset);
   if (rotate !== null) address.searchParams.set("rotate", rotate);
   return address.href;
 }
 
 /** A still of the same, as large as that area of css pixels or a little larger. */
-export function posterAddress({ src, preset }: Wanted, width: number, height: number, ratio: number): string {
+export function posterAddress({ src, preset, watch }: Wanted, width: number, height: number, ratio: number): string {
   const long = Math.max(width, height, 1) * ratio;
   const side = SIDES.find((each) => each >= long) ?? (SIDES.at(-1) as number);
   const pixels = (length: number) => Math.max(STEP, Math.round((side * length * ratio) / long / STEP) * STEP);
-  const address = new URL("/api/render.webp", src);
-  if (preset !== null) address.searchParams.set("preset", preset);
+  const path = watch === null ? "/api/render.webp" : `/api/sessions/${encodeURIComponent(watch)}/frame.webp`;
+  const address = new URL(path, src);
+  if (watch === null && preset !== null) address.searchParams.set("preset", preset);
   address.searchParams.set("width", String(pixels(width)));
   address.searchParams.set("height", String(pixels(height)));
   return address.href;

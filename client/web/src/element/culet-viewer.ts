@@ -25,7 +25,7 @@ function pause(ms: number): Promise<void> {
 }
 
 export class CuletViewer extends HTMLElement {
-  static readonly observedAttributes = ["src", "preset", "rotate", "poster", "alt"];
+  static readonly observedAttributes = ["src", "preset", "watch", "rotate", "poster", "alt"];
   private readonly poster = document.createElement("img");
   private frame: HTMLIFrameElement | null = null;
   private origin = "";
@@ -114,7 +114,8 @@ export class CuletViewer extends HTMLElement {
     const src = this.getAttribute("src") ?? HOME;
     try {
       const { href } = new URL(src, document.baseURI);
-      return { src: href, preset: this.getAttribute("preset"), rotate: this.getAttribute("rotate") };
+      const [preset, watch, rotate] = ["preset", "watch", "rotate"].map((name) => this.getAttribute(name));
+      return { src: href, preset: preset ?? null, watch: watch ?? null, rotate: rotate ?? null };
     } catch {
       this.dispatchEvent(new ErrorEvent("error", { message: viewer.noAddress(src) }));
       return null;

@@ -41,6 +41,8 @@ export interface PanelActions {
   grades: Ask;
   /** Show a stone's cutting diagram. */
   openDiagram: (stone: string) => void;
+  /** Show the session's links. */
+  share: () => void;
   /** A number was typed that is beyond a slider's ends. */
   clamped: (typed: number, taken: number) => void;
 }
@@ -172,6 +174,7 @@ export class Panel {
     const opens = row(files.openRow);
     opens.add(files.mesh, said.openMesh, () => this.actions.openMesh());
     opens.add(files.sky, said.openSky, () => this.actions.openSky());
+    section.add(new Command(said.share, () => this.actions.share()));
     section.add(new Command(said.newSession, () => this.actions.newSession()));
   }
 

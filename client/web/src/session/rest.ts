@@ -65,6 +65,11 @@ function post(body: JsonObject): RequestInit {
   return { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
 }
 
+/** Have this browser known by the server's token, which the address that opened the page had. */
+export async function signIn(token: string): Promise<void> {
+  await request("/api/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
+}
+
 /** What a new session shows; nothing: the default scene. */
 export type Beginning = { preset?: string } | { scene: JsonObject };
 

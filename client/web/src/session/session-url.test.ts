@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { sessionAddress, streamUrl, wantedSession } from "./session-url";
+import { sessionAddress, streamUrl, tokenIn, wantedSession, watchAddress, watchedStreamUrl } from "./session-url";
 
 const ID = "0123456789abcdef0123456789abcdef";
 
@@ -25,6 +25,19 @@ describe("the address", () => {
   it("of a session is one that the page reads back", () => {
     expect(wantedSession(sessionAddress(ID).slice(1))).toEqual({ kind: "session", id: ID });
   });
+});
+
+it("has the server's token behind its hash, or none", () => {
+  expect(tokenIn("#token=AB-_9")).toBe("AB-_9");
+  expect(tokenIn("#view=1.AB")).toBeNull();
+  expect(tokenIn("")).toBeNull();
+});
+
+it("names a session that is looked at and not steered", () => {
+  expect(wantedSession(`?watch=${ID}`)).toEqual({ kind: "watch", id: ID });
+  expect(wantedSession("?watch=x")).toEqual({ kind: "invalid", id: "x" });
+  expect(wantedSession(watchAddress(ID, { ui: false, rotate: 0 }).slice(1))).toEqual({ kind: "watch", id: ID });
+  expect(watchedStreamUrl({ protocol: "https:", host: "culet.test" })).toBe("wss://culet.test/api/stream");
 });
 
 it("streams by wss where the page came by https", () => {

@@ -8,6 +8,8 @@ const ID = /^[0-9a-f]{32}$/;
 
 export type Wanted =
   | { kind: "session"; id: string }
+  /** By its watch id, which lets look and not steer. */
+  | { kind: "watch"; id: string }
   | { kind: "view"; packed: string }
   | { kind: "new"; preset: string | undefined }
   | { kind: "invalid"; id: string };
@@ -15,19 +17,41 @@ export type Wanted =
 /** By the address' query, and by what follows its hash. */
 export function wantedSession(search: string, hash = ""): Wanted {
   const query = new URLSearchParams(search);
-  const id = query.get("session");
-  if (id !== null) return ID.test(id) ? { kind: "session", id } : { kind: "invalid", id };
+  for (const kind of ["session", "watch"] as const) {
+    const id = query.get(kind);
+    if (id !== null) return ID.test(id) ? { kind, id } : { kind: "invalid", id };
+  }
   const packed = packedView(hash);
   if (packed !== null) return { kind: "view", packed };
   return { kind: "new", preset: query.get("preset") ?? undefined };
 }
 
-/** The address that others may watch the session at. */
+/** The server's token, if the page was opened with it. */
+export function tokenIn(hash: string): string | null {
+  return new URLSearchParams(hash.slice(1)).get("token");
+}
+
+/** The address that others may watch and steer the session at. */
 export function sessionAddress(id: string, embedding?: Embedding): string {
   return `/?session=${id}${embedding ? queryOf(embedding) : ""}`;
 }
 
-export function streamUrl(location: Pick<Location, "protocol" | "host">, id: string): string {
-  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}/api/sessions/${id}/stream`;
+/** The address that others may watch it at, by its watch id. */
+export function watchAddress(watch: string, embedding?: Embedding): string {
+  return `/?watch=${watch}${embedding ? queryOf(embedding) : ""}`;
+}
+
+type Place = Pick<Location, "protocol" | "host">;
+
+export function streamUrl(place: Place, id: string): string {
+  return `${origin(place)}/api/sessions/${id}/stream`;
+}
+
+/** Of a session that is watched: its watch id is no part of it, but one of the subprotocols that are offered. */
+export function watchedStreamUrl(place: Place): string {
+  return `${origin(place)}/api/stream`;
+}
+
+function origin({ protocol, host }: Place): string {
+  return `${protocol === "https:" ? "wss:" : "ws:"}//${host}`;
 }

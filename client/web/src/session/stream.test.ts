@@ -6,6 +6,12 @@ import { type Connection, LOST_PINGS, PAUSES, PING_MS, Stream } from "./stream";
 const URL = "ws://culet.test/api/sessions/0/stream";
 const connections: Connection[] = [];
 const heard: unknown[] = [];
+const listener = {
+  connection: (connection: Connection) => connections.push(connection),
+  notice: (notice: unknown) => heard.push(notice),
+  frame: (frame: { sequence: number }) => heard.push(frame.sequence),
+  malformed: (error: Error) => heard.push(error.name),
+};
 let stream: Stream;
 
 beforeEach(() => {
@@ -14,12 +20,6 @@ beforeEach(() => {
   FakeSocket.opened = [];
   connections.length = 0;
   heard.length = 0;
-  const listener = {
-    connection: (connection: Connection) => connections.push(connection),
-    notice: (notice: unknown) => heard.push(notice),
-    frame: (frame: { sequence: number }) => heard.push(frame.sequence),
-    malformed: (error: Error) => heard.push(error.name),
-  };
   stream = new Stream(URL, listener, () => 1);
 });
 
@@ -37,8 +37,14 @@ function open(): FakeSocket {
 describe("opening", () => {
   it("asks for this version of the protocol and for array buffers", () => {
     const socket = open();
-    expect([socket.url, socket.protocol, socket.binaryType]).toEqual([URL, "culet.v2", "arraybuffer"]);
+    expect([socket.url, socket.protocols, socket.binaryType]).toEqual([URL, ["culet.v2"], "arraybuffer"]);
     expect(connections.map(({ status }) => status)).toEqual(["connecting", "open"]);
+  });
+
+  it("says by a subprotocol which session it watches, where the address does not", () => {
+    const id = "0123456789abcdef0123456789abcdef";
+    new Stream("ws://culet.test/api/stream", listener, () => 1, id).open();
+    expect(FakeSocket.last.protocols).toEqual(["culet.v2", `culet.watch.${id}`]);
   });
 
   it("sends nothing before the socket is open, and says so", () => {

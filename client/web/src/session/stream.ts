@@ -1,7 +1,13 @@
 /** One session's stream: a WebSocket that is opened again when it breaks, and says honestly how it is. */
 
 import { type Frame, FrameError, parseFrame } from "@culet/protocol/frame";
-import { type ControlEvent, FINAL_CLOSE_CODES, type Notice, SUBPROTOCOL } from "@culet/protocol/messages";
+import {
+  type ControlEvent,
+  FINAL_CLOSE_CODES,
+  type Notice,
+  SUBPROTOCOL,
+  WATCH_SUBPROTOCOL,
+} from "@culet/protocol/messages";
 import { NoticeError, parseNotice } from "@culet/protocol/notice";
 import { words } from "../words/words";
 import { Latency } from "./latency";
@@ -38,6 +44,7 @@ export class Stream {
   readonly latency = new Latency();
   private readonly url: string;
   private readonly listener: Listener;
+  private readonly protocols: readonly string[];
   private readonly jitter: () => number;
   private socket: WebSocket | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -45,9 +52,13 @@ export class Stream {
   private tries = 0;
   private now: Connection = { status: "connecting" };
 
-  /** `jitter` spreads the viewers of a restarted gateway: each pause is multiplied by it. */
-  constructor(url: string, listener: Listener, jitter = () => 0.75 + 0.5 * Math.random()) {
+  /**
+   * `jitter` spreads the viewers of a restarted gateway: each pause is multiplied by it. `watch`: the watch id of a
+   * session that is only looked at, where the address does not name it.
+   */
+  constructor(url: string, listener: Listener, jitter = () => 0.75 + 0.5 * Math.random(), watch: string | null = null) {
     this.url = url;
+    this.protocols = watch === null ? [SUBPROTOCOL] : [SUBPROTOCOL, WATCH_SUBPROTOCOL + watch];
     this.listener = listener;
     this.jitter = jitter;
   }
@@ -59,7 +70,7 @@ export class Stream {
   open(): void {
     clearTimeout(this.timer);
     this.become({ status: "connecting" });
-    const socket = new WebSocket(this.url, SUBPROTOCOL);
+    const socket = new WebSocket(this.url, [...this.protocols]);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     // A socket that was given up may still speak: only the present one is heard.

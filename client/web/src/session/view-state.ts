@@ -28,6 +28,8 @@ export interface ViewState {
   canUndo: boolean;
   canRedo: boolean;
   viewers: number;
+  /** What this viewer sends changes the session; else it only watches. */
+  steers: boolean;
   engine: "down" | "up";
 }
 
@@ -46,6 +48,7 @@ export const INITIAL: ViewState = {
   canUndo: false,
   canRedo: false,
   viewers: 1,
+  steers: true,
   engine: "up",
 };
 
@@ -60,7 +63,7 @@ export function withNotice(state: ViewState, notice: Notice): ViewState {
     case "engine":
       return { ...state, engine: notice.status };
     case "hello":
-      return { ...state, engine: "up" };
+      return { ...state, engine: "up", steers: notice.steers ?? true };
     default:
       return state;
   }

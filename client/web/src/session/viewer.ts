@@ -33,6 +33,8 @@ export class Viewer {
   lastFrame: Frame | null = null;
   /** What the server needs, besides the scene, to make the session again if it loses it. */
   snapshot: JsonObject | null = null;
+  /** By which others may look at the session; null until the server has said so. */
+  watchId: string | null = null;
   /** The server said that the session ends: it is not lost. */
   ended = false;
   state: ViewState = INITIAL;
@@ -41,7 +43,8 @@ export class Viewer {
   /** The revision of the state when something was sent last. */
   private spoken: number | null = null;
 
-  constructor(url: string, listener: ViewerListener) {
+  /** `watch`: the watch id of a session that is only looked at, where the address does not name it. */
+  constructor(url: string, listener: ViewerListener, watch: string | null = null) {
     this.listener = listener;
     this.player = new FramePlayer<ImageBitmap>({
       decode: (encoded) => this.decode(encoded),
@@ -49,12 +52,17 @@ export class Viewer {
       acknowledge: (frame) => this.stream.send({ type: "ack", sequence: frame.sequence }),
       fail: (frame, reason) => listener.problem(words.connection.notDecoded(frame.sequence, String(reason))),
     });
-    this.stream = new Stream(url, {
-      connection: (connection) => this.connected(connection),
-      notice: (notice) => this.heard(notice),
-      frame: (frame) => void this.player.push(frame),
-      malformed: (error) => listener.problem(words.connection.notUnderstood(error.message)),
-    });
+    this.stream = new Stream(
+      url,
+      {
+        connection: (connection) => this.connected(connection),
+        notice: (notice) => this.heard(notice),
+        frame: (frame) => void this.player.push(frame),
+        malformed: (error) => listener.problem(words.connection.notUnderstood(error.message)),
+      },
+      undefined,
+      watch,
+    );
     document.addEventListener("visibilitychange", () => {
       this.sendVisibility();
       if (!document.hidden) this.stream.retryNow();
@@ -62,7 +70,9 @@ export class Viewer {
     window.addEventListener("online", () => this.stream.retryNow());
   }
 
+  /** What would change a session that is only watched stays here: the server would refuse it. */
   send(event: ControlEvent): void {
+    if (!this.state.steers) return;
     this.spoken = this.state.revision;
     if (!this.stream.send(event)) this.listener.problem(words.connection.notSent);
   }
@@ -102,6 +112,7 @@ export class Viewer {
   }
 
   private heard(notice: Notice): void {
+    if (notice.type === "hello") this.watchId = notice.watch;
     if (notice.type === "hello" || notice.type === "engine") this.player.forget();
     if (notice.type === "picked" || notice.type === "outlined" || notice.type === "reached")
       this.listener.answer(notice);

@@ -14,7 +14,7 @@ import { words } from "../words/words";
 import type { SessionEvent } from "./events";
 import { type OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
-import { sessionAddress, streamUrl, type Wanted, wantedSession } from "./session-url";
+import { sessionAddress, streamUrl, tokenIn, type Wanted, wantedSession, watchedStreamUrl } from "./session-url";
 import { type Connection, pauseBefore } from "./stream";
 import { INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
@@ -37,6 +37,8 @@ export interface VisitWorld {
 export class Visit {
   session: string | null = null;
   viewer: Viewer | null = null;
+  /** The session is looked at by its watch id. */
+  only = false;
   private readonly world: VisitWorld;
   private readonly signs: Signs;
   private readonly complaints: Complaints;
@@ -70,7 +72,7 @@ export class Visit {
 
   /** Leave for a new session. */
   startAnew(): void {
-    location.assign(`/?${queryOf(this.embedding).slice(1)}`);
+    location.assign(this.only ? "/" : `/?${queryOf(this.embedding).slice(1)}`);
   }
 
   /** Find or make the session; after `tries` that failed, since the server was not ready. */
@@ -78,13 +80,18 @@ export class Visit {
     const wanted = wantedSession(location.search, location.hash);
     if (wanted.kind === "invalid") return this.signs.end(words.connection.noId(wanted.id));
     try {
-      this.watch(await this.sessionFor(wanted));
+      await this.enter();
+      this.watch(await this.sessionFor(wanted), wanted.kind === "watch");
       this.signs.clear();
     } catch (error) {
       if (error instanceof LinkError) return this.signs.end(error.message);
       const known = asProblem(error);
       if (wanted.kind === "view" && known.status === 422) {
         return this.signs.end(`${words.connection.viewRefused}\n${known.message}`);
+      }
+      if (known.status === 401) return this.signs.retry(words.connection.needsToken, () => location.reload());
+      if (wanted.kind === "watch" && known.status === 404) {
+        return this.later(words.connection.notThere, tries, (next) => this.start(next));
       }
       if (wanted.kind === "session" && known.status === 404) return this.signs.end(unknownSession());
       if (rest.isPassing(known)) this.later(known.message, tries, (next) => this.start(next));
@@ -96,6 +103,7 @@ export class Visit {
   private async sessionFor(wanted: Exclude<Wanted, { kind: "invalid" }>): Promise<string> {
     switch (wanted.kind) {
       case "session":
+      case "watch":
         await rest.findSession(wanted.id);
         return wanted.id;
       case "view": {
@@ -115,24 +123,38 @@ export class Visit {
     return id;
   }
 
-  private watch(id: string): void {
+  /** With the token that the address has, which then is forgotten: whoever looks over a shoulder may not see it. */
+  private async enter(): Promise<void> {
+    const token = tokenIn(location.hash);
+    if (token === null) return;
+    await rest.signIn(token);
+    history.replaceState(null, "", location.pathname + location.search);
+  }
+
+  private watch(id: string, only: boolean): void {
     this.session = id;
-    history.replaceState(null, "", sessionAddress(id, this.embedding));
+    this.only = only;
+    if (!only) history.replaceState(null, "", sessionAddress(id, this.embedding));
     this.signs.await();
-    const viewer = new Viewer(streamUrl(location, id), {
-      show: this.world.show,
-      size: this.world.size,
-      connection: (connection) => this.connected(connection),
-      state: (before, after) => {
-        this.world.state(before, after);
-        this.signs.connected(viewer.stream.connection, after.engine);
+    const viewer = new Viewer(
+      only ? watchedStreamUrl(location) : streamUrl(location, id),
+      {
+        show: this.world.show,
+        size: this.world.size,
+        connection: (connection) => this.connected(connection),
+        state: (before, after) => {
+          this.world.state(before, after);
+          this.signs.connected(viewer.stream.connection, after.engine);
+        },
+        answer: this.world.answer,
+        lacking: () => this.complaints.attempt(() => this.giveFilesAgain()),
+        problem: (text, about) => this.complaints.tell(text, about),
       },
-      answer: this.world.answer,
-      lacking: () => this.complaints.attempt(() => this.giveFilesAgain()),
-      problem: (text, about) => this.complaints.tell(text, about),
-    });
+      only ? id : null,
+    );
     this.viewer = viewer;
     viewer.stream.open();
+    if (only && this.embedding.rotate === 0) this.world.tell(words.connection.watching);
   }
 
   private connected(connection: Connection): void {
@@ -149,6 +171,7 @@ export class Visit {
 
   /** The server does not know the session any more: have it made again as this page last saw it. */
   private async regain(tries = 0): Promise<void> {
+    if (this.only) return this.start(); // which waits until it is there again
     const { viewer, session, scene } = this;
     if (!viewer || !session || !scene) return this.signs.end(unknownSession());
     try {

@@ -14,14 +14,14 @@ export class FakeSocket {
   binaryType = "blob";
   closed = false;
   readonly url: string;
-  readonly protocol: string;
+  readonly protocols: string[];
   onopen: ((event: Event) => void) | null = null;
   onmessage: ((event: MessageEvent) => void) | null = null;
   onclose: ((event: CloseEvent) => void) | null = null;
 
-  constructor(url: string, protocol: string) {
+  constructor(url: string, protocols: string[]) {
     this.url = url;
-    this.protocol = protocol;
+    this.protocols = protocols;
     FakeSocket.opened.push(this);
   }
 

@@ -21,6 +21,7 @@ export const page = {
   scenes: "Scenes",
   connecting: "connecting",
   keysTitle: "Keys, mouse and fingers",
+  shareTitle: "Share this session",
   close: "Close",
 };
 
@@ -114,11 +115,22 @@ export const panel = {
   saveWebp: "Save the picture (.webp)",
   saveTga: "Save the picture (.tga)",
   saveExr: "Save the picture's light (.exr)",
+  share: "Share this session\u2026",
   saveScene: "Save the scene (.json)",
   openScene: "Open a scene\u2026",
   openMesh: "Open a mesh or design\u2026",
   openSky: "Open a sky\u2026",
   newSession: "New session",
+};
+
+/** The card with a session's links. */
+export const share = {
+  steer: "Whoever has this link watches and steers:",
+  watch: "Whoever has this link only watches:",
+  copy: "Copy",
+  copied: "The link is on the clipboard.",
+  code: "The watching link as a QR code",
+  ownMachine: "These links lead to this machine only: start culet with --host to be reached by others.",
 };
 
 export const sliders = {
@@ -426,6 +438,11 @@ export const connection = {
   endedByCode: (code: number) => `The stream ended (code ${code}).`,
   noSessionYet: "There is no session yet.",
   noId: (id: string) => `${id} is not the id of a session.`,
+  needsToken:
+    "This server asks for its token. Open the page by the address that culet printed when it was started: " +
+    "it ends with #token= and the token.",
+  notThere: "There is nothing to watch at this link (any more).",
+  watching: "You watch this session. Whoever has the link to steer it moves things.",
   viewRefused: "This server cannot show the view of this link.",
   startAnew: "Start a new session",
   tryAgain: "Try again",

@@ -1,0 +1,39 @@
+"""POST /api/login: a browser that was opened with the server's token keeps a cookie in its place."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from culet.gateway.access import ALL, LOGIN_PATH, cookie_name
+from culet.gateway.parts import ThisGateway
+from culet.gateway.problems import answers
+from culet.gateway.server_token import Token
+
+router = APIRouter(tags=["login"])
+
+
+@router.post(LOGIN_PATH, status_code=204, responses=answers(401, 429))
+async def login(request: Request, gateway: ThisGateway) -> Response:
+    """Have a cookie in the place of the token, which is to be in the header `Authorization: Bearer ...`.
+
+    No script can read the cookie, and no other site's page has it sent along. Where there is no token there is none.
+    """
+    response = Response(status_code=204)
+    token = gateway.settings.token
+    if token is not None and request.state.rights == ALL:
+        response.set_cookie(
+            cookie_name(request.scope),
+            Token(token).cookie,
+            httponly=True,
+            samesite="strict",
+            secure=request.url.scheme == "https",
+        )
+    return response
+
+
+@router.delete(LOGIN_PATH, status_code=204, responses=answers(429))
+async def logout(request: Request) -> Response:
+    """Forget the cookie."""
+    response = Response(status_code=204)
+    response.delete_cookie(cookie_name(request.scope), httponly=True, samesite="strict")
+    return response

@@ -1,0 +1,229 @@
+"""Who may do what: the server's token, and the two links of a session."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.typing import Subprotocol
+
+from culet.errors import InputError
+from culet.gateway.access import NOTHING, Right, needed
+from culet.gateway.address import entrance
+from culet.gateway.server_token import PATTERN, Token, is_own_machine
+from culet.gateway.settings import GatewaySettings, settings_of, with_token
+from culet_client import RefusedError, connect
+from culet_protocol import SUBPROTOCOL, WATCH_SUBPROTOCOL
+from culet_protocol.messages import Orbit, Pick, Resize
+from culet_protocol.watch import watch_id
+from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Endpoints, Gateway, gateway_before
+
+TOKEN = "correct-horse-battery-staple"  # noqa: S105 - of this test
+BEARER = {"Authorization": f"Bearer {TOKEN}"}
+UPLOAD = {"file": ("stone.obj", TETRAHEDRON)}
+SMALL = {"width": 64, "height": 36, "samples": 1}
+
+
+def settings(**given: object) -> GatewaySettings:
+    return GatewaySettings.read(given, control="inproc://control", frames="inproc://frames")
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "right"),
+    [
+        ("GET", "/", NOTHING),
+        ("GET", "/assets/page.js", NOTHING),
+        ("GET", "/api/presets", NOTHING),
+        ("GET", "/api/presets/ruby/thumbnail.webp", NOTHING),
+        ("GET", "/api/skies", NOTHING),
+        ("POST", "/api/skies", Right.UPLOAD),
+        ("POST", "/api/meshes", Right.UPLOAD),
+        ("POST", "/api/sessions", Right.STEER),
+        ("GET", "/api/sessions", Right.STEER),
+        ("DELETE", "/api/sessions/abc", NOTHING),  # whoever knows the id
+        ("GET", "/api/render.png", Right.STEER),
+        ("POST", "/api/render", Right.STEER),
+        ("GET", "/api/whatever-comes", Right.STEER),
+        ("POST", "/api/materials", Right.STEER),
+        ("GET", "/metrics", Right.ADMINISTER),
+        ("GET", "/healthz", NOTHING),
+    ],
+)
+def test_what_a_request_needs(method: str, path: str, right: Right) -> None:
+    assert needed(method, path, settings()) == right
+
+
+def test_health_and_metrics_have_switches_of_their_own() -> None:
+    asked = settings(open_health=False, open_metrics=True)
+    assert [needed("GET", path, asked) for path in ("/healthz", "/readyz", "/metrics")] == [
+        Right.ADMINISTER,
+        Right.ADMINISTER,
+        NOTHING,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("host", "own"),
+    [("127.0.0.1", True), ("127.8.0.1", True), ("::1", True), ("localhost", True), ("0.0.0.0", False), ("::", False),  # noqa: S104
+     ("192.0.2.7", False), ("gems.example", False)],
+)  # fmt: skip
+def test_a_token_is_made_where_others_can_reach_the_server(host: str, own: bool) -> None:
+    assert is_own_machine(host) is own
+    first, second = with_token(settings(host=host)).token, with_token(settings(host=host)).token
+    if own:
+        assert first is second is None
+    else:
+        assert first is not None
+        assert second is not None
+        assert first != second
+        assert PATTERN.fullmatch(first)
+        assert with_token(settings(host=host, token=TOKEN)).token == TOKEN
+    assert with_token(settings(host=host, no_token=True)).token is None
+
+
+def test_a_token_that_can_be_guessed_or_stands_in_no_address_is_refused() -> None:
+    for token in ("secret", "x" * 15, "with a space, and more", "ü" * 20):
+        with pytest.raises(InputError, match=r"--token: expected 16 to 200 letters"):
+            settings_of({"token": token}, "inproc://control", "inproc://frames")
+
+
+def test_a_cookie_is_not_the_token() -> None:
+    token = Token(TOKEN)
+    assert token.is_it(TOKEN)
+    assert not token.is_it(TOKEN + "x")
+    assert not token.is_it("")
+    assert token.is_cookie(token.cookie)
+    assert not token.is_cookie(TOKEN)
+    assert not token.is_it(token.cookie)
+    assert token.cookie == Token(TOKEN).cookie, "the same for all servers that share the token"
+    assert token.cookie != Token(TOKEN + "x").cookie
+
+
+def test_the_address_that_is_printed_has_the_token_where_it_is_sent_nowhere() -> None:
+    assert entrance("http://0.0.0.0:8000/", "abc") == "http://0.0.0.0:8000/#token=abc"
+    assert entrance("http://0.0.0.0:8000/", None) == "http://0.0.0.0:8000/"
+
+
+async def test_without_the_token_nothing_is_made_rendered_or_uploaded(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+        http = guarded.http
+        wrong = {"Authorization": "Bearer " + TOKEN[::-1]}
+        for headers in ({}, wrong, {"Authorization": f"Basic {TOKEN}"}, {"Cookie": f"culet-80={TOKEN}"}):
+            for answer in (
+                await http.post("/api/sessions", json={}, headers=headers),
+                await http.get("/api/render.png", params=SMALL, headers=headers),
+                await http.post("/api/meshes", files=UPLOAD, headers=headers),
+                await http.get("/metrics", headers=headers),
+                await http.post("/api/login", headers=headers),
+            ):
+                assert answer.status_code == 401, answer.text
+                assert answer.headers["WWW-Authenticate"].startswith("Bearer")
+                assert answer.headers["Content-Type"] == "application/problem+json"
+                assert "set-cookie" not in answer.headers
+        assert (await http.get("/api/presets")).status_code == 200
+        assert (await http.get("/readyz")).status_code == 200
+        assert (await http.post("/api/sessions", json={}, headers=BEARER)).status_code == 201
+        assert (await http.get("/api/render.png", params=SMALL, headers=BEARER)).status_code == 200
+        assert (await http.post("/api/meshes", files=UPLOAD, headers=BEARER)).status_code == 201
+        assert (await http.get("/metrics", headers=BEARER)).status_code == 200
+
+
+async def test_a_browser_keeps_a_cookie_in_the_token_s_place(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+        answer = await guarded.http.post("/api/login", headers=BEARER)
+        assert answer.status_code == 204
+        kept = answer.headers["set-cookie"]
+        assert TOKEN not in kept
+        for word in ("HttpOnly", "SameSite=strict", "Path=/"):
+            assert word in kept
+        assert "Secure" not in kept  # by plain http a browser would not keep it
+        assert guarded.http.cookies, "the client keeps it"
+        assert (await guarded.http.post("/api/sessions", json={})).status_code == 201
+        assert (await guarded.http.delete("/api/login")).status_code == 204
+        assert (await guarded.http.post("/api/sessions", json={})).status_code == 401
+
+
+async def test_programs_say_the_token(engine: Endpoints, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+
+        def connect_thrice() -> None:
+            with pytest.raises(RefusedError, match="expected this server's token"):
+                connect(guarded.url)
+            for url, token in ((f"{guarded.url}#token={TOKEN}", None), (guarded.url, TOKEN)):
+                with connect(url, token=token, size=(64, 36), timeout_seconds=PATIENCE) as connection:
+                    connection.image()
+            monkeypatch.setenv("CULET_TOKEN", TOKEN)
+            with connect(guarded.url, size=(64, 36), timeout_seconds=PATIENCE) as connection:
+                connection.image()
+
+        await asyncio.to_thread(connect_thrice)
+
+
+async def test_a_session_s_links_need_no_token(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+        made = await guarded.http.post("/api/sessions", json={}, headers=BEARER)
+        session = made.json()["id"]
+        async with guarded.viewer(session) as steering, guarded.viewer(watch_id(session)) as watching:
+            assert (await steering.notice("hello"))["steers"]
+            await watching.frame()
+        assert (await guarded.http.get(f"/api/sessions/{session}")).status_code == 200
+
+
+async def test_whoever_has_the_watching_link_sees_all_and_changes_nothing(gateway: Gateway) -> None:
+    session = await gateway.session()
+    watch = watch_id(session)
+    async with gateway.viewer(session) as steering, gateway.viewer(watch) as watching:
+        hello = await watching.notice("hello")
+        assert (hello["session"], hello["watch"], hello["steers"]) == (watch, watch, False)
+        assert (await watching.notice("state"))["scene"]
+        await watching.final()
+        await watching.say(Orbit(yaw=0.5, pitch=0))
+        refused = await watching.notice("problem")
+        assert refused["code"] == "only_watching"
+        await watching.say(Pick(number=1, x=0, y=0))
+        await watching.notice("picked")
+        await steering.say(Orbit(yaw=0.5, pitch=0))
+        changed = await watching.notice("state")
+        assert "snapshot" not in {told["type"] for told in watching.notices}
+        assert session not in str(watching.notices) + str(hello) + str(changed)
+    said = await gateway.http.get(f"/api/sessions/{watch}")
+    assert (said.json()["id"], said.json()["watch"]) == (watch, watch)
+    assert session not in said.text
+    assert (await gateway.http.get(f"/api/sessions/{watch}/frame.png", params=SMALL)).status_code == 200
+    for answer in (
+        await gateway.http.patch(f"/api/sessions/{watch}", json={"floor": {"kind": "matte"}}),
+        await gateway.http.post(f"/api/sessions/{watch}/events", json={"type": "toggle_fall"}),
+        await gateway.http.delete(f"/api/sessions/{watch}"),
+        await gateway.http.post("/api/sessions", json={"id": watch, "scene": {}}),
+    ):
+        assert answer.status_code == 403, answer.text
+        assert answer.headers["Content-Type"] == "application/problem+json"
+    assert (await gateway.http.get(f"/api/sessions/{session}")).json()["falling"] is False
+
+
+async def test_a_page_in_another_one_says_its_watch_id_as_a_subprotocol(gateway: Gateway) -> None:
+    session = await gateway.session()
+    for named in (watch_id(session), session):  # the session's own id steers nothing here either
+        offered = [Subprotocol(SUBPROTOCOL), Subprotocol(WATCH_SUBPROTOCOL + named)]
+        async with gateway.viewer("", path="api/stream", subprotocols=offered) as watching:
+            assert watching.websocket.subprotocol == SUBPROTOCOL
+            assert (await watching.notice("hello"))["steers"] is False
+            await watching.frame()
+            await watching.say(Orbit(yaw=0.5, pitch=0))
+            assert (await watching.notice("problem"))["code"] == "only_watching"
+    with pytest.raises(ConnectionClosed) as closed:
+        async with gateway.viewer("", path="api/stream") as lost:
+            await lost.frame()
+    assert closed.value.rcvd is not None
+    assert closed.value.rcvd.code == 4404
+
+
+async def test_who_only_watches_does_not_decide_how_large_the_picture_is(gateway: Gateway) -> None:
+    session = await gateway.session()
+    async with gateway.viewer(watch_id(session), size=Resize(width=32, height=48)) as watching:
+        frame = await watching.final()
+        assert (frame.width, frame.height) == (32, 48), "unless nobody else is there"
+        async with gateway.viewer(session, size=SIZE) as steering:
+            await steering.until(lambda: any(frame.width == SIZE.width for frame in steering.frames))
