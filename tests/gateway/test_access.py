@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from culet.gateway.access import NOTHING, Right, needed
 from culet.gateway.address import entrance
 from culet.gateway.server_token import PATTERN, Token, is_own_machine
 from culet.gateway.settings import GatewaySettings, settings_of, with_token
+from culet.service.parts import gateway_part
 from culet_client import RefusedError, connect
 from culet_protocol import SUBPROTOCOL, WATCH_SUBPROTOCOL
 from culet_protocol.messages import Orbit, Pick, Resize
@@ -104,6 +106,15 @@ def test_a_cookie_is_not_the_token() -> None:
 def test_the_address_that_is_printed_has_the_token_where_it_is_sent_nowhere() -> None:
     assert entrance("http://0.0.0.0:8000/", "abc") == "http://0.0.0.0:8000/#token=abc"
     assert entrance("http://0.0.0.0:8000/", None) == "http://0.0.0.0:8000/"
+
+
+def test_a_gateway_is_told_the_token_where_no_list_of_processes_shows_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        part = gateway_part(listening, settings(token=TOKEN))
+    assert TOKEN not in " ".join(part.command)
+    for name, value in part.environment.items():
+        monkeypatch.setenv(name, value)
+    assert GatewaySettings.model_validate_json(part.command[-1]).token == TOKEN
 
 
 async def test_without_the_token_nothing_is_made_rendered_or_uploaded(engine: Endpoints, tmp_path: Path) -> None:

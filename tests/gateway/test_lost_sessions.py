@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from culet_protocol.frame import Flags
 from culet_protocol.messages import Orbit, ToggleFall
 from gateway.running import Gateway
 
@@ -26,6 +27,7 @@ async def test_a_lost_session_is_made_again_as_a_viewer_saw_it_last(gateway: Gat
         await viewer.until(
             lambda: any(notice["type"] == "state" and not notice["falling"] for notice in viewer.notices[-3:])
         )
+        await viewer.until(lambda: Flags.MOVING not in viewer.frames[-1].flags)  # the picture of that state
         viewer.notices = [notice for notice in viewer.notices if notice["type"] == "state"]
         state, snapshot = viewer.notices[-1], (await viewer.notice("snapshot"))["snapshot"]
         last = viewer.frames[-1]

@@ -34,6 +34,7 @@ async def test_a_viewer_is_greeted_and_gets_frames_of_its_size_up_to_the_final_o
             "session": session,
             "watch": watch_id(session),
             "viewer": 1,
+            "steers": True,
         }
         assert (await viewer.notice("state"))["scene"] == Scene().model_dump(mode="json")
         assert (await viewer.notice("viewers"))["count"] == 1
