@@ -30,6 +30,9 @@ export class KeyCard {
   /** Or hide it, if it is shown. */
   toggle(): void {
     if (this.dialog.open) this.dialog.close();
-    else this.dialog.showModal();
+    else {
+      this.dialog.showModal();
+      this.dialog.scrollTop = 0; // the focus goes to the button at the end
+    }
   }
 }
