@@ -195,6 +195,31 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     assert (moving.linear() != fresh.linear()).any()
 
 
+def test_a_pass_that_another_picture_has_begun_anew_adds_nothing(renderer: Renderer) -> None:
+    """Two viewers of one stage: a pass of a moving picture is under way when one at rest begins its own."""
+    stage = Stage.of(scene_of())
+    coarse = stage.scene.model_copy(update={"optics": stage.scene.optics.model_copy(update={"caustics_cutoff": 0.01})})
+    renderer.lighting.forget()
+    _, alone = lit(renderer, stage, Effort.RESTING)
+    wanted = texels(renderer, alone)
+    renderer.lighting.forget()
+    superseded = renderer.picture(stage.showing(coarse), *SIZE, effort=Effort.MOVING).refine_in_pieces(1, 1e-5)
+    for _ in range(5):
+        next(superseded)
+    found = renderer.lighting.of(stage.showing(coarse))
+    assert found is not None
+    assert found.passes == 0, "a pass is under way"
+    resting = found.pieces(stage.scene.optics.caustics_cutoff, Effort.RESTING, 1e-5, first=True)
+    for _ in range(5):
+        next(resting)
+    for _ in superseded:
+        pass
+    for _ in resting:
+        pass
+    assert found.passes == 1
+    assert (texels(renderer, found) == wanted).all()
+
+
 def test_a_pass_that_failed_is_made_anew(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
     stage, made = Stage.of(scene_of()), Beams.pieces
 

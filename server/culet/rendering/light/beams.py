@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,8 @@ PIECE = 0.06
 of a point 8 R away 0.3 % falls between facets then."""
 FIRST_JOBS = 64
 """Of a launch, while nobody knows how long they take."""
+AS_BEFORE = 0.5
+"""Of a launch's time, for which a pass begins with jobs that take as long as those of the pass before."""
 ALMOST = 1 - 2**-20
 """The part that is done when the light is thrown, but not summed."""
 
@@ -67,6 +70,8 @@ class Beams:
         self.tally: Tally | None = None
         """Of the last pass."""
         self._programs: dict[tuple[int, ...], Any] = {} if like is None else like._programs
+        self._paces: dict[tuple[str, int, int], float] = {} if like is None else like._paces
+        """s that a job of a kernel took, by the power of two of the cut-off."""
         self._scratch: dict[tuple[int, int], tuple[Any, ...]] = {}
         self._clean = True
 
@@ -155,14 +160,15 @@ class Beams:
             )  # fmt: skip
             # Of several stones a job follows all bands of a light.
             entries = int(room["entries"]) * len(group) * (bands if len(stones) == 1 else 1)
+            throw = partial(self._launches, program, buffers, cutoff, seconds)
             if gauged and not diverging:
                 band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
-                for _ in self._launches(program.gauge_light, buffers, entries, seconds, band):
+                for _ in throw("gauge_light", entries, band):
                     yield 0.0
-            for _ in self._launches(program.cast_shadows, buffers, len(group) * len(stones), seconds):
+            for _ in throw("cast_shadows", len(group) * len(stones)):
                 yield 0.0
             if any(ray.follows for ray in group):
-                yield from self._launches(program.throw_light, buffers, entries, seconds)
+                yield from throw("throw_light", entries)
         self._sum(self._upload(room), point_lights, scratch, target, keep, gain)
         cl.enqueue_copy(queue, tallies, tally_buffer)
         self._clean = True
@@ -201,21 +207,21 @@ class Beams:
         return [f"-DREAL={'double' if self.real is np.float64 else 'float'}"]
 
     def _launches(
-        self,
-        kernel: Any,  # noqa: ANN401
-        buffers: Sequence[Any],
-        jobs: int,
-        seconds: float,
-        *more: int,
+        self, program: _Kernels, buffers: Sequence[Any], cutoff: float, seconds: float, name: str, jobs: int, *more: int
     ) -> Iterator[float]:
-        """All jobs, in launches of about so many seconds; yields the part that is done, between them."""
-        done, chunk = 0, FIRST_JOBS if math.isfinite(seconds) else jobs
+        """All jobs of a kernel, in launches of about so many seconds; yields the part that is done, between them."""
+        kernel, kind = getattr(program, name), (name, id(program), math.frexp(cutoff)[1])
+        done, chunk = 0, jobs
+        if math.isfinite(seconds):
+            known = self._paces.get(kind)
+            chunk = FIRST_JOBS if known is None else max(1, int(AS_BEFORE * seconds / known))
         while done < jobs:
             end, start = min(done + chunk, jobs), time.perf_counter()
             self._launch(kernel, buffers, done, end, *more)
             if math.isfinite(seconds):
                 self.device.queue.finish()
                 pace = max(time.perf_counter() - start, 1e-6) / (end - done)
+                self._paces[kind] = pace
                 chunk = max(1, min(2 * chunk, int(seconds / pace)))
                 yield ALMOST * end / jobs
             done = end

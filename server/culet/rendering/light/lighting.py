@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import replace
 from enum import Enum, auto
 from typing import Any, NamedTuple
@@ -203,7 +203,7 @@ class Illumination:
         """Cut-off of the first pass."""
         self._provisional = False
         """Made for a moving picture, in a hurry."""
-        self._running: Iterator[object] | None = None
+        self._running: Generator[object, None, None] | None = None
         """The pass under way. A picture that is given up leaves it to the next one: none is left out or made twice."""
         self._weight = 0.0
         self._squared = 0.0
@@ -253,10 +253,11 @@ class Illumination:
         """
         if effort is Effort.MOVING:
             if self.passes == 0 or (self._provisional and self.cutoff > cutoff):
-                self._begin(cutoff, provisional=True)
+                if self._running is None or (self._provisional and self._start > cutoff):
+                    self._begin(cutoff, provisional=True)
                 yield from self._advance(cutoff, effort, seconds)
             return
-        if self.passes == 0 or self._provisional or self._start != cutoff:
+        while self.passes == 0 or self._provisional or self._start != cutoff:
             if self._provisional or self._start != cutoff:
                 self._begin(cutoff, provisional=False)
             yield from self._advance(cutoff, effort, seconds)
@@ -272,7 +273,10 @@ class Illumination:
             yield from self._advance(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
 
     def _begin(self, cutoff: float, *, provisional: bool) -> None:
-        """Anew, as if there were no pass; what is in the map stays there until the first one is done."""
+        """Anew, as if there were no pass; what is in the map stays there until the first one is done. A pass that is
+        under way ends without being added."""
+        if self._running is not None:
+            self._running.close()
         self._start, self._provisional, self._running = cutoff, provisional, None
         self.passes = 0
         self.cutoff, self.maker = math.inf, Maker.NOTHING
@@ -280,18 +284,22 @@ class Illumination:
         self._spread.clear()
 
     def _advance(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
-        """Go on with the pass under way, or else with a new one."""
-        running = self._running = self._running or self._pass(cutoff, effort, seconds)
-        try:
-            for piece in running:  # noqa: UP028 - that would end it with the picture that it is made for
-                yield piece
-        except Exception:
-            self._running = None  # it has ended without a pass
-            raise
-        if self._running is running:
-            self._running = None
+        """Go on with the pass under way, or else with a new one; if another picture begins anew, with that one's."""
+        self._running = self._running or self._pass(cutoff, effort, seconds)
+        while self._running is not None:
+            running = self._running
+            try:
+                for piece in running:  # noqa: UP028 - that would end it with the picture that it is made for
+                    yield piece
+            except Exception:
+                self._running = None  # it has ended without a pass
+                raise
+            if self._running is running:
+                self._running = None
+            if self.passes > 0:
+                return
 
-    def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
+    def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Generator[object, None, None]:
         """One pass more."""
         number, started, scene = self.passes, time.perf_counter(), self.stage.scene
         rays = rays_of(self.stage, number, moving=effort is Effort.MOVING)
@@ -300,11 +308,13 @@ class Illumination:
             weight = cutoff**-0.5  # the error that lamps' directions make does not fall with the cut-off
             before, keep, gain = self._weigh(weight, anew=not self._random)
             beams = self._of.take_beams()
-            figures = yield from beams.pieces(
-                self.stage, rays, self.bound.frame, self.bound.buffer, cutoff=cutoff, seconds=seconds, number=number,
-                keep=keep, gain=gain,
-            )  # fmt: skip
-            self._of.give_back(beams)
+            try:
+                figures = yield from beams.pieces(
+                    self.stage, rays, self.bound.frame, self.bound.buffer, cutoff=cutoff, seconds=seconds,
+                    number=number, keep=keep, gain=gain,
+                )  # fmt: skip
+            finally:
+                self._of.give_back(beams)
             maker, bias = Maker.BEAMS if follows else Maker.NOTHING, figures.rmse if follows else 0.0
         else:
             if self._photons is None:
