@@ -108,7 +108,7 @@ def geometry_of(shapes: Sequence[Shape]) -> Geometry:
     """How stones are traced."""
     if not shapes:
         return Geometry.EMPTY
-    return Geometry.HULL if all(map(by_half_spaces, shapes)) else Geometry.MESH
+    return Geometry.HULL if all(map(by_half_spaces, dict.fromkeys(shapes))) else Geometry.MESH
 
 
 def stones_of(scene: Scene) -> Stones:
@@ -148,7 +148,7 @@ def features_of(stage: Stage) -> Features:
         end=END[optics.end],
         spectral=int(is_spectral(scene)),
         polarised=int(optics.polarised and optics.estimator == "chain"),
-        few_mirrors=int(any(map(makes_finite_group, shapes))),
+        few_mirrors=int(any(map(makes_finite_group, dict.fromkeys(shapes)))),
         camera_inside=int(camera_stone(scene, placed_stones(stage)) is not None),
         stones=stones,
         estimator=ESTIMATOR[optics.estimator],

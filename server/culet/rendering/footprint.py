@@ -47,11 +47,9 @@ def out_of_sight(
     if features.stones != Stones.MANY or mirrors or features.lights != 0 or features.camera_inside != 0:
         return False
     centres, scales = centres_of(stones) - projection.origin, np.array([stone.scale for stone in stones])
-    if _shown(projection, centres, reach_of(scales, centres), width, height):
-        return False
-    floor = scene.floor
+    themselves, floor = reach_of(scales, centres), scene.floor
     if not isinstance(floor, StudioFloor):
-        return True
+        return not _shown(projection, centres, themselves, width, height)
     if scene.camera.kind == "orthographic" or floor.roughness > MOST_TILT:
         return False  # parallel rays begin nowhere in particular, and so may be turned aside by any length
     images = centres * [1, -1, 1]
@@ -60,8 +58,9 @@ def out_of_sight(
     # a ray meets the floor is no farther from the stone than its image is from the eye; or, if it meets the stone
     # sideways or backwards, no farther than two of its radii.
     way = np.linalg.norm(images - (np.array(scene.camera.position) - projection.origin), axis=1) + 2 * scales
-    reach = np.concatenate([scales * shade_reach(stones), scales + 2 * np.sqrt(2) * floor.roughness * way])
-    return not _shown(projection, np.concatenate([centres, images]), LARGER * reach, width, height)
+    shades, mirrored = scales * shade_reach(stones), scales + 2 * np.sqrt(2) * floor.roughness * way
+    reach = np.concatenate([np.maximum(themselves, LARGER * shades), LARGER * mirrored])
+    return not _shown(projection, np.concatenate([centres, images]), reach, width, height)
 
 
 def _shown(projection: Projection, centres: Array, reach: Array, width: int, height: int) -> bool:

@@ -36,15 +36,15 @@ class Inputs:
         real: Real,
         light_map: BoundMap | None = None,
     ) -> None:
-        scene, stones = stage.scene, grouped(placed_stones(stage))
+        scene, stones = stage.scene, placed_stones(stage)
         projection = project(scene, stones, width, height)
         # Stones that are left out still decide where the frame's origin is, so that all else keeps its bits.
-        shown = [] if out_of_sight(scene, stones, projection, features, width, height) else stones
+        shown = [] if out_of_sight(scene, stones, projection, features, width, height) else grouped(stones)
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
         self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
         self._sample = -1
-        self._struct = parameters(stage, stones, projection, width, height, real)
+        self._struct = parameters(stage, shown, projection, width, height, real)
         self._light_map = light_map
         if light_map is not None:
             set_light_map(self._struct, light_map.frame, stage, projection.origin)

@@ -173,9 +173,11 @@ def camera_stone(scene: Scene, stones: Sequence[PlacedStone]) -> int | None:
     begin outside."""
     if scene.camera.kind == "orthographic" or not stones:
         return None
-    depths = [stone.depth(scene.camera.position) * stone.scale for stone in stones]
-    deepest = int(np.argmax(depths))
-    return deepest if depths[deepest] > 0 else None
+    away = np.linalg.norm(centres_of(stones) - scene.camera.position, axis=1)
+    near = np.flatnonzero(away < np.array([stone.scale for stone in stones])).tolist()
+    depths = {number: stones[number].depth(scene.camera.position) * stones[number].scale for number in near}
+    deepest = max(depths, key=depths.__getitem__, default=None)
+    return deepest if deepest is not None and depths[deepest] > 0 else None
 
 
 def _winding_number(shape: Shape, point: Array) -> float:
