@@ -183,8 +183,10 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
     mirror = kind == MIRROR ? mirror | nearer : mirror & !nearer;
     if (floor_kind == STUDIO_FLOOR) studio = i == 0 ? nearer : studio & !nearer;
   }
-  if (any_lane(wanted & !met)) {
-    view.radiance = backdrop ? *backdrop : sky(world, ray.direction, channels);
+  if (backdrop) // unconditionally: a floor that nothing shades shows it too, and then need not be looked for
+    view.radiance = *backdrop;
+  else if (any_lane(wanted & !met)) {
+    view.radiance = sky(world, ray.direction, channels);
     if (viewer == BY_STONE && DECIDED(HEAD, scene->has_head))
       hide_by_head(world, ray.direction, !none, channels, &view.radiance);
   }
