@@ -142,8 +142,10 @@ class Lighting:
         return Beams(self.device, like=self._first)
 
     def give_back(self, beams: Beams) -> None:
-        """For the next pass."""
-        self._beams.append(beams)
+        """For the next pass. Of several whose passes were under way by turns one is kept: each holds 8 MiB a surface for
+        each core, and for each point a quarter of that."""
+        if not self._beams:
+            self._beams.append(beams)
 
     def scratch(self, size: int) -> Any:  # noqa: ANN401
         """Memory for a pass that is not whole yet."""
@@ -175,9 +177,9 @@ def _key(stage: Stage) -> _Key:
     scene = stage.scene
     optics = scene.optics
     return _Key(
-        scene.stones.__repr__(),
+        scene.stones,
         tuple(map(id, stage.shapes)),
-        (scene.emitters.__repr__(), scene.environment.__repr__(), id(stage.panorama)),
+        (scene.emitters, scene.environment, id(stage.panorama)),
         (scene.floor.kind, scene.walls.kind),
         (optics.fresnel, optics.bands, optics.polarised, optics.caustics, optics.max_bounces, scene.millimetres),
     )
