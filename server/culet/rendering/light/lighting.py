@@ -142,8 +142,8 @@ class Lighting:
         return Beams(self.device, like=self._first)
 
     def give_back(self, beams: Beams) -> None:
-        """For the next pass. Of several whose passes were under way by turns one is kept: each holds 8 MiB a surface for
-        each core, and for each point a quarter of that."""
+        """For the next pass. Of several whose passes were under way by turns one is kept: each holds 8 MiB a surface
+        for each core, and for each point a quarter of that."""
         if not self._beams:
             self._beams.append(beams)
 
