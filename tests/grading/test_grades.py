@@ -18,7 +18,7 @@ from culet.grading.grades import BATCHES, grade, tilt_curve, weighted_light_retu
 from culet.grading.number import ratio
 from culet.grading.optics import StoneOptics, optics_of
 from culet.grading.report import reports_of
-from culet.grading.rules import GEMRAY, Rules, rules_of
+from culet.grading.rules import GEMRAY, Glare, Rules, rules_of
 from culet.grading.sums import FIRE_DEGREES, KERNEL, LightSums, View
 from culet.rendering.device import Device
 from culet.scene import Scene
@@ -40,6 +40,8 @@ GEMRAY_FIGURES = {
 """Index, ISO, COS and SC2 of GemRay itself (2026-05), 800 x 800 rays, head 10 degrees."""
 DIAMOND = StoneOptics(2.4175, 2.4513, 2.4099)
 BRILLIANT = shape_of_cut(BrilliantCut())
+
+GLARES: tuple[Glare, ...] = ("all", "crown", "none")
 
 T = TypeVar("T")
 
@@ -67,7 +69,7 @@ def test_by_gemrays_rules_grades_are_gemrays(light: LightSums, name: str) -> Non
     shape = shape_of_design(design(name))
     grades = last(grade(light, shape, StoneOptics.of_index(index), GEMRAY, target=0.05))
     found = [number.value for number in (grades.iso, grades.cos, grades.sc2)]
-    assert found == pytest.approx(figures, abs=0.3)  # measured 0.2 at most, the emerald's SC2
+    assert found == pytest.approx(figures, abs=0.3)  # measured 0.22 at most, the emerald's SC2
     # Followed to the end there is more light, by what was cut off at most.
     whole = last(grade(light, shape, StoneOptics.of_index(index), Rules(glare="crown"), target=0.05))
     assert -0.2 < whole.iso.value - grades.iso.value < grades.iso.bound + 0.2
@@ -104,6 +106,27 @@ def test_a_slab_lets_through_what_its_faces_do(light: LightSums) -> None:
     assert grades.extinction.value == pytest.approx(100)  # 7.7 % come back, less than a tenth
     dark = last(grade(light, slab(0.2), StoneOptics.of_index(1.5), Rules(head_degrees=10)))
     assert dark.iso.value == pytest.approx(0, abs=1e-6)
+
+
+def test_a_window_is_the_leak_of_light_that_meets_one_facet_inside(light: LightSums) -> None:
+    glass, rules = StoneOptics.of_index(1.4), Rules()
+    whole, once = (
+        light.of(BRILLIANT, glass, each, [View()], batches=4, rays=2048)[0].sum(axis=0)
+        for each in (rules, Rules(bounces=1))
+    )
+    assert whole[KERNEL["WINDOW"]] == pytest.approx(once[KERNEL["LEAK"]], rel=1e-6)
+    assert whole[KERNEL["LEAK"]] > 1.05 * whole[KERNEL["WINDOW"]] > 0  # measured 1.062
+
+
+def test_in_a_closed_setting_facets_that_look_down_mirror_nothing(light: LightSums) -> None:
+    """As the stone is tilted to its edge, half of what is seen is pavilion; what that mirrors is glare of all alone."""
+    edge_on = View.tilted(80, 0)
+    everything, crown, none = (
+        light.of(BRILLIANT, DIAMOND, Rules(glare=glare), [edge_on], batches=4, rays=2048)[0].sum(axis=0)
+        for glare in GLARES
+    )
+    iso = KERNEL["ISO"]
+    assert none[iso] < crown[iso] < none[iso] + 0.9 * (everything[iso] - none[iso])
 
 
 def test_absorption_takes_what_beer_and_lambert_say(light: LightSums) -> None:

@@ -166,10 +166,16 @@ def test_a_refusal_says_how_far_the_proportion_may_go(cut: AnyCut, field: str) -
     with pytest.raises(MeshError, match=rf"{field} can be at (least|most) about") as refusal:
         shape_of_cut(cut)
     assert refusal.value.field == field
-    limit = float(str(refusal.value).split("about ")[1].split(",")[0])
-    toward_usual = limit + 0.02 * (getattr(type(cut)(), field) - limit)
-    whole = isinstance(getattr(cut, field), int) and float(limit).is_integer()
-    shape_of_cut(cut.model_copy(update={field: int(limit) if whole else toward_usual}))
+    limit, wanted = float(str(refusal.value).split("about ")[1].split(",")[0]), getattr(cut, field)
+    if isinstance(wanted, int) and type(cut).model_fields[field].annotation is int:
+        within, beyond = int(limit), int(limit) + (1 if wanted > limit else -1)
+    else:
+        usual = getattr(type(cut)(), field)
+        within, beyond = limit + 0.01 * (usual - limit), limit + 0.01 * (wanted - usual)
+        beyond = max(beyond, wanted) if wanted < usual else min(beyond, wanted)
+    shape_of_cut(cut.model_copy(update={field: within}))
+    with pytest.raises(MeshError):
+        shape_of_cut(cut.model_copy(update={field: beyond}))
 
 
 def test_where_two_proportions_are_wrong_the_refusal_names_both() -> None:

@@ -95,9 +95,10 @@ def _refusal(cut: AnyCut, error: MeshError) -> MeshError:
 
 def _furthest(cut: AnyCut, name: str, good: float, bad: float) -> float:
     """From a value that does toward one that does not."""
+    whole = type(cut).model_fields[name].annotation is int
     for _ in range(HALVINGS):
         middle = (good + bad) / 2
-        if isinstance(good, int):
+        if whole:
             middle = round(middle)
         if middle in (good, bad):
             break
