@@ -9,7 +9,7 @@ WEB := client/web
 WEB_PACKAGES := $(WEB)/node_modules/.package-lock.json
 WEB_BUILD := $(WEB)/dist/index.html
 SOLVER := server/culet/simulation/solver
-WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/element protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts vite.element.config.ts)
+WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/element $(WEB)/docs protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts vite.element.config.ts)
 
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
@@ -49,8 +49,9 @@ check-kernels: $(DONE)/dev opencl
 check-protocol: $(DONE)/dev
 	$(BIN)/pytest -q tests/protocol/test_generate.py
 
-check-web: $(WEB_PACKAGES)
+check-web: $(WEB_PACKAGES) $(DONE)/dev
 	cd $(WEB) && npm run check
+	$(BIN)/python -m culet.gateway.document | node $(WEB)/rest-types.mjs --check
 
 check-docs: docs
 
@@ -63,6 +64,7 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 	$(BIN)/ruff format
 	$(BIN)/clang-format -i kernels/culet_kernels/*.cl $(SOLVER)/*.c $(SOLVER)/*.h
 	$(BIN)/python .ci/default_scene.py
+	$(BIN)/python -m culet.gateway.document | node $(WEB)/rest-types.mjs
 	cd $(WEB) && npm run format
 
 # pytest ends with 5 if it has found no test.

@@ -1,15 +1,42 @@
-"""Puts into the wheel what is built: the page, as `culet/page`, and the solver of several stones, by its sources."""
+"""Puts into the wheel what is built: the page, as `culet/page`, and the solver of several stones, by its sources.
+
+And README.md, whose links to files beside it would lead nowhere from an index of packages. `CULET_HOME_URL`, such as
+`https://git.example/gems/culet/blob/main`, says where those files can be seen; without it the links are words.
+"""
 
 from __future__ import annotations
 
 import importlib.util
+import os
+import re
 import sysconfig
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 SOLVER = "culet/simulation/solver"
+_LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?://)([^)]+)\)")
+
+
+def readme(text: str, home: str | None) -> str:
+    """README.md as it can be read anywhere. Without a home, paragraphs with pictures are left out."""
+    if home is not None:
+        return _LINK.sub(lambda link: f"{link[1]}[{link[2]}]({home.rstrip('/')}/{link[3]})", text)
+    kept = [part for part in text.split("\n\n") if "![" not in part]
+    return _LINK.sub(lambda link: link[2], "\n\n".join(kept))
+
+
+class Description(MetadataHookInterface):
+    """The package's description, and its home if that is known."""
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        """Set what pyproject.toml calls dynamic."""
+        home = os.environ.get("CULET_HOME_URL")
+        text = (Path(self.root) / "README.md").read_text(encoding="utf-8")
+        metadata["readme"] = {"content-type": "text/markdown", "text": readme(text, home)}
+        metadata["urls"] = {} if home is None else {"Homepage": home}
 
 
 class BuiltParts(BuildHookInterface):

@@ -18,7 +18,7 @@ from culet.gateway.problems import RETRY_AFTER_SECONDS, problem, problem_of
 from culet.gateway.settings import GatewaySettings
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-_PICTURES = re.compile(r"/api/(render|sessions/[^/]+/frame)\.\w+")
+_PICTURES = re.compile(r"/api/(render|turntable|sessions/[^/]+/frame)\.\w+")
 """GETs that take the engine's time. Any page can have its visitors' browsers ask for them, as an <img>."""
 
 

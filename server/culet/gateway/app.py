@@ -7,13 +7,11 @@ import contextlib
 import logging
 from collections.abc import AsyncIterator
 from http import HTTPStatus
-from pathlib import Path
 
 from fastapi import FastAPI
-from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
-from starlette.staticfiles import StaticFiles
 
 from culet.gateway import (
     catalogue,
@@ -23,6 +21,7 @@ from culet.gateway import (
     session_routes,
     stills,
     stone_routes,
+    turntables,
     upload_routes,
 )
 from culet.gateway.access import Access
@@ -46,11 +45,10 @@ from culet.version import __version__
 
 log = logging.getLogger(__name__)
 
-PARTS = (login_routes, stills, session_routes, stone_routes, catalogue, upload_routes, health)
-DOCS_FOLDER = Path(__file__).with_name("docs")
+PARTS = (login_routes, stills, turntables, session_routes, stone_routes, catalogue, upload_routes, health)
 NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
 <h1>culet runs without its page</h1>
-<p>The <a href="/docs">REST interface</a> is here, for instance <a href="/api/render.png">a picture</a>."""
+<p>The <a href="openapi.json">REST interface</a> is here, for instance <a href="api/render.png">a picture</a>."""
 
 
 def create_app(settings: GatewaySettings) -> FastAPI:
@@ -59,6 +57,8 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         title="culet",
         version=__version__,
         summary="Dispersive gemstones, traced exactly and streamed to thin clients.",
+        description="Errors are problem documents (RFC 9457) that name the field. Frames of a session and control "
+        "events travel by the WebSocket `/api/sessions/{id}/stream`: see the documentation's page of the protocol.",
         openapi_url=None,  # FastAPI would make the document on the loop, which takes longer than a frame
         docs_url=None,  # its pages load their scripts from the network
         redoc_url=None,
@@ -74,17 +74,12 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     async def document() -> Response:
         return Response(await asyncio.to_thread(app.document), media_type="application/json")
 
-    @app.get("/docs", include_in_schema=False)
-    async def docs() -> FileResponse:
-        return FileResponse(DOCS_FOLDER / "index.html")
-
-    @app.get("/docs/", include_in_schema=False)
-    async def docs_without_slash() -> RedirectResponse:
-        return RedirectResponse("../docs", HTTPStatus.PERMANENT_REDIRECT)  # relative: a proxy may have it in a folder
-
-    app.mount("/docs", StaticFiles(directory=DOCS_FOLDER))  # its script and style: no policy allows those in a page
-
     if (settings.web / "index.html").is_file():
+
+        @app.get("/docs", include_in_schema=False)
+        async def docs() -> RedirectResponse:
+            return RedirectResponse("docs/", HTTPStatus.PERMANENT_REDIRECT)  # relative: a proxy may have it in a folder
+
         app.mount("/", PageFiles(directory=settings.web, html=True))
     else:
 

@@ -16,6 +16,15 @@ it("a session that is only watched is shown as it is", () => {
   );
 });
 
+it("of a server in a folder of a site is in that folder", () => {
+  expect(frameAddress({ src: "https://shop.example/gems", preset: null, watch: null, rotate: null })).toBe(
+    "https://shop.example/gems/?ui=0",
+  );
+  expect(
+    posterAddress({ src: "https://shop.example/gems/", preset: null, watch: null, rotate: null }, 320, 320, 1),
+  ).toBe("https://shop.example/gems/api/render.webp?width=320&height=320");
+});
+
 it("a poster has one of a few sizes, of the area's shape", () => {
   expect(posterAddress(WANTED, 400, 300, 1)).toBe(
     "https://gems.example/api/render.webp?preset=ruby+%26+co&width=480&height=368",

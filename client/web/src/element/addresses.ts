@@ -2,7 +2,7 @@
 
 /** The server, and what of it is shown; null: what the server takes by itself. */
 export interface Wanted {
-  /** Of the server, such as https://gems.example. */
+  /** Of the server, such as https://gems.example or https://shop.example/gems. */
   src: string;
   preset: string | null;
   /** The watch id of a session that somebody else moves, in place of one of the viewer's own. */
@@ -16,9 +16,14 @@ const SIDES = [320, 480, 640, 960, 1280];
 /** Pixels: the other side is a multiple. */
 const STEP = 16;
 
+/** What the server's own addresses begin with: a proxy may have the server in a folder. */
+function folder(src: string): string {
+  return src.endsWith("/") ? src : `${src}/`;
+}
+
 /** The live picture, for an iframe. */
 export function frameAddress({ src, preset, watch, rotate }: Wanted): string {
-  const address = new URL("/", src);
+  const address = new URL(folder(src));
   address.searchParams.set("ui", "0");
   if (watch !== null) address.searchParams.set("watch", watch);
   else if (preset !== null) address.searchParams.set("preset", preset);
@@ -31,8 +36,8 @@ export function posterAddress({ src, preset, watch }: Wanted, width: number, hei
   const long = Math.max(width, height, 1) * ratio;
   const side = SIDES.find((each) => each >= long) ?? (SIDES.at(-1) as number);
   const pixels = (length: number) => Math.max(STEP, Math.round((side * length * ratio) / long / STEP) * STEP);
-  const path = watch === null ? "/api/render.webp" : `/api/sessions/${encodeURIComponent(watch)}/frame.webp`;
-  const address = new URL(path, src);
+  const path = watch === null ? "api/render.webp" : `api/sessions/${encodeURIComponent(watch)}/frame.webp`;
+  const address = new URL(path, folder(src));
   if (watch === null && preset !== null) address.searchParams.set("preset", preset);
   address.searchParams.set("width", String(pixels(width)));
   address.searchParams.set("height", String(pixels(height)));

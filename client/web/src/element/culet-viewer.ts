@@ -15,7 +15,7 @@ const STYLE = `
 `;
 
 /** The server that this script came from. */
-const HOME = new URL(import.meta.url).origin;
+const HOME = new URL(/* @vite-ignore */ "..", import.meta.url).href;
 
 /** ms for which the poster goes before the live picture: both are drawn by the same server. */
 const PATIENCE_MS = 2000;

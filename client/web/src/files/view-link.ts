@@ -26,7 +26,7 @@ export class LinkError extends Error {
 /** The address that shows a view on the server of this page. */
 export async function viewAddress(view: SeenView, page: string): Promise<string> {
   const packed = await through(new TextEncoder().encode(JSON.stringify(view)), new CompressionStream("deflate-raw"));
-  return new URL(`/#${KEY}=${VERSION}${base64url(packed)}`, page).href;
+  return new URL(`./#${KEY}=${VERSION}${base64url(packed)}`, page).href;
 }
 
 /** What the part of an address after the hash says of a view, or null if that says nothing of one. */

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Preset } from "../session/catalogue";
 import { byGroup, entryAfter } from "./scene-strip";
 
-const preset = (name: string, group: string): Preset => ({
+const preset = (name: string, group: Preset["group"]): Preset => ({
   name,
   group,
   title: name,
@@ -30,9 +30,9 @@ describe("arrow keys on the strip of scenes", () => {
 });
 
 it("presets of a group stand together in the order that the server gives", () => {
-  const groups = byGroup([preset("a", "one"), preset("b", "two"), preset("c", "one")]);
+  const groups = byGroup([preset("a", "diamonds"), preset("b", "instruments"), preset("c", "diamonds")]);
   expect([...groups].map(([name, members]) => [name, members.map((each) => each.name)])).toEqual([
-    ["one", ["a", "c"]],
-    ["two", ["b"]],
+    ["diamonds", ["a", "c"]],
+    ["instruments", ["b"]],
   ]);
 });

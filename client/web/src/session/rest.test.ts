@@ -27,7 +27,7 @@ function answering(status: number, body: unknown) {
 it("patches a session", async () => {
   const calls = answering(200, {});
   await patchSession("abc", { floor: { kind: "none" } });
-  expect(calls[0]?.path).toBe("/api/sessions/abc");
+  expect(calls[0]?.path).toBe("api/sessions/abc");
   expect(calls[0]?.init).toMatchObject({ method: "PATCH", body: '{"floor":{"kind":"none"}}' });
 });
 
@@ -36,7 +36,7 @@ describe("a new session", () => {
     const calls = answering(201, { id: "abc", scene: {} });
     expect(await createSession()).toEqual({ id: "abc", scene: {} });
     await createSession({ preset: "classic" });
-    expect(calls.map(({ path }) => path)).toEqual(["/api/sessions", "/api/sessions"]);
+    expect(calls.map(({ path }) => path)).toEqual(["api/sessions", "api/sessions"]);
     expect(calls.map(({ init }) => init?.body)).toEqual(["{}", '{"preset":"classic"}']);
     expect(calls[0]?.init?.method).toBe("POST");
   });
@@ -83,7 +83,7 @@ it("says at least the shape of an upload in which nothing was found", async () =
   expect((await uploadMesh(new File(["OFF"], "cube.off"))).findings).toEqual(["6 facets, not convex."]);
   const calls = answering(201, { id: "s", description: { width: 16, height: 8, findings: [] } });
   expect(await uploadSky(new File(["#?"], "sky.hdr"))).toEqual({ id: "s", findings: ["16 \u00d7 8 pixels."] });
-  expect(calls[0]?.path).toBe("/api/skies");
+  expect(calls[0]?.path).toBe("api/skies");
 });
 
 it("refuses an upload's answer without an id", async () => {
@@ -94,7 +94,7 @@ it("refuses an upload's answer without an id", async () => {
 it("lists what a scene can name", async () => {
   const calls = answering(200, { nanometres: [], materials: [{ name: "ruby", summary: "red" }] });
   expect(await materials()).toEqual([{ name: "ruby", summary: "red" }]);
-  expect(calls[0]?.path).toBe("/api/materials");
+  expect(calls[0]?.path).toBe("api/materials");
   answering(200, {});
   await expect(materials()).rejects.toThrow("expected a list of materials");
 });
@@ -102,7 +102,7 @@ it("lists what a scene can name", async () => {
 it("asks for a step that a double cannot hold by all its digits", async () => {
   const calls = answering(200, "tga");
   await picture("abc", 2n ** 53n + 1n, "png");
-  expect(calls[0]?.path).toBe("/api/sessions/abc/frame.png?step=9007199254740993");
+  expect(calls[0]?.path).toBe("api/sessions/abc/frame.png?step=9007199254740993");
 });
 
 it("tells what passes by itself from what does not", () => {

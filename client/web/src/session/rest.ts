@@ -1,9 +1,26 @@
 /** The gateway's REST interface. Errors are problem documents (RFC 9457). */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { object, part } from "../json";
+import { object } from "../json";
 import { words } from "../words/words";
-import type { CutKind, Material, Preset, Titled, Upload } from "./catalogue";
+import type {
+  Cut,
+  Cuts,
+  DescribedMesh,
+  DescribedSky,
+  IntegratorDescription,
+  Integrators,
+  Material,
+  Materials,
+  MeshAnswer,
+  Preset,
+  Presets,
+  SessionAnswer,
+  Skies,
+  Sky,
+  SkyAnswer,
+} from "./answers";
+import type { Upload } from "./catalogue";
 
 /** An answer other than 2xx; the message is fit to be shown. */
 export class ProblemError extends Error {
@@ -27,6 +44,7 @@ export function isPassing({ status }: ProblemError): boolean {
 /** What a picture is saved as. */
 export type Format = "png" | "webp" | "tga" | "exr";
 
+/** `path` is beside the page: a proxy may have both in a folder. */
 async function request(path: string, init?: RequestInit): Promise<Response> {
   let response: Response;
   try {
@@ -67,15 +85,15 @@ function post(body: JsonObject): RequestInit {
 
 /** Have this browser known by the server's token, which the address that opened the page had. */
 export async function signIn(token: string): Promise<void> {
-  await request("/api/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
+  await request("api/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
 }
 
 /** What a new session shows; nothing: the default scene. */
 export type Beginning = { preset?: string } | { scene: JsonObject };
 
 export async function createSession(beginning: Beginning = {}): Promise<{ id: string; scene: JsonObject }> {
-  const response = await request("/api/sessions", post(beginning));
-  const { id, scene } = (await response.json()) as JsonObject;
+  const response = await request("api/sessions", post(beginning));
+  const { id, scene } = (await response.json()) as Partial<SessionAnswer>;
   if (typeof id !== "string") throw new ProblemError(response.status, "expected the id of a session, got none");
   return { id, scene: object(scene) };
 }
@@ -89,33 +107,35 @@ export interface Lost {
 
 /** Have a session that was lost made again, if no other viewer was faster. */
 export async function reopenSession({ id, scene, snapshot }: Lost): Promise<void> {
-  await request("/api/sessions", post(snapshot ? { id, scene, snapshot } : { id, scene }));
+  await request("api/sessions", post(snapshot ? { id, scene, snapshot } : { id, scene }));
 }
 
 /** Change a session's scene by a merge patch. */
 export async function patchSession(id: string, patch: JsonObject): Promise<void> {
-  await request(`/api/sessions/${encodeURIComponent(id)}`, { ...post(patch), method: "PATCH" });
+  await request(`api/sessions/${encodeURIComponent(id)}`, { ...post(patch), method: "PATCH" });
 }
 
 /** What was found in the scene of a session, a sentence each; throws ProblemError with status 404 if there is none. */
 export async function findSession(id: string): Promise<{ findings: string[] }> {
-  const response = await request(`/api/sessions/${encodeURIComponent(id)}`);
-  const { findings } = object(await response.json());
+  const response = await request(`api/sessions/${encodeURIComponent(id)}`);
+  const { findings } = (await response.json()) as Partial<SessionAnswer>;
   return { findings: Array.isArray(findings) ? findings.map(String) : [] };
 }
 
 /** The scene as the picture of that step shows it: with its camera, and the stones where they were. */
 export async function sceneShown(session: string, step: bigint): Promise<JsonObject> {
-  return object(await (await request(`/api/sessions/${session}/scene?step=${step}`)).json());
+  return object(await (await request(`api/sessions/${session}/scene?step=${step}`)).json());
 }
 
 /** All that there is of something, under the name that the answer gives it too. */
-async function catalogue<T>(name: string): Promise<T[]> {
-  const response = await request(`/api/${name}`);
-  const { [name]: list } = (await response.json()) as JsonObject;
+async function catalogue<Name extends keyof Catalogues>(name: Name): Promise<Catalogues[Name]> {
+  const response = await request(`api/${name}`);
+  const { [name]: list } = (await response.json()) as Partial<Catalogues>;
   if (!Array.isArray(list)) throw new ProblemError(response.status, `expected a list of ${name}, got none`);
-  return list as T[];
+  return list as Catalogues[Name];
 }
+
+type Catalogues = Presets & Materials & Cuts & Skies & Integrators;
 
 export function presets(): Promise<Preset[]> {
   return catalogue("presets");
@@ -125,55 +145,56 @@ export function materials(): Promise<Material[]> {
   return catalogue("materials");
 }
 
-export function cuts(): Promise<CutKind[]> {
+export function cuts(): Promise<Cut[]> {
   return catalogue("cuts");
 }
 
-export function skies(): Promise<Titled[]> {
+export function skies(): Promise<Sky[]> {
   return catalogue("skies");
 }
 
-export function integrators(): Promise<Titled[]> {
+export function integrators(): Promise<IntegratorDescription[]> {
   return catalogue("integrators");
 }
 
 /** The grades of a session's stone; with `tilt` its tilt curves too. */
 export async function grades(session: string, stone: string, tilt: boolean, signal: AbortSignal): Promise<JsonObject> {
   const query = new URLSearchParams({ stone, tilt: String(tilt), error: "0.2" });
-  return object(await (await request(`/api/sessions/${session}/grade?${query}`, { signal })).json());
+  return object(await (await request(`api/sessions/${session}/grade?${query}`, { signal })).json());
 }
 
 /** Address of the cutting diagram of a session's stone. */
 export function diagramAddress(session: string, stone: string): string {
-  return `/api/sessions/${session}/diagram.svg?${new URLSearchParams({ stone })}`;
+  return `api/sessions/${session}/diagram.svg?${new URLSearchParams({ stone })}`;
 }
 
-async function upload(path: string, file: File): Promise<JsonObject> {
+async function upload<Answer>(path: string, file: File): Promise<Partial<Answer>> {
   const body = new FormData();
   body.append("file", file);
-  return (await (await request(path, { method: "POST", body })).json()) as JsonObject;
+  return (await (await request(path, { method: "POST", body })).json()) as Partial<Answer>;
 }
 
 export async function uploadMesh(file: File): Promise<Upload> {
-  const shape = ({ facets, convex }: JsonObject) => words.files.facets(String(facets), Boolean(convex));
-  return parseUpload(await upload("/api/meshes", file), shape);
+  const shape = ({ facets, convex }: Partial<DescribedMesh>) => words.files.facets(String(facets), Boolean(convex));
+  return parseUpload(await upload<MeshAnswer>("api/meshes", file), shape);
 }
 
 export async function uploadSky(file: File): Promise<Upload> {
-  return parseUpload(await upload("/api/skies", file), ({ width, height }) =>
-    words.files.pixels(String(width), String(height)),
-  );
+  const shape = ({ width, height }: Partial<DescribedSky>) => words.files.pixels(String(width), String(height));
+  return parseUpload(await upload<SkyAnswer>("api/skies", file), shape);
 }
 
 /** The gateway's answer to an upload, and what to say of one in which nothing was found. */
-function parseUpload(answer: JsonObject, otherwise: (description: JsonObject) => string): Upload {
-  const description = part(answer, "description");
-  if (typeof answer.id !== "string") throw new ProblemError(201, "expected the id of an upload, got none");
-  const said = Array.isArray(description.findings) ? description.findings.map(String) : [];
-  return { id: answer.id, findings: said.length > 0 ? said : [otherwise(description)] };
+function parseUpload<Description extends { findings: string[] }>(
+  { id, description }: { id?: string; description?: Description },
+  otherwise: (description: Partial<Description>) => string,
+): Upload {
+  if (typeof id !== "string") throw new ProblemError(201, "expected the id of an upload, got none");
+  const said = Array.isArray(description?.findings) ? description.findings.map(String) : [];
+  return { id, findings: said.length > 0 ? said : [otherwise(description ?? {})] };
 }
 
 /** The state of that number, rendered at full quality. */
 export async function picture(session: string, step: bigint, format: Format): Promise<Blob> {
-  return (await request(`/api/sessions/${session}/frame.${format}?step=${step}`)).blob();
+  return (await request(`api/sessions/${session}/frame.${format}?step=${step}`)).blob();
 }

@@ -23,7 +23,7 @@ describe("the address", () => {
   });
 
   it("of a session is one that the page reads back", () => {
-    expect(wantedSession(sessionAddress(ID).slice(1))).toEqual({ kind: "session", id: ID });
+    expect(wantedSession(sessionAddress(ID))).toEqual({ kind: "session", id: ID });
   });
 });
 
@@ -36,13 +36,13 @@ it("has the server's token behind its hash, or none", () => {
 it("names a session that is looked at and not steered", () => {
   expect(wantedSession(`?watch=${ID}`)).toEqual({ kind: "watch", id: ID });
   expect(wantedSession("?watch=x")).toEqual({ kind: "invalid", id: "x" });
-  expect(wantedSession(watchAddress(ID, { ui: false, rotate: 0 }).slice(1))).toEqual({ kind: "watch", id: ID });
-  expect(watchedStreamUrl({ protocol: "https:", host: "culet.test" })).toBe("wss://culet.test/api/stream");
+  expect(wantedSession(watchAddress(ID, { ui: false, rotate: 0 }))).toEqual({ kind: "watch", id: ID });
+  expect(watchedStreamUrl("https://culet.test/gems/?watch=1")).toBe("wss://culet.test/gems/api/stream");
 });
 
-it("streams by wss where the page came by https", () => {
-  expect(streamUrl({ protocol: "http:", host: "localhost:8000" }, ID)).toBe(
-    `ws://localhost:8000/api/sessions/${ID}/stream`,
+it("streams by wss where the page came by https, and from the folder that the page is in", () => {
+  expect(streamUrl("http://localhost:8000/?session=1", ID)).toBe(`ws://localhost:8000/api/sessions/${ID}/stream`);
+  expect(streamUrl("https://hub.test/user/ada/proxy/8000/?preset=ruby#x", ID)).toBe(
+    `wss://hub.test/user/ada/proxy/8000/api/sessions/${ID}/stream`,
   );
-  expect(streamUrl({ protocol: "https:", host: "culet.test" }, ID)).toBe(`wss://culet.test/api/sessions/${ID}/stream`);
 });

@@ -31,27 +31,28 @@ export function tokenIn(hash: string): string | null {
   return new URLSearchParams(hash.slice(1)).get("token");
 }
 
-/** The address that others may watch and steer the session at. */
+/** The address that others may watch and steer the session at, beside the page's. */
 export function sessionAddress(id: string, embedding?: Embedding): string {
-  return `/?session=${id}${embedding ? queryOf(embedding) : ""}`;
+  return `?session=${id}${embedding ? queryOf(embedding) : ""}`;
 }
 
 /** The address that others may watch it at, by its watch id. */
 export function watchAddress(watch: string, embedding?: Embedding): string {
-  return `/?watch=${watch}${embedding ? queryOf(embedding) : ""}`;
+  return `?watch=${watch}${embedding ? queryOf(embedding) : ""}`;
 }
 
-type Place = Pick<Location, "protocol" | "host">;
-
-export function streamUrl(place: Place, id: string): string {
-  return `${origin(place)}/api/sessions/${id}/stream`;
+export function streamUrl(page: string, id: string): string {
+  return beside(page, `api/sessions/${id}/stream`);
 }
 
 /** Of a session that is watched: its watch id is no part of it, but one of the subprotocols that are offered. */
-export function watchedStreamUrl(place: Place): string {
-  return `${origin(place)}/api/stream`;
+export function watchedStreamUrl(page: string): string {
+  return beside(page, "api/stream");
 }
 
-function origin({ protocol, host }: Place): string {
-  return `${protocol === "https:" ? "wss:" : "ws:"}//${host}`;
+/** A stream's address, by the page's own: a proxy may have both in a folder. */
+function beside(page: string, path: string): string {
+  const address = new URL(path, page);
+  address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
+  return address.href;
 }

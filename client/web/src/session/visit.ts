@@ -72,7 +72,7 @@ export class Visit {
 
   /** Leave for a new session. */
   startAnew(): void {
-    location.assign(this.only ? "/" : `/?${queryOf(this.embedding).slice(1)}`);
+    location.assign(this.only ? "./" : `./?${queryOf(this.embedding).slice(1)}`);
   }
 
   /** Find or make the session; after `tries` that failed, since the server was not ready. */
@@ -137,7 +137,7 @@ export class Visit {
     if (!only) history.replaceState(null, "", sessionAddress(id, this.embedding));
     this.signs.await();
     const viewer = new Viewer(
-      only ? watchedStreamUrl(location) : streamUrl(location, id),
+      only ? watchedStreamUrl(location.href) : streamUrl(location.href, id),
       {
         show: this.world.show,
         size: this.world.size,

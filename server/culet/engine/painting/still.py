@@ -36,6 +36,8 @@ class Still:
     format: Format
     client: str = ""
     """On whose behalf."""
+    part: float = 1.0
+    """Of the time that a still may take, which this one may."""
     asked_at: float = 0.0
     """s, steady clock."""
     done: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())

@@ -65,13 +65,14 @@ class StillPainter:
         self._encode_thread.shutdown(wait=False, cancel_futures=True)
 
     def _check_time(self, still: Still) -> None:
-        if still.spent <= self._most_seconds:
+        most_seconds = self._most_seconds * still.part
+        if still.spent <= most_seconds:
             return
         if still.target.error is not None and still.picture is not None and still.picture.samples > 0:
             still.out_of_time = True  # what was asked for is an error as far as that can be had
         else:
             raise TooLargeError(
-                f"expected a picture that takes at most {self._most_seconds:g} s to render, got one of "
+                f"expected a picture that takes at most {most_seconds:g} s to render, got one of "
                 f"{still.width} x {still.height} pixels, {still.target.samples} samples and "
                 f"{band_count(still.stage.scene)} bands that is not done after them; ask for less of each",
                 "samples",

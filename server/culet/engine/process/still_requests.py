@@ -68,7 +68,7 @@ class StillRequests:
         height = default_size[1] if request.height is None else request.height
         check_still_size(width, height, self._limits, pictures=pictures_of(scene))
         target = self._target(request, scene, width, height)
-        still = Still(stage, width, height, target, request.format, request.client, time.monotonic())
+        still = Still(stage, width, height, target, request.format, request.client, request.part, time.monotonic())
         for samples in range(min(2, target.samples)):  # the second sample may need another program than the first
             await self._painter.make_ready(stage, samples)
         self._make_room_for(still)
@@ -78,6 +78,7 @@ class StillRequests:
 
     def _target(self, request: Render, scene: Scene, width: int, height: int) -> Target:
         """What is asked for, of a session by default what it has at rest. InputError if it is too much work."""
+        limits = self._limits.model_copy(update={"max_still_work": self._limits.max_still_work * request.part})
         if request.session is not None and request.samples is None and request.error is None:
             rest, own = self._limits.rest, scene.sampling.samples_per_pixel
             target = replace(rest, samples=max(rest.samples, own), least=max(rest.least, own))
@@ -85,10 +86,10 @@ class StillRequests:
             target = Target.of(request.samples, request.error, scene)
         bands = band_count(scene) * pictures_of(scene)
         if target.error is None or request.samples is not None:
-            check_still_work(width, height, target.samples, bands, self._limits)
+            check_still_work(width, height, target.samples, bands, limits)
             return target
-        check_still_work(width, height, target.least, bands, self._limits)
-        return replace(target, samples=min(target.samples, most_samples(width, height, bands, self._limits)))
+        check_still_work(width, height, target.least, bands, limits)
+        return replace(target, samples=min(target.samples, most_samples(width, height, bands, limits)))
 
     async def _painted(self, still: Still) -> bytes:
         self._queue.put(still)

@@ -1,0 +1,202 @@
+// Generated from the interface's description by "make format"; do not edit.
+
+import type { JsonObject } from "@culet/protocol/messages";
+
+export type Scene = JsonObject;
+
+/**
+ * A named cut; `proportions` is the JSON schema of what it can be told, with what is `usual`.
+ */
+export interface Cut {
+  name:
+    | "brilliant"
+    | "old-european"
+    | "single"
+    | "rose"
+    | "portuguese"
+    | "briolette"
+    | "oval"
+    | "cushion"
+    | "pear"
+    | "marquise"
+    | "trillion"
+    | "heart"
+    | "princess"
+    | "emerald"
+    | "asscher"
+    | "baguette";
+  summary: string;
+  proportions: Scene;
+  title: string;
+}
+/**
+ * All cuts.
+ */
+export interface Cuts {
+  cuts: Cut[];
+}
+/**
+ * A mesh in figures.
+ */
+export interface DescribedMesh {
+  findings: string[];
+  vertices: number;
+  triangles: number;
+  facets: number;
+  convex: boolean;
+  volume: number;
+}
+/**
+ * A sky in figures.
+ */
+export interface DescribedSky {
+  findings: string[];
+  width: number;
+  height: number;
+  largest_radiance: number;
+}
+/**
+ * A way to follow a free rotation; `simulation.integrator` of a scene takes the name.
+ */
+export interface IntegratorDescription {
+  name: string;
+  summary: string;
+  title: string;
+}
+/**
+ * All integrators.
+ */
+export interface Integrators {
+  integrators: IntegratorDescription[];
+}
+/**
+ * A named material: where its numbers come from, and how far they can be trusted.
+ */
+export interface Material {
+  name: string;
+  summary: string;
+  source: string;
+  confidence: "measured" | "weak source" | "as set";
+  ray: "ordinary ray" | null;
+  /**
+   * @minItems 2
+   * @maxItems 2
+   */
+  span_nm: [number, number];
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  indices: [number, number, number];
+  coloured: boolean;
+  title: string;
+}
+/**
+ * All named materials; `indices` are refractive indices at `nanometres`.
+ */
+export interface Materials {
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  nanometres: [number, number, number];
+  materials: Material[];
+}
+/**
+ * An accepted mesh; `stones[0].mesh` of a scene takes the id.
+ */
+export interface MeshAnswer {
+  id: string;
+  description: DescribedMesh;
+}
+/**
+ * A named scene.
+ */
+export interface Preset {
+  name: string;
+  summary: string;
+  group: "diamonds" | "instruments" | "coloured stones" | "several stones" | "the report";
+  thumbnail: string;
+  scene: Scene;
+  title: string;
+}
+/**
+ * All presets.
+ */
+export interface Presets {
+  presets: Preset[];
+}
+/**
+ * A session as it is now.
+ */
+export interface SessionAnswer {
+  /**
+   * Whoever knows it may watch and change the session.
+   */
+  id: string;
+  /**
+   * Whoever knows it may look at the session's frames over ZeroMQ, no more.
+   */
+  watch: string;
+  scene: Scene;
+  /**
+   * Whether time goes on for the stones.
+   */
+  falling: boolean;
+  /**
+   * Whether all stones have come to rest for good.
+   */
+  asleep: boolean;
+  /**
+   * What each stone does, by its id.
+   */
+  motions: {
+    [k: string]: "paused" | "falling" | "asleep";
+  };
+  /**
+   * While things move: 0 is many frames, 1 few and good ones.
+   */
+  exactness: number;
+  /**
+   * Whether `exactness` fixes the quality of moving frames instead.
+   */
+  pinned: boolean;
+  /**
+   * Whether there is an edit that the event `undo` takes back.
+   */
+  can_undo: boolean;
+  /**
+   * Whether there is an undone edit that `redo` makes again.
+   */
+  can_redo: boolean;
+  /**
+   * What was found in uploaded meshes, and which stones overlap, a sentence each.
+   */
+  findings: string[];
+  viewers: number;
+  /**
+   * Path of the WebSocket; see the protocol's specification.
+   */
+  stream: string;
+}
+/**
+ * All named panoramas.
+ */
+export interface Skies {
+  skies: Sky[];
+}
+/**
+ * A named panorama; `environment.image` of a scene takes the name.
+ */
+export interface Sky {
+  name: string;
+  summary: string;
+  title: string;
+}
+/**
+ * An accepted sky; `environment.image` of a scene takes the id.
+ */
+export interface SkyAnswer {
+  id: string;
+  description: DescribedSky;
+}
