@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import io
 import zipfile
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from PIL import Image, ImageSequence
 from gateway.running import Gateway, eventually
 from gateway.test_rest import assert_problem
 
-QUERY: dict[str, str | int | float] = {"preset": "matte", "width": 48, "height": 32, "samples": 1}
+QUERY: dict[str, Any] = {"preset": "matte", "width": 48, "height": 32, "samples": 1}
 
 
 async def test_an_animation_has_the_frames_and_the_time_asked_for(gateway: Gateway) -> None:
@@ -78,7 +79,7 @@ async def test_without_samples_frames_are_refined_to_an_error(gateway: Gateway) 
     ],
 )
 async def test_what_is_too_much_or_wrong_is_refused_by_its_name(
-    gateway: Gateway, wrong: dict[str, str | int], field: str | None
+    gateway: Gateway, wrong: dict[str, Any], field: str | None
 ) -> None:
     assert_problem(
         await gateway.http.get("/api/turntable.webp", params=QUERY | wrong), 404 if field is None else 422, field

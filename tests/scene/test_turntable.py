@@ -28,7 +28,7 @@ def test_a_quarter_of_a_turn_goes_counter_clockwise_seen_from_above() -> None:
 def test_a_camera_that_looks_straight_down_turns_the_picture() -> None:
     before, quarter, *_ = (view.camera for view in around(PRESETS["face-up"].scene, 4))
     assert quarter.position == before.position
-    assert before.up == (0, 0, -1)
+    assert before.up == pytest.approx((0, 0, -1))
     assert quarter.up == pytest.approx((-1, 0, 0), abs=1e-15)
 
 
