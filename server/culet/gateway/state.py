@@ -13,6 +13,9 @@ from culet.gateway.settings import GatewaySettings
 from culet.gateway.still_places import StillPlaces
 from culet.gateway.uploads import Uploads
 
+MOST_TURNTABLES = 4
+"""Being made for all clients together: the gateway holds their frames, as `culet.gateway.turntables` says."""
+
 
 @dataclass(frozen=True)
 class Gateway:
@@ -26,5 +29,7 @@ class Gateway:
     """What each client may still ask for."""
     stills: StillPlaces
     metrics: Metrics
+    turntables: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_TURNTABLES))
+    """Held by those that are being made."""
     stopping: asyncio.Event = field(default_factory=asyncio.Event)
     """Set when the server was told to stop."""

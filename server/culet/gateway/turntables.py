@@ -5,8 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Annotated, Any, NamedTuple
 
@@ -34,8 +33,6 @@ MOST_FRAMES = 360
 MOST_PIXELS = 2**24
 """Of all frames together. While one is made, the gateway holds its frames as PNG, some 1.5 bytes a pixel, and
 in the end as 4 bytes a pixel."""
-MOST_AT_ONCE = 4
-"""Turntables that are being made for all clients together."""
 DEFAULT_ERROR = 0.01
 """As the eye sees moving pictures, coarser than what a still is refined to."""
 WEBP_QUALITY = 90
@@ -99,27 +96,6 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
 """By the ending of the address."""
 
 
-class _Making:
-    """How many are being made."""
-
-    def __init__(self) -> None:
-        self._number = 0
-
-    @contextmanager
-    def one(self) -> Iterator[None]:
-        """Another one, or BusyError."""
-        if self._number >= MOST_AT_ONCE:
-            raise BusyError(f"{MOST_AT_ONCE} turntables are being made already; try again later")
-        self._number += 1
-        try:
-            yield
-        finally:
-            self._number -= 1
-
-
-_making = _Making()
-
-
 def _offer(ending: str, kind: Kind) -> None:
     """Make GET /api/turntable.ENDING a route."""
 
@@ -130,8 +106,11 @@ def _offer(ending: str, kind: Kind) -> None:
         if names(http.headers.get("If-None-Match"), tag):
             return Response(status_code=304, headers=headers)
         client = client_of(http.scope)
-        with gateway.stills.place(client), _making.one():
-            data, quality = await while_waited_for(http, _made(gateway, scene, query, kind, client))
+        if gateway.turntables.locked():
+            raise BusyError("as many turntables are being made as there may be at once; try again later")
+        with gateway.stills.place(client):
+            async with gateway.turntables:
+                data, quality = await while_waited_for(http, _made(gateway, scene, query, kind, client))
         answer = PictureResponse(data, media_type=kind.media_type, headers=quality)
         if answer.headers.get(TARGET) != MISSED:  # as of a still
             answer.headers.update(headers)

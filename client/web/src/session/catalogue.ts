@@ -7,7 +7,8 @@ export type { Cut as CutKind, Preset } from "./answers";
 /** Something that a scene can name, of which the name is not what people call it. */
 export type Titled = Pick<Sky, "name" | "title" | "summary">;
 
-export type Material = Titled & Pick<DescribedMaterial, "coloured" | "indices">;
+export type Material = Titled &
+  Pick<DescribedMaterial, "coloured"> & { indices: Readonly<DescribedMaterial["indices"]> };
 
 /** An uploaded mesh or sky: its id for the scene, and sentences about it for the user. */
 export interface Upload {
