@@ -56,6 +56,31 @@ export interface DescribedSky {
   largest_radiance: number;
 }
 /**
+ * Per cent, but where said otherwise.
+ */
+export interface Grades {
+  iso: Number;
+  cos: Number;
+  sc2: Number;
+  shares: {
+    [k: string]: Number;
+  };
+  window: Number;
+  extinction: Number;
+  contrast: Number;
+  fire: Number;
+  fire_degrees: Number;
+  rays: number;
+}
+/**
+ * Of one grade.
+ */
+export interface Number {
+  value: number;
+  error: number;
+  bound?: number;
+}
+/**
  * A way to follow a free rotation; `simulation.integrator` of a scene takes the name.
  */
 export interface IntegratorDescription {
@@ -125,6 +150,49 @@ export interface Preset {
  */
 export interface Presets {
   presets: Preset[];
+}
+/**
+ * What is known so far.
+ */
+export interface Report {
+  stone: string;
+  index: number;
+  size: Size;
+  rules: Rules;
+  grades: Grades;
+  weighted_light_return?: Number | null;
+  tilt?: {
+    [k: string]: TiltPoint[];
+  } | null;
+  done?: number;
+}
+/**
+ * Millimetres and carats.
+ */
+export interface Size {
+  length: number;
+  width: number;
+  depth: number;
+  carats: number;
+  density: number;
+}
+/**
+ * By default culet's own: chains are followed to the end.
+ */
+export interface Rules {
+  head_degrees?: number;
+  glare?: "all" | "crown" | "none";
+  bounces?: number;
+  cutoff?: number;
+}
+/**
+ * Of a tilt curve.
+ */
+export interface TiltPoint {
+  degrees: number;
+  iso: Number;
+  cos: Number;
+  sc2: Number;
 }
 /**
  * A session as it is now.
