@@ -199,11 +199,11 @@ export interface TiltPoint {
  */
 export interface SessionAnswer {
   /**
-   * Whoever knows it may watch and change the session.
+   * Whoever knows it may watch and change the session. Of a session that was asked for by its watch id, that.
    */
   id: string;
   /**
-   * Whoever knows it may look at the session's frames over ZeroMQ, no more.
+   * Whoever knows it may watch the session, no more: it takes the id's place.
    */
   watch: string;
   scene: Scene;
