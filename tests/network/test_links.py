@@ -57,7 +57,7 @@ def test_a_link_that_becomes_slow_and_fast_again_is_followed_in_three_seconds(tm
         check_fast(fast)
         watcher.link.become(SLOW)
         watcher.seen(SETTLED_SECONDS)
-        check_slow(watcher.seen(3), fast)
+        check_slow(watcher.seen(2), fast)
         watcher.link.become(FAST)
         watcher.seen(SETTLED_SECONDS)
         check_fast(watcher.seen(2))
