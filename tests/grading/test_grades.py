@@ -179,7 +179,8 @@ def test_light_return_has_the_shape_that_gia_published(light: LightSums) -> None
     def of(**changed: float) -> float:
         usual = {"table_percent": 56, "crown_degrees": 34, "pavilion_degrees": 40.5, "star_percent": 50}
         cut = BrilliantCut.model_validate({**usual, "lower_half_percent": 75, **changed})
-        return last(weighted_light_return(light, shape_of_cut(cut), StoneOptics.of_index(2.419))).value
+        optics = StoneOptics.of_index(2.419)
+        return last(weighted_light_return(light, shape_of_cut(cut), optics, rays=32)).value
 
     assert of() == pytest.approx(0.2791, abs=0.003)  # measured 0.2787; one standard error is 0.0004
     crown = {degrees: of(crown_degrees=degrees) for degrees in (1, 15, 23, 30, 42)}
@@ -224,7 +225,8 @@ def test_single_precision_is_enough(light: LightSums, device: Device) -> None:
 
 
 def test_a_report_gets_better_and_more_complete_and_ends_whole(light: LightSums) -> None:
-    *_, whole = found = list(reports_of(light, Stage.of(Scene()), Rules(), tilt=True, target=0.1))
+    stage = Stage.of(Scene(stones=(StoneSettings(cut="single"),)))  # of few facets
+    *_, whole = found = list(reports_of(light, stage, Rules(), tilt=True, target=0.1))
     done = [report.done for report in found]
     assert done == sorted(done)
     assert done[-1] == 1

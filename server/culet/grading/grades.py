@@ -27,7 +27,7 @@ TILTS = tuple(range(-90, 91, 5))
 """Degrees, the points of a tilt curve."""
 TILT_RAYS = 2048
 """Of each of BATCHES at each point."""
-WLR_BATCHES, WLR_RINGS, WLR_AROUND, WLR_RAYS = 8, 32, 13, 256
+WLR_BATCHES, WLR_RINGS, WLR_AROUND, WLR_RAYS = 8, 32, 13, 64
 """Of the weighted light return: directions of each batch, one in each ring of equal solid angle and each sector, and
 rays of each. A prime number of sectors, with which no symmetry is in step."""
 ASET = {"green": (0, 45), "red": (45, 75), "blue": (75, 90)}
@@ -107,7 +107,7 @@ def tilt_curve(
 
 
 def weighted_light_return(
-    sums: LightSums, shape: Shape, optics: StoneOptics, rules: Rules | None = None
+    sums: LightSums, shape: Shape, optics: StoneOptics, rules: Rules | None = None, rays: int = WLR_RAYS
 ) -> Iterator[Number]:
     """GIA's, as a part of 1: of light of a uniform hemisphere that falls on the crown, what leaves through the crown,
     weighted by the squared cosine of its angle to the vertical (Hemphill et al., Gems & Gemology 34, 1998).
@@ -130,7 +130,7 @@ def weighted_light_return(
     own = len(views) // WLR_BATCHES
     for batch in range(WLR_BATCHES):
         of = slice(batch * own, (batch + 1) * own)
-        found = sums.of(shape, optics, rules, views[of], batches=1, rays=WLR_RAYS, seed=batch, crown_alone=True)[:, 0]
+        found = sums.of(shape, optics, rules, views[of], batches=1, rays=rays, seed=batch, crown_alone=True)[:, 0]
         iso, lost, crown = (found[:, KERNEL[name]] for name in ("ISO", "LOST", "CROWN"))
         parts.append([float(weighted[of] @ iso), float(area[of] @ crown), float(weighted[of] @ lost)])
         if len(parts) > 1:
