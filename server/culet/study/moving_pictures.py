@@ -29,7 +29,7 @@ from culet.engine.painting import jpeg
 from culet.engine.painting.quality import LADDER
 from culet.falls import simulate_stage
 from culet.rendering.light.effort import Effort
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import Renderer
 from culet.stage import Stage
 from culet.study.image_error import mean_ciede2000
 from culet_protocol.messages import Balance
@@ -174,15 +174,16 @@ def _converged(renderer: Renderer, stage: Stage, size: tuple[int, int], samples:
 
 
 def _first_sample(renderer: Renderer, stage: Stage, size: tuple[int, int]) -> float:
-    """s of the first sample of a picture at rest, which the governor begins with."""
+    """s of the first sample of a picture at rest, which the governor begins with: of a device that does nothing else,
+    whose units share the processor time that it took."""
 
-    def drawn() -> Picture:
-        picture = renderer.picture(stage, *size)
-        picture.refine(1)
-        return picture
+    def drawn() -> float:
+        before = time.process_time()
+        renderer.picture(stage, *size).refine(1)
+        return time.process_time() - before
 
     drawn()  # compiles
-    return min(drawn().seconds for _ in range(TURNS))
+    return min(drawn() for _ in range(TURNS)) / renderer.device.units
 
 
 def _mean(way: Way, judged: Sequence[tuple[Plan, float, tuple[float, float, float]]]) -> Judged:
