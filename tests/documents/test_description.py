@@ -10,8 +10,6 @@ import pytest
 
 from documents.pages import ROOT, read
 
-pytest.importorskip("hatchling", reason="builds packages; its hook is tried where it is installed")
-
 
 @pytest.fixture(scope="module")
 def build() -> ModuleType:
