@@ -1,6 +1,5 @@
 /** The page: its rooms, and what they tell each other. */
 
-import { Flag, type Frame } from "@culet/protocol/frame";
 import { Clips } from "./clip/clips";
 import { listenToDrops } from "./files/file-drop";
 import { chooseFile, MESH_TYPES, SCENE_TYPES, SKY_TYPES } from "./files/files";
@@ -20,9 +19,9 @@ import { element } from "./page";
 import { Panel } from "./panel/panel";
 import { ChosenStone } from "./picture/chosen-stone";
 import { type Embedding, embeddingOf, SHOWN, Turntable } from "./picture/embedding";
-import { isWorse, refines } from "./picture/fade";
 import { OutlineView } from "./picture/outline-view";
 import { afterPainting, Screen } from "./picture/screen";
+import { ShownPicture } from "./picture/shown-picture";
 import { Whereabouts } from "./picture/whereabouts";
 import { exposeVisit } from "./probe";
 import { SceneStrip } from "./scenes/scene-strip";
@@ -60,22 +59,23 @@ const signs = new Signs(
   () => visit.startAnew(),
 );
 const screen = new Screen(canvas, (size) => visit.viewer?.resize(size));
+const shown = new ShownPicture(screen);
 const aspect = () => canvas.clientWidth / Math.max(canvas.clientHeight, 1);
 const whereabouts = new Whereabouts();
-let shown: Frame | null = null;
 const visit = new Visit(
   {
     size: () => screen.size,
     aspect,
     show: (picture, frame, arrival) => {
-      show(picture, frame);
+      const seen = shown.show(picture, frame);
       if (visit.viewer?.player.shown === 0) firstShown();
       signs.arrived();
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
+      chosen.shown(frame.step, arrival.time);
+      if (!seen) return;
       meter.take(frame, arrival);
       clips.take(frame, arrival.time);
       if (delays.on) afterPainting((time) => meter.delayed(delays.painted(frame, arrival, time)));
-      chosen.shown(frame.step, arrival.time);
     },
     state: stateChanged,
     answer: (answer) => {
@@ -179,7 +179,6 @@ const shareCard = new ShareCard(
   element("share", HTMLDialogElement),
   element("share-links", HTMLElement),
   element("share-close", HTMLButtonElement),
-  (text) => toasts.note(text),
 );
 const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
 const welcome = new Welcome(element("welcome", HTMLElement));
@@ -224,18 +223,6 @@ function stateChanged(before: ViewState, after: ViewState): void {
   meter.update(after);
   const change = describeChange(before, after);
   if (change) announcement.textContent = change;
-}
-
-/** Put a picture on the screen, if it is no worse than what is there; one that is finished is followed by one of all pixels. */
-function show(picture: ImageBitmap, frame: Frame): void {
-  if (isWorse(frame, shown)) {
-    picture.close();
-    return;
-  }
-  screen.show(picture, refines(frame, shown?.step ?? null));
-  shown = frame;
-  if (frame.flags & Flag.FINAL) screen.sharpen();
-  else if (frame.flags & Flag.MOVING) screen.hurry();
 }
 
 async function share(): Promise<void> {

@@ -11,16 +11,32 @@ export function coveredAfter(ms: number): number {
 }
 
 /** What of a frame tells how good it is. */
-export type Judged = Pick<Frame, "step" | "flags" | "width" | "shownError">;
+export type Judged = Pick<Frame, "step" | "flags" | "width" | "height" | "shownError">;
+
+/** Pixels by which the sides of two pictures of the same shape differ: sizes are rounded. */
+const ROUNDING = 2;
 
 /**
  * Whether a picture is of the same state as the one that is shown, and worse to look at: one of more pixels has begun
- * anew. Seen from where the other's pixels cannot be told apart, its noise is less by as much as its pixels are smaller.
+ * anew, and may come with fewer over a link that does not carry them all. Seen from where the other's pixels cannot be
+ * told apart, its noise is less by as much as its pixels are smaller.
  */
 export function isWorse(frame: Judged, shown: Judged | null): boolean {
   if (!shown || frame.step !== shown.step || (frame.flags | shown.flags) & Flag.MOVING) return false;
   const error = Number.isNaN(frame.shownError) ? Number.POSITIVE_INFINITY : frame.shownError; // of a first sample
-  return frame.width > shown.width && error * shown.width > shown.shownError * frame.width;
+  const reduced = isReduced(frame) && (shown.flags & Flag.FINAL) !== 0 && isAlike(frame, shown);
+  return (frame.width > shown.width || reduced) && error * shown.width > shown.shownError * frame.width;
+}
+
+/** For the sake of its link. */
+function isReduced({ flags }: Judged): boolean {
+  return (flags & Flag.THRIFTY) !== 0;
+}
+
+/** Whether both have the same shape, but for what rounding does to it. */
+function isAlike(a: Judged, b: Judged): boolean {
+  const smaller = Math.min(a.width, b.width);
+  return Math.abs(a.height / a.width - b.height / b.width) * smaller <= ROUNDING;
 }
 
 /** Whether a frame is a better picture of the state that was shown last. */

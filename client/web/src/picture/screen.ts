@@ -44,7 +44,7 @@ export class Screen {
     this.ask(this.sharp);
   }
 
-  /** Things move: many pixels would take too long. */
+  /** What is seen changes: many pixels would take too long. */
   hurry(): void {
     this.ask(this.quick);
   }

@@ -16,13 +16,14 @@ const OWN_MACHINE = /^(localhost|127\.[\d.]+|\[::1\])$/;
 export class ShareCard {
   private readonly dialog: HTMLDialogElement;
   private readonly body: HTMLElement;
-  private readonly note: (text: string) => void;
+  private readonly status = document.createElement("p");
 
-  /** `dialog` is closed; `body` is filled when it is opened. `note` tells the user something that passes. */
-  constructor(dialog: HTMLDialogElement, body: HTMLElement, close: HTMLButtonElement, note: (text: string) => void) {
+  /** `dialog` is closed; `body` is filled when it is opened. */
+  constructor(dialog: HTMLDialogElement, body: HTMLElement, close: HTMLButtonElement) {
     this.dialog = dialog;
     this.body = body;
-    this.note = note;
+    this.status.setAttribute("role", "status");
+    body.after(this.status); // within the card: nothing else is seen, or read out, while it is open
     close.onclick = () => dialog.close();
     dialog.onclick = (event) => {
       if (event.target === dialog) dialog.close(); // beside the card
@@ -30,6 +31,7 @@ export class ShareCard {
   }
 
   async show({ session, watch }: Shared): Promise<void> {
+    this.status.textContent = "";
     const watching = new URL(watchAddress(watch), location.href).href;
     this.body.replaceChildren(
       ...this.link(words.share.steer, new URL(sessionAddress(session), location.href).href),
@@ -53,13 +55,26 @@ export class ShareCard {
     label.append(paragraph(meaning), field);
     copy.type = "button";
     copy.textContent = words.share.copy;
-    copy.onclick = async () => {
-      await copyText(async () => address);
-      this.note(words.share.copied);
-    };
+    copy.onclick = () => copyLink(field, this.status);
     row.className = "link";
     row.append(label, copy);
     return [row];
+  }
+}
+
+/** Put the link in a field on the clipboard, and tell how that went; what cannot be put there is selected instead. */
+export async function copyLink(
+  field: Pick<HTMLInputElement, "value" | "focus" | "select">,
+  status: Pick<HTMLElement, "textContent">,
+): Promise<void> {
+  status.textContent = "";
+  try {
+    await copyText(async () => field.value);
+    status.textContent = words.share.copied;
+  } catch {
+    field.focus();
+    field.select();
+    status.textContent = words.share.selected;
   }
 }
 

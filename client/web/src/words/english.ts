@@ -129,6 +129,7 @@ export const share = {
   watch: "Whoever has this link only watches:",
   copy: "Copy",
   copied: "The link is on the clipboard.",
+  selected: "This browser does not let the page write to the clipboard. The link is selected: copy it from here.",
   code: "The watching link as a QR code",
   ownMachine: "These links lead to this machine only: start culet with --host to be reached by others.",
 };
