@@ -10,7 +10,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
-from culet.errors import InputError
+from culet.errors import InputError, NotFoundError
 from culet.gateway.access import NOTHING, Right, needed
 from culet.gateway.address import entrance
 from culet.gateway.server_token import PATTERN, Token, is_own_machine
@@ -18,6 +18,8 @@ from culet.gateway.settings import GatewaySettings, settings_of, with_token
 from culet.service.parts import gateway_part
 from culet_client import RefusedError, connect
 from culet_protocol import SUBPROTOCOL, WATCH_SUBPROTOCOL
+from culet_protocol.engine import CloseSession, GetSession
+from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Orbit, Pick, Resize
 from culet_protocol.watch import watch_id
 from gateway.running import PATIENCE, SIZE, TETRAHEDRON, Endpoints, Gateway, gateway_before
@@ -26,6 +28,12 @@ TOKEN = "correct-horse-battery-staple"  # noqa: S105 - of this test
 BEARER = {"Authorization": f"Bearer {TOKEN}"}
 UPLOAD = {"file": ("stone.obj", TETRAHEDRON)}
 SMALL = {"width": 64, "height": 36, "samples": 1}
+
+
+def frame_of(topic: bytes) -> tuple[Frame, bytes]:
+    """One that a viewer was shown."""
+    frame = Frame(topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"picture")
+    return frame, frame.pack()
 
 
 def settings(**given: object) -> GatewaySettings:
@@ -212,6 +220,38 @@ async def test_whoever_has_the_watching_link_sees_all_and_changes_nothing(gatewa
         assert answer.status_code == 403, answer.text
         assert answer.headers["Content-Type"] == "application/problem+json"
     assert (await gateway.http.get(f"/api/sessions/{session}")).json()["falling"] is False
+
+
+@pytest.mark.parametrize("part", ["scene", "frame.png", "grade", "diagram.svg"])
+async def test_who_watches_is_answered_of_a_session_that_the_engine_forgot(gateway: Gateway, part: str) -> None:
+    """Its own id, which steers, is in no answer; and an engine that does not know the session is given it."""
+    session = await gateway.session()
+    watching = f"/api/sessions/{watch_id(session)}/{part}"
+    asked = SMALL if part == "frame.png" else {"error": 10} if part == "grade" else {}
+    await gateway.parts.link.request(CloseSession(session=session))
+    answer = await gateway.http.get(watching, params=asked)
+    assert answer.status_code == 200, answer.text
+    assert session not in answer.text
+
+
+async def test_what_the_engine_says_of_a_session_that_it_does_not_know_has_no_id(gateway: Gateway) -> None:
+    session = await gateway.session()
+    await gateway.parts.link.request(CloseSession(session=session))
+    with pytest.raises(NotFoundError) as refused:
+        await gateway.parts.link.request(GetSession(session=session))
+    assert session not in str(refused.value)
+
+
+@pytest.mark.parametrize("part", ["scene", "frame.png"])
+async def test_who_asks_for_a_step_that_is_not_kept_disturbs_nobody(gateway: Gateway, part: str) -> None:
+    """A session that the engine knows is not opened anew, which its viewers would see."""
+    session = await gateway.session()
+    record = gateway.parts.sessions.get(session)
+    latest = record.latest = frame_of(record.topic)
+    answer = await gateway.http.get(f"/api/sessions/{watch_id(session)}/{part}", params={"step": 2**62})
+    assert answer.status_code == 404, answer.text
+    assert session not in answer.text
+    assert record.latest is latest
 
 
 async def test_a_page_in_another_one_says_its_watch_id_as_a_subprotocol(gateway: Gateway) -> None:

@@ -75,6 +75,7 @@ async def test_without_samples_frames_are_refined_to_an_error(gateway: Gateway) 
         ({"frames": 361}, "frames"),
         ({"seconds": 0}, "seconds"),
         ({"frames": 100, "width": 640, "height": 480}, "frames"),
+        ({"width": 2048, "height": 1024}, "frames"),  # of which 36 are too many
         ({"preset": "rubby"}, None),
     ],
 )

@@ -246,7 +246,7 @@ async def _frame(
         client=client,
     )
     with gateway.stills.place(client):
-        result, data = await while_waited_for(http, gateway.link.request(message, patient=True))
+        result, data = await while_waited_for(http, gateway.sessions.request(session, message, patient=True))
     kind = "attachment" if file_format in {"tga", "exr"} else "inline"  # which no browser shows
     headers = quality_headers(result)
     headers["Content-Disposition"] = f'{kind}; filename="culet-{result["step"]}.{ending}"'

@@ -179,10 +179,23 @@ class Sessions:
         return answer.validate_python(await self._ask(session, to_engine.Ask(session=session.id, question=question)))
 
     async def scene_shown(self, session: SessionRecord, step: int | None) -> dict[str, Any]:
-        """The scene that a session showed at a step, the latest if None; raises like `Link.request`."""
-        result, _ = await self._link.request(to_engine.GetScene(session=session.id, step=step))
-        scene: dict[str, Any] = result["scene"]
+        """The scene that a session showed at a step, the latest if None; raises like `request`."""
+        scene: dict[str, Any] = (await self._ask(session, to_engine.GetScene(session=session.id, step=step)))["scene"]
         return scene
+
+    async def request(
+        self, session: SessionRecord, message: Message, *, patient: bool = False
+    ) -> tuple[dict[str, Any], bytes | memoryview]:
+        """As `Uploads.request`, about a session; one that the engine does not know, because it is new, is opened there
+        first."""
+        try:
+            return await self._uploads.request(message, session.scene, patient=patient)
+        except NotFoundError:
+            if session.id not in self._sessions:
+                raise
+            if not await self._in_engine(session):  # or else a step of it is not kept, which is no loss to its viewers
+                await self._give_again(session)
+            return await self._uploads.request(message, session.scene, patient=patient)
 
     async def describe(self, session: SessionRecord) -> dict[str, Any]:
         """What the engine says of the session now."""
@@ -275,15 +288,16 @@ class Sessions:
         return bool(described["watched"])
 
     async def _ask(self, session: SessionRecord, message: Message) -> dict[str, Any]:
-        """A request about a session; one that the engine does not know, because it is new, is opened there first."""
-        try:
-            result, _ = await self._uploads.request(message, session.scene)
-        except NotFoundError:
-            if session.id not in self._sessions:
-                raise
-            await self._give_again(session)
-            result, _ = await self._uploads.request(message, session.scene)
+        result, _ = await self.request(session, message)
         return result
+
+    async def _in_engine(self, session: SessionRecord) -> bool:
+        """Whether the engine knows the session."""
+        try:
+            await self._link.request(to_engine.GetSession(session=session.id))
+        except NotFoundError:
+            return False
+        return True
 
     def _words(self) -> set[str]:
         return words([(session.scene, session.snapshot) for session in self._sessions.values()])

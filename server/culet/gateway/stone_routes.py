@@ -11,6 +11,8 @@ from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
+from culet.gateway.session_record import SessionRecord
+from culet.gateway.state import Gateway
 from culet.grading.answer import Report
 from culet.grading.rules import Convention
 from culet.scene import Scene
@@ -68,7 +70,7 @@ async def grade_session(
 ) -> Report:
     """Grade a stone of what a session shows."""
     session = gateway.sessions.get(session_id)
-    return await _graded(http, gateway, Grade(session=session.id, **query.model_dump()))
+    return await _graded(http, gateway, Grade(session=session.id, **query.model_dump()), session)
 
 
 @router.post("/api/design/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(413, 422, 429, 503)})
@@ -79,23 +81,37 @@ async def diagram(http: Request, request: DiagramRequest, gateway: ThisGateway) 
 
 
 @router.get(
-    "/api/sessions/{session_id}/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(404, 422, 503)}
+    "/api/sessions/{session_id}/diagram.svg",
+    response_class=Response,
+    responses={**_DRAWING, **answers(404, 422, 429, 503)},
 )
 async def diagram_of_session(
     http: Request, session_id: str, gateway: ThisGateway, stone: StoneName | None = None
 ) -> Response:
     """The cutting diagram of a stone of what a session shows."""
     session = gateway.sessions.get(session_id)
-    return await _drawn(http, gateway, DrawDiagram(session=session.id, stone=stone))
+    return await _drawn(http, gateway, DrawDiagram(session=session.id, stone=stone), session)
 
 
-async def _graded(http: Request, gateway: ThisGateway, message: Grade) -> Report:
-    with gateway.stills.place(client_of(http.scope)):
-        result, _ = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+async def _graded(http: Request, gateway: Gateway, message: Grade, session: SessionRecord | None = None) -> Report:
+    result, _ = await _answered(http, gateway, message, session)
     return REPORT.validate_python(result)
 
 
-async def _drawn(http: Request, gateway: ThisGateway, message: DrawDiagram) -> Response:
-    with gateway.stills.place(client_of(http.scope)):
-        _, drawing = await while_waited_for(http, gateway.uploads.request(message, patient=True))
+async def _drawn(
+    http: Request, gateway: Gateway, message: DrawDiagram, session: SessionRecord | None = None
+) -> Response:
+    _, drawing = await _answered(http, gateway, message, session)
     return Response(bytes(drawing), media_type=SVG)
+
+
+async def _answered(
+    http: Request, gateway: Gateway, message: Grade | DrawDiagram, session: SessionRecord | None
+) -> tuple[dict[str, Any], bytes | memoryview]:
+    """The engine's answer, about the session if there is one, in a place of the client's."""
+    with gateway.stills.place(client_of(http.scope)):
+        if session is None:
+            asking = gateway.uploads.request(message, patient=True)
+        else:
+            asking = gateway.sessions.request(session, message, patient=True)
+        return await while_waited_for(http, asking)

@@ -44,7 +44,12 @@ class TurntableQuery(StillQuery):
 
     frames: Annotated[
         int,
-        Field(ge=2, le=MOST_FRAMES, description="In one turn; frames x width x height is at most 16.8 million."),
+        Field(
+            ge=2,
+            le=MOST_FRAMES,
+            validate_default=True,  # so many may be too many of the size asked for
+            description="In one turn; frames x width x height is at most 16.8 million.",
+        ),
     ] = 36
     seconds: Annotated[float, Field(ge=0.1, le=600, description="That a turn takes, in the animation.")] = 6.0
     width: Width = 480

@@ -60,11 +60,12 @@ class OpenSessions:
         return session in self._painter.pictures
 
     def get(self, session: str) -> LivePicture:
-        """The session of that name, which thereby counts as used; NotFoundError."""
+        """The session of that name, which thereby counts as used; NotFoundError, which does not say the name: whoever
+        only watches must not learn it."""
         try:
             live = self._painter.pictures[session]
         except KeyError:
-            raise NotFoundError(f"no session {session}") from None
+            raise NotFoundError("no such session; it may have expired") from None
         self._touched[session] = time.monotonic()
         return live
 
