@@ -20,7 +20,7 @@ from culet.geometry.cuts.outlines import ellipse
 from culet.geometry.polygons import edges_of_facets
 from culet.geometry.shape import Shape
 from culet.rendering.facet_rows import facet_rows
-from culet.scene.cuts import CUTS, AnyCut, BrilliantCut, EmeraldCut, HeartCut, TrillionCut, usual_range
+from culet.scene.cuts import CUTS, AnyCut, BrilliantCut, EmeraldCut, HeartCut, OvalCut, TrillionCut, usual_range
 
 CHECK_VALUES = json.loads(Path(__file__).with_name("check_values.json").read_text())
 """Of a program that was written without this one: half widths, z up; `normals_by_area` is the sum of area n_i^2."""
@@ -152,6 +152,49 @@ def test_within_the_usual_ranges_there_is_a_cut_or_a_refusal_that_names_a_propor
         assert euler(shape) == 2
 
 
+def allowed_values(kind: type[AnyCut], name: str) -> st.SearchStrategy[float]:
+    """All numbers that the schema lets through."""
+    field = kind.model_fields[name]
+    sides = ("gt", "ge", "lt", "le")
+    said = {side: getattr(each, side) for each in field.metadata for side in sides if hasattr(each, side)}
+    least, most = said.get("gt", said.get("ge")), said.get("lt", said.get("le"))
+    assert least is not None
+    assert most is not None
+    if field.annotation is int:
+        return st.integers(int(least) + ("gt" in said), int(most) - ("lt" in said))
+    return st.floats(least, most, exclude_min="gt" in said, exclude_max="lt" in said)
+
+
+@given(st.data())
+@settings(max_examples=40, deadline=None, derandomize=True)
+def test_of_all_numbers_that_are_allowed_there_is_a_cut_or_a_refusal_that_names_a_proportion(
+    data: st.DataObject,
+) -> None:
+    kind = CUTS[data.draw(st.sampled_from(sorted(CUTS)))]
+    names = sorted(set(kind.model_fields) - {"name"})
+    changed = data.draw(st.sets(st.sampled_from(names), min_size=1))
+    said = {name: data.draw(allowed_values(kind, name)) for name in sorted(changed)}
+    try:
+        shape = shape_of_cut(kind.model_validate(said))
+    except MeshError as refusal:
+        assert refusal.field in names  # noqa: PT017 - either is right
+        assert refusal.field in str(refusal)  # noqa: PT017
+    else:
+        assert shape.mass.volume > 0
+
+
+@pytest.mark.parametrize(
+    "cut",
+    [HeartCut(lobe_percent=97), OvalCut(table_percent=5e-324), TrillionCut(bulge_percent=5e-324)],
+    ids=lambda cut: cut.name,
+)
+def test_where_the_construction_has_no_answer_the_refusal_names_the_proportion(cut: AnyCut) -> None:
+    (field,) = (name for name, value in cut if value != getattr(type(cut)(), name))
+    with pytest.raises(MeshError, match=rf"{field} can be at (least|most) about") as refusal:
+        shape_of_cut(cut)
+    assert refusal.value.field == field
+
+
 @pytest.mark.parametrize(
     ("cut", "field"),
     [
@@ -159,6 +202,7 @@ def test_within_the_usual_ranges_there_is_a_cut_or_a_refusal_that_names_a_propor
         (EmeraldCut(crown_steps=8), "crown_steps"),
         (EmeraldCut(pavilion_step_degrees=0), "pavilion_step_degrees"),
         (HeartCut(lobe_percent=51), "lobe_percent"),
+        (HeartCut(lobe_percent=97), "lobe_percent"),
     ],
     ids=lambda value: value if isinstance(value, str) else value.name,
 )

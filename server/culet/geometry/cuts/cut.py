@@ -34,6 +34,14 @@ def shape_of_cut(cut: AnyCut) -> Shape:
 
 
 def _made(cut: AnyCut) -> Shape:
+    """MeshError, too, where the numbers are so small or large that the construction divides by zero or overflows."""
+    try:
+        return _constructed(cut)
+    except ArithmeticError as error:
+        raise MeshError(f"{cut.name}: a proportion is too extreme for a stone") from error
+
+
+def _constructed(cut: AnyCut) -> Shape:
     match cut:
         case cuts.BrilliantCut():
             return brilliant(cut)

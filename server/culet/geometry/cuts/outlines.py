@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.spatial import ConvexHull
 
+from culet.errors import MeshError
+
 Points = NDArray[np.float64]
 Way = Callable[[Points], float]
 """Below 0 inside an outline's curve, 0 on it."""
@@ -147,11 +149,14 @@ _BOW = 0.05
 
 def lobe(length_to_width: float, arc: float) -> Outline:
     """The right lobe of a heart of half width 1: a circle of that radius, and two bowed ways from it to the tip at
-    x = 0, stretched to that length. The culet, where the axis is, lies 0.47 of the length below the top."""
+    x = 0, stretched to that length. The culet, where the axis is, lies 0.47 of the length below the top. MeshError if
+    the tip is inside the circle."""
     across = 1 - arc
     tip = np.array([0.0, -0.53 * _LOBE_LENGTH])
     centre = np.array([across, 0.47 * _LOBE_LENGTH - arc])
     way = tip - centre
+    if arc >= math.hypot(*way):
+        raise MeshError("heart: the arcs of the lobes leave no room for a tip")
     base, half = math.atan2(way[1], way[0]), math.acos(arc / math.hypot(*way))
     turns = np.linspace(base + half, base + 2 * math.pi - half, 2001)
     circle = centre + arc * np.column_stack([np.cos(turns), np.sin(turns)])
