@@ -17,7 +17,7 @@ def wide_view(view_of: ViewOf) -> View:
 def brightness(view: View) -> float:
     """ISO, per cent, once the table is of the stone as it is."""
     table = view.page.locator("table.grades:not(.outdated)")
-    return float(table.locator("tr", has_text="Brightness, ISO").locator("td").inner_text().removesuffix(" %"))
+    return float(table.locator("tr", has_text="Brightness, ISO").locator("td").first.inner_text().removesuffix(" %"))
 
 
 def test_grades_are_of_the_stone_as_it_is_cut_and_its_tilt_curves_are_drawn(wide_view: View) -> None:

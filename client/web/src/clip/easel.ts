@@ -16,6 +16,13 @@ export class Easel {
     this.context = context;
   }
 
+  /** Nothing more is shown: its pixels are given back at once. */
+  close(): void {
+    this.picture?.close();
+    this.picture = null;
+    this.shown = null;
+  }
+
   /** `again`: also if it is shown already, since recorders see only what is painted. */
   async show(frame: ClipFrame, again = false): Promise<void> {
     if (frame === this.shown && !again) return;

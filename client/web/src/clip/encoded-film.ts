@@ -42,6 +42,8 @@ export async function encodedFilm(timeline: readonly ClipFrame[], making: Making
   } catch (error) {
     await output.cancel();
     throw error;
+  } finally {
+    easel.close();
   }
   return filmIn(target.buffer, ending);
 }

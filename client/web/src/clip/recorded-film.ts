@@ -28,7 +28,8 @@ export async function recordedFilm(timeline: readonly ClipFrame[], making: Makin
   if (mimeType === undefined) throw new Error(words.clip.unable);
   const easel = new Easel(clipSize(timeline));
   await easel.show(timeline[0] as ClipFrame);
-  const recorder = new MediaRecorder(easel.canvas.captureStream(RATE), { mimeType, videoBitsPerSecond: BITS });
+  const stream = easel.canvas.captureStream(RATE);
+  const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: BITS });
   const parts: Blob[] = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);
   const stopped = new Promise<void>((resolve, reject) => {
@@ -47,6 +48,8 @@ export async function recordedFilm(timeline: readonly ClipFrame[], making: Makin
     }
   } finally {
     recorder.stop();
+    for (const track of stream.getTracks()) track.stop();
+    easel.close();
   }
   await stopped;
   const ending = mimeType.startsWith("video/mp4") ? "mp4" : "webm";

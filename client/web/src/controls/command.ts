@@ -8,7 +8,7 @@ export class Command {
   constructor(label: string, act: () => void, key = "") {
     this.element.type = "button";
     this.element.className = "command";
-    this.element.onclick = act;
+    this.element.onclick = () => this.idle && act();
     this.text.textContent = label;
     this.element.append(this.text);
     if (key) this.element.append(keyMark(key));
@@ -28,6 +28,17 @@ export class Command {
     }
     this.called.textContent = this.element.title = text;
     return this;
+  }
+
+  /** What was asked for is on its way: the button keeps the focus, and does nothing. */
+  busy(on: boolean): this {
+    this.element.setAttribute("aria-busy", String(on));
+    this.element.setAttribute("aria-disabled", String(on));
+    return this;
+  }
+
+  private get idle(): boolean {
+    return this.element.getAttribute("aria-busy") !== "true";
   }
 
   show(shown: boolean): this {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { words } from "../words/words";
-import { gradedBy, reportOf } from "./grades";
+import { gradedBy, reportOf, type TiltColumns, tiltText } from "./grades";
 
 const number = (value: number) => ({ value, error: 0.034, bound: 0.004 });
 const ANSWER = {
@@ -24,6 +24,7 @@ describe("a report", () => {
     const { lines } = reportOf(ANSWER);
     expect(lines.map(({ name }) => name)).toEqual(Object.values(words.grades.lines).map(([label]) => label));
     expect(lines[0]?.value).toBe("79.1 %");
+    expect(lines[0]?.error).toBe("\u00b1 0.03");
     expect(lines[0]?.hint).toContain("0.03");
     expect(lines.at(-1)?.value).toBe("0.278");
   });
@@ -42,6 +43,19 @@ describe("a report", () => {
       [71, 79],
     ]);
   });
+});
+
+it("curves are told by their middle and by usual tilts", () => {
+  const columns: TiltColumns = [
+    [-30, -5, 0, 30],
+    [50, 70, 79, 55.04],
+    [51, 71, 79, 56],
+  ];
+  const [first, second] = words.grades.axes;
+  expect(tiltText(columns)).toBe(
+    `${first}: 50.0 % at -30\u00b0, 79.0 % at 0\u00b0, 55.0 % at 30\u00b0. ` +
+      `${second}: 51.0 % at -30\u00b0, 79.0 % at 0\u00b0, 56.0 % at 30\u00b0.`,
+  );
 });
 
 describe("what grades depend on", () => {

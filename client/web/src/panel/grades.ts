@@ -5,10 +5,11 @@ import { list, number, object, part, text } from "../json";
 import { stoneOf } from "../stones/stones";
 import { words } from "../words/words";
 
-/** A line of the table: what, how much, and how sure that is. */
+/** A line of the table: what, how much, its standard error, and what all that means. */
 export interface GradeLine {
   name: string;
   value: string;
+  error: string;
   hint: string;
 }
 
@@ -21,6 +22,9 @@ export interface Report {
   lines: GradeLine[];
   tilt: TiltColumns | null;
 }
+
+/** Degrees. */
+const TOLD_TILTS = [-30, 0, 30];
 
 type GradeName = keyof typeof words.grades.lines;
 
@@ -44,7 +48,12 @@ function line(name: GradeName, said: JsonObject, decimals: number): GradeLine {
   const value = number(said.value, Number.NaN).toFixed(decimals);
   const error = number(said.error, Number.NaN).toFixed(decimals + 1);
   const bound = number(said.bound, 0).toFixed(decimals + 1);
-  return { name: label, value: decimals === 1 ? `${value} %` : value, hint: words.grades.sure(meaning, error, bound) };
+  return {
+    name: label,
+    value: decimals === 1 ? `${value} %` : value,
+    error: `\u00b1 ${error}`,
+    hint: words.grades.sure(meaning, error, bound),
+  };
 }
 
 function sizeOf(size: JsonObject): string {
@@ -60,6 +69,18 @@ function tiltOf(tilt: JsonObject): TiltColumns | null {
   if (x.length === 0 || x.length !== z.length) return null;
   const iso = (points: JsonObject[]) => points.map((point) => number(part(point, "iso").value, 0));
   return [x.map(({ degrees }) => number(degrees, 0)), iso(x), iso(z)];
+}
+
+/** What the curves say, for those who cannot see them: ISO at no tilt, and at the ends of a viewer's usual tilts. */
+export function tiltText([degrees, ...curves]: TiltColumns): string {
+  const said = curves.map((curve, axis) => {
+    const points = TOLD_TILTS.map((told) => {
+      const at = degrees.indexOf(told);
+      return at < 0 ? null : words.grades.tiltPoint(told, (curve[at] ?? Number.NaN).toFixed(1));
+    });
+    return words.grades.tiltCurve(words.grades.axes[axis] ?? "", points.filter((point) => point !== null).join(", "));
+  });
+  return said.join(" ");
 }
 
 /** What of the scene grades depend on: the same text means the same grades. */

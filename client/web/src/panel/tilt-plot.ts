@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import "../../node_modules/uplot/dist/uPlot.min.css"; // a style sheet of our own origin
 import { words } from "../words/words";
-import type { TiltColumns } from "./grades";
+import { type TiltColumns, tiltText } from "./grades";
 
 const HEIGHT = 150;
 const QUIET = "#a4adbd";
@@ -12,7 +12,10 @@ const FONT = "11px system-ui, sans-serif";
 /** Apart from each other to colour-blind eyes too. */
 const COLOURS = ["#e0be62", "#6f9bf5"] as const;
 
-export function plotTilt(container: HTMLElement, columns: TiltColumns, width: number): void {
+export type TiltPlot = Pick<uPlot, "destroy">;
+
+/** Fill the container; whoever empties it destroys the plot first. */
+export function plotTilt(container: HTMLElement, columns: TiltColumns, width: number): TiltPlot {
   const axis = { stroke: QUIET, font: FONT, grid: { stroke: LINE, width: 1 }, ticks: { stroke: LINE, width: 1 } };
   const series = words.grades.axes.map((label, index) => ({ label, stroke: COLOURS[index] ?? QUIET, width: 1.5 }));
   const legend = document.createElement("p");
@@ -32,5 +35,8 @@ export function plotTilt(container: HTMLElement, columns: TiltColumns, width: nu
     cursor: { drag: { x: false, y: false } },
   };
   container.replaceChildren(legend);
-  new uPlot(options, columns, container);
+  const plot = new uPlot(options, columns, container);
+  plot.root.setAttribute("role", "img");
+  plot.root.setAttribute("aria-label", tiltText(columns));
+  return plot;
 }

@@ -252,6 +252,8 @@ export const grades = {
   tilt: "Tilt curves",
   diagram: "Cutting diagram",
   degrees: "Tilt, \u00b0",
+  tiltPoint: (degrees: number, iso: string) => `${iso} % at ${degrees}\u00b0`,
+  tiltCurve: (axis: string, points: string) => `${axis}: ${points}.`,
   /** Of the tilt curves: what the stone turns about. */
   axes: ["ISO, about its length", "ISO, about its width"],
   size: (millimetres: string, carats: string) => `${millimetres} mm, ${carats} ct`,
