@@ -6,6 +6,7 @@ import asyncio
 from dataclasses import dataclass, field
 
 from culet.gateway.bucket import ClientBuckets
+from culet.gateway.client_turns import ClientTurns
 from culet.gateway.link import EngineLink
 from culet.gateway.metrics import Metrics
 from culet.gateway.sessions import Sessions
@@ -29,6 +30,8 @@ class Gateway:
     """What each client may still ask for."""
     stills: StillPlaces
     metrics: Metrics
+    grades: ClientTurns = field(default_factory=ClientTurns)
+    """The engine takes turns between the grades that are asked for at once; each client has one among them."""
     turntables: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_TURNTABLES))
     """Held by those that are being made."""
     stopping: asyncio.Event = field(default_factory=asyncio.Event)

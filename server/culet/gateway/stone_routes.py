@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -108,10 +109,14 @@ async def _drawn(
 async def _answered(
     http: Request, gateway: Gateway, message: Grade | DrawDiagram, session: SessionRecord | None
 ) -> tuple[dict[str, Any], bytes | memoryview]:
-    """The engine's answer, about the session if there is one, in a place of the client's."""
-    with gateway.stills.place(client_of(http.scope)):
-        if session is None:
-            asking = gateway.uploads.request(message, patient=True)
-        else:
-            asking = gateway.sessions.request(session, message, patient=True)
-        return await while_waited_for(http, asking)
+    """The engine's answer, about the session if there is one, in a place of the client's; grades in the client's turn."""
+    client = client_of(http.scope)
+
+    async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
+        async with gateway.grades.turn(client) if isinstance(message, Grade) else nullcontext():
+            if session is None:
+                return await gateway.uploads.request(message, patient=True)
+            return await gateway.sessions.request(session, message, patient=True)
+
+    with gateway.stills.place(client):
+        return await while_waited_for(http, in_turn())

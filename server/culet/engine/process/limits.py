@@ -44,6 +44,11 @@ class Limits(Settings):
     still_seconds: float = Field(
         1800, gt=0, description="Time of the render thread for one still, after which it is given up."
     )
+    grade_seconds: float = Field(
+        60,
+        gt=0,
+        description="Time of the grading thread for the grades of one stone; what is known by then is the answer.",
+    )
     rest_error: float = Field(
         0.004,
         gt=0,

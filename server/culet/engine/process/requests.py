@@ -81,7 +81,7 @@ class Requests:
         self._library = Library(self._meshes, self._skies)
         self.sessions = OpenSessions(painter, limits, memory, self._library)
         self._stills = StillRequests(painter, stills, self.sessions, self._library, limits, memory)
-        self._stones = StoneRequests(self.sessions, self._library)
+        self._stones = StoneRequests(self.sessions, self._library, limits)
         self._question_thread = ThreadPoolExecutor(1, "questions")
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)

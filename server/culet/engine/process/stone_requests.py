@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
-from typing import Any
+from typing import Any, TypeVar
 
+from culet.engine.process.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.session import events
-from culet.errors import InputError
+from culet.errors import InputError, MeshError
 from culet.geometry.cuts.wording import headings_of
 from culet.geometry.designs.diagram import diagram_of
 from culet.geometry.designs.of_shape import design_of
@@ -21,45 +23,48 @@ from culet.grading.rules import rules_of
 from culet.grading.size import size_of
 from culet.grading.sums import LightSums
 from culet.rendering.device import open_device
+from culet.rendering.features import MOST_HALF_SPACES
 from culet.scene import Scene
 from culet.stage import Library, Stage
 from culet_protocol.engine import DrawDiagram, Grade
 
+T = TypeVar("T")
+
 
 class StoneRequests:
-    """One at a time, in a thread of their own, piece by piece: a request that is given up ends with its piece."""
+    """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
+    ends with its piece. Diagrams one at a time in another thread."""
 
-    def __init__(self, sessions: OpenSessions, library: Library) -> None:
+    def __init__(self, sessions: OpenSessions, library: Library, limits: Limits) -> None:
         """Sessions and uploads that requests name."""
         self._sessions = sessions
         self._library = library
-        self._thread = ThreadPoolExecutor(1, "grades")
-        self._turn = asyncio.Lock()
+        self._seconds = limits.grade_seconds
+        self._grading = ThreadPoolExecutor(1, "grades")
+        self._drawing = ThreadPoolExecutor(1, "diagrams")
         self._sums: LightSums | None = None
 
     async def grade(self, request: Grade) -> dict[str, Any]:
-        """A report; InputError, NotFoundError."""
+        """A report, of what was reached within the time of one; InputError, NotFoundError."""
         stage = await self._staged(request)
         rules = rules_of(request.convention, request.head_degrees)
-        async with self._turn:
-            sums = await self._in_thread(self._light_sums)
-            reports = reports_of(
-                sums, stage, rules, stone=request.stone, target=request.error, tilt=request.tilt,
-                coloured=request.coloured,
-            )  # fmt: skip
-            report = None
-            while (further := await self._in_thread(_next, reports)) is not None:
-                report = further
+        sums = await _in(self._grading, self._light_sums)
+        reports = reports_of(
+            sums, stage, rules, stone=request.stone, target=request.error, tilt=request.tilt, coloured=request.coloured
+        )
+        report, spent = None, 0.0
+        while report is None or spent < self._seconds:
+            further, seconds = await _in(self._grading, _next, reports)
+            if further is None:
+                break
+            report, spent = further, spent + seconds
         assert report is not None  # noqa: S101 - there is a first one, or an error
         return asdict(report)
 
     async def diagram(self, request: DrawDiagram) -> bytes:
         """An SVG file; InputError, NotFoundError."""
         stage = await self._staged(request)
-        return await asyncio.to_thread(_diagram, stage, request.stone)
-
-    async def _in_thread(self, work: Any, *given: Any) -> Any:  # noqa: ANN401 - as run_in_executor
-        return await asyncio.get_running_loop().run_in_executor(self._thread, work, *given)
+        return await _in(self._drawing, _diagram, stage, request.stone)
 
     def _light_sums(self) -> LightSums:
         if self._sums is None:
@@ -77,13 +82,23 @@ class StoneRequests:
         return await asyncio.to_thread(events.past_stage, past, before, self._library)
 
 
-def _next(reports: Iterator[Report]) -> Report | None:
-    return next(reports, None)
+async def _in(thread: ThreadPoolExecutor, work: Callable[..., T], *given: Any) -> T:  # noqa: ANN401 - of any work
+    return await asyncio.get_running_loop().run_in_executor(thread, work, *given)
+
+
+def _next(reports: Iterator[Report]) -> tuple[Report | None, float]:
+    """The next one, if there is one, and the seconds that it took."""
+    begun = time.monotonic()
+    return next(reports, None), time.monotonic() - begun
 
 
 def _diagram(stage: Stage, stone: str | None) -> bytes:
     place = place_of(stage, stone)
     settings, shape = stage.scene.stones[place], stage.shapes[place]
+    if len(shape.planes) > MOST_HALF_SPACES:
+        raise MeshError(
+            f"{shape.name}: expected a stone of at most {MOST_HALF_SPACES} facets to draw; got {len(shape.planes)}"
+        )
     size = size_of(shape, settings, stage.scene.millimetres)
     design = design_of(shape, [*headings_of(settings, shape), size.words()])
     return diagram_of(Solid(design)).encode("utf-8", "replace")
