@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import httpx
 import numpy as np
@@ -47,7 +48,10 @@ def test_only_what_comes_through_a_proxy_may_bear_any_name() -> None:
     )
 
 
-def test_views_share_a_server_that_ends_with_the_last() -> None:
+def test_views_share_a_server_that_ends_with_the_last(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("CULET_TOKEN", "the-token-of-another-server")
+    (tmp_path / "culet.toml").write_text('token = "one-of-a-file-for-others"')
+    monkeypatch.setenv("CULET_CONFIG", str(tmp_path / "culet.toml"))  # a frame could give neither
     first = culet.view({"floor": {"kind": "matte"}}, ui=True)
     second = culet.view({"floor": {"kind": "none"}}, rotate=20)
     assert first.url.split("?")[0] == second.url.split("?")[0]

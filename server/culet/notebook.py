@@ -19,6 +19,7 @@ from PIL import Image
 from culet.errors import EngineUnavailableError, InputError
 from culet.parent import ending_with
 from culet.scene import Scene
+from culet.settings import variable
 from culet.sources import load_scene
 from culet_client.rest import Rest
 from culet_protocol.messages import SessionEvent
@@ -209,6 +210,7 @@ class _Server:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=self._messages,
+                env=_environment(),
                 start_new_session=True,  # Ctrl-C, and a notebook's Interrupt, are for the caller alone
                 preexec_fn=ending_with(os.getpid()),  # noqa: PLW1509 - as the supervisor does
                 text=True,
@@ -221,6 +223,13 @@ class _Server:
                 words.put(line)
             process.wait()
         words.put("")
+
+
+def _environment() -> dict[str, str]:
+    """This process's own, but for the token of other servers: the frame of a page of another site has no cookie."""
+    return {name: value for name, value in os.environ.items() if name != variable("token")} | {
+        variable("no_token"): "true"
+    }
 
 
 def _options(through: str | None) -> list[str]:

@@ -93,6 +93,26 @@ def test_a_token_is_made_where_others_can_reach_the_server(host: str, own: bool)
     assert with_token(settings(host=host, no_token=True)).token is None
 
 
+@pytest.mark.parametrize("said", [{"allow_host": ("gems.example",)}, {"trusted_proxy": ("127.0.0.1",)}])
+def test_a_token_is_made_where_others_come_by_a_proxy(said: dict[str, tuple[str, ...]]) -> None:
+    made = with_token(settings(host="127.0.0.1", **said)).token
+    assert made is not None
+    assert PATTERN.fullmatch(made)
+    assert with_token(settings(host="127.0.0.1", no_token=True, **said)).token is None
+
+
+def test_an_option_says_whether_there_is_a_token_whatever_the_environment_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    endpoints = "inproc://control", "inproc://frames"
+    monkeypatch.setenv("CULET_TOKEN", TOKEN)
+    assert with_token(settings_of({"host": "0.0.0.0", "no_token": True}, *endpoints)).token is None  # noqa: S104
+    with pytest.raises(InputError, match=r"^--no-token: expected a token or none at all, got both"):
+        settings_of({"token": TOKEN, "no_token": True}, *endpoints)
+    monkeypatch.setenv("CULET_NO_TOKEN", "true")
+    assert with_token(settings_of({"token": TOKEN}, *endpoints)).token == TOKEN
+    with pytest.raises(InputError, match=r"^CULET_NO_TOKEN: expected a token or none at all, got both"):
+        settings_of({}, *endpoints)
+
+
 def test_a_token_that_can_be_guessed_or_stands_in_no_address_is_refused() -> None:
     for token in ("secret", "x" * 15, "with a space, and more", "ü" * 20):
         with pytest.raises(InputError, match=r"--token: expected 16 to 200 letters"):

@@ -18,6 +18,8 @@ from culet.settings import Settings, variable
 CONFIG = "config"
 COMMANDS_OWN = frozenset({"control", "frames", "spare", "open"})
 """Options of `culet serve` and its like that are no settings."""
+TOKEN = frozenset({"token", "no_token"})
+"""One setting by two names: a variable of either counts before both of the file."""
 ENDPOINTS = {"control": "", "frames": ""}
 """Those of GatewaySettings, which a command names by itself."""
 
@@ -48,7 +50,8 @@ def read_config(file: Path, options: Mapping[str, bool]) -> dict[str, Any]:
             raise InputError(f"{file}: {key}: is there twice", key)
         found[name] = value
     _check(file, found)
-    unsaid = {name for name in options if not os.environ.get(variable(name))}
+    said = {name for name in options if os.environ.get(variable(name))}
+    unsaid = {*options} - said - (TOKEN if said & TOKEN else set())
     return {
         name: _repeated(file, name, value, repeatable=options[name]) for name, value in found.items() if name in unsaid
     }

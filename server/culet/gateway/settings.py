@@ -13,8 +13,8 @@ from pydantic import ByteSize, Field, field_validator
 from culet.errors import InputError
 from culet.gateway.client_address import read_proxies
 from culet.gateway.origins import Hosts, read_origin
-from culet.gateway.server_token import PATTERN, made_for
-from culet.settings import MEBIBYTE, Settings, Words
+from culet.gateway.server_token import PATTERN, is_own_machine, made_token
+from culet.settings import MEBIBYTE, Settings, Words, option, variable
 
 log = logging.getLogger(__name__)
 
@@ -34,7 +34,8 @@ class GatewaySettings(Settings):
     token: str | None = Field(
         None,
         description="Who has it may do everything here, who has none only what a session's links let do; at least 16 "
-        "letters, digits, - and _. One is made, and printed with the address, if other machines can reach the server.",
+        "letters, digits, - and _. One is made, and printed with the address, if other machines can reach the server: "
+        "by --host, or by a proxy that --trusted-proxy or a name that --allow-host tells of.",
     )
     no_token: bool = Field(default=False, description="Make no token: whoever reaches the server may do everything.")
     open_health: bool = Field(default=True, description="Answer /healthz and /readyz without the token.")
@@ -173,17 +174,36 @@ class GatewaySettings(Settings):
 
 
 def settings_of(given: Mapping[str, Any], control: str, frames: str) -> GatewaySettings:
-    """The gateway's settings; InputError for one that cannot be used, or a named folder that holds no built page."""
-    settings = GatewaySettings.read(given, control=control, frames=frames)
+    """The gateway's settings; InputError for one that cannot be used, a token and none at once, or a named folder that
+    holds no built page."""
+    settings = _with_token_or_without(GatewaySettings.read(given, control=control, frames=frames), given)
     look_for_page(settings)
     return settings
 
 
+def _with_token_or_without(settings: GatewaySettings, given: Mapping[str, Any]) -> GatewaySettings:
+    """An option has its way with the environment; else nobody can tell which of both is meant."""
+    if settings.token is None or not settings.no_token:
+        return settings
+    match "token" in given, "no_token" in given:
+        case False, True:
+            return settings.model_copy(update={"token": None})
+        case True, False:
+            return settings.model_copy(update={"no_token": False})
+    source = option("no_token") if "no_token" in given else variable("no_token")
+    raise InputError(f"{source}: expected a token or none at all, got both; leave one of them out", "no_token")
+
+
 def with_token(settings: GatewaySettings) -> GatewaySettings:
-    """The settings with a token that is made, if others can reach the server and nothing was said about one."""
+    """The settings with a token that is made, if others can reach the server and nothing was said about one.
+
+    They can by the address that is listened on, and by a proxy on this machine: a server has a proxy that is trusted,
+    or a name of its own, for no other reason.
+    """
     if settings.token is not None or settings.no_token:
         return settings
-    return settings.model_copy(update={"token": made_for(settings.host)})
+    reached = not is_own_machine(settings.host) or settings.allow_host or settings.trusted_proxy
+    return settings.model_copy(update={"token": made_token() if reached else None})
 
 
 def look_for_page(settings: GatewaySettings) -> None:
