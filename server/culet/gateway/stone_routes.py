@@ -109,7 +109,7 @@ async def _drawn(
 async def _answered(
     http: Request, gateway: Gateway, message: Grade | DrawDiagram, session: SessionRecord | None
 ) -> tuple[dict[str, Any], bytes | memoryview]:
-    """The engine's answer, about the session if there is one, in a place of the client's; grades in the client's turn."""
+    """The engine's answer, about the session if there is one, in a place of the client; grades in the client's turn."""
     client = client_of(http.scope)
 
     async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
