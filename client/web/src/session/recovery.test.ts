@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from "vitest";
-import { lacksFile, OpenedFiles, recover } from "./recovery";
+import { lacksFile, OpenedFiles, recover, type Server } from "./recovery";
 import { type Lost, ProblemError } from "./rest";
 
 const MESH = "ab".repeat(16);
@@ -14,11 +14,15 @@ const lacking = new ProblemError(422, "no such mesh", "scene.stones.0.mesh");
 describe("a session that the server has lost", () => {
   let asked: Lost[];
   let given: string[];
+  let found: string[];
+  let missing: ProblemError | null;
   let files: OpenedFiles;
 
   beforeEach(() => {
     asked = [];
     given = [];
+    found = [];
+    missing = null;
     files = new OpenedFiles();
   });
 
@@ -26,37 +30,50 @@ describe("a session that the server has lost", () => {
     given.push(file.name);
     return { id: "", findings: [] };
   };
-  const answers = (...refusals: (ProblemError | null)[]) => {
-    return async (what: Lost) => {
+  const server = (...refusals: (ProblemError | null)[]): Server => ({
+    reopen: async (what) => {
       asked.push(what);
       const refusal = refusals.shift();
       if (refusal) throw refusal;
-    };
-  };
+    },
+    find: async (id) => {
+      found.push(id);
+      if (missing) throw missing;
+    },
+  });
 
   it("is made again from what the page knows", async () => {
-    await recover(lost, files, answers(null));
+    expect(await recover(lost, files, server(null))).toBe(true);
     expect(asked).toEqual([lost]);
+    expect(found).toEqual([]);
   });
 
   it("gets the files again that its scene names, and no others", async () => {
     files.keep(MESH, new File([], "stone.obj"), give);
     files.keep(SKY, new File([], "sky.hdr"), give);
     files.keep("ef".repeat(16), new File([], "other.obj"), give);
-    await recover(lost, files, answers(lacking, null));
+    await recover(lost, files, server(lacking, null));
     expect(asked).toEqual([lost, lost]);
     expect(given.sort()).toEqual(["sky.hdr", "stone.obj"]);
   });
 
+  it("is waited for, where only others may make it again", async () => {
+    const tokenless = new ProblemError(401, "expected this server's token");
+    expect(await recover(lost, files, server(tokenless))).toBe(false);
+    expect(found).toEqual([lost.id]);
+    missing = new ProblemError(404, "no such session");
+    await expect(recover(lost, files, server(tokenless))).rejects.toBe(missing);
+  });
+
   it("stays lost, with the reason, if its files are not here", async () => {
-    await expect(recover(lost, files, answers(lacking))).rejects.toBe(lacking);
+    await expect(recover(lost, files, server(lacking))).rejects.toBe(lacking);
     expect(asked).toHaveLength(1);
   });
 
   it("stays lost if it is refused for another reason", async () => {
     files.keep(MESH, new File([], "stone.obj"), give);
     const busy = new ProblemError(429, "at the limit");
-    await expect(recover(lost, files, answers(busy))).rejects.toBe(busy);
+    await expect(recover(lost, files, server(busy))).rejects.toBe(busy);
     expect(given).toEqual([]);
   });
 

@@ -28,12 +28,29 @@ export function lacksFile({ status, field }: ProblemError): boolean {
   return status === 422 && ["mesh", "image"].includes(field?.split(".").at(-1) ?? "");
 }
 
-/** Have a session made again, with the files that it needs; throws ProblemError if that cannot be. */
-export async function recover(lost: Lost, files: OpenedFiles, reopen: (lost: Lost) => Promise<void>): Promise<void> {
+/** What of the server a recovery needs. */
+export interface Server {
+  reopen: (lost: Lost) => Promise<void>;
+  find: (id: string) => Promise<unknown>;
+}
+
+/**
+ * Have a session made again, with the files that it needs; whether that was done here. A page that came by a link may
+ * not do that without the server's token: somebody else's page must have done it.
+ *
+ * Throws ProblemError if that cannot be; of status 404 if nobody else has made the session again so far.
+ */
+export async function recover(lost: Lost, files: OpenedFiles, server: Server): Promise<boolean> {
   try {
-    await reopen(lost);
+    await server.reopen(lost);
   } catch (error) {
-    if (!(error instanceof ProblemError && lacksFile(error) && (await files.giveAgain(lost.scene)))) throw error;
-    await reopen(lost);
+    if (!(error instanceof ProblemError)) throw error;
+    if (error.status === 401) {
+      await server.find(lost.id);
+      return false;
+    }
+    if (!(lacksFile(error) && (await files.giveAgain(lost.scene)))) throw error;
+    await server.reopen(lost);
   }
+  return true;
 }

@@ -175,13 +175,15 @@ export class Visit {
     const { viewer, session, scene } = this;
     if (!viewer || !session || !scene) return this.signs.end(unknownSession());
     try {
-      await recover({ id: session, scene, snapshot: viewer.snapshot }, this.files, rest.reopenSession);
+      const lost = { id: session, scene, snapshot: viewer.snapshot };
+      const here = await recover(lost, this.files, { reopen: rest.reopenSession, find: rest.findSession });
       this.signs.clear();
       viewer.stream.open();
-      this.world.tell(words.connection.regained);
+      if (here) this.world.tell(words.connection.regained);
     } catch (error) {
       const known = asProblem(error);
-      if (rest.isPassing(known)) this.later(known.message, tries, (next) => this.regain(next));
+      const passing = known.status === 404 ? words.connection.notThere : rest.isPassing(known) && known.message;
+      if (passing) this.later(passing, tries, (next) => this.regain(next));
       else this.signs.end(`${words.connection.notRegained}\n${known.message}`);
     }
   }
