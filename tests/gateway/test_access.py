@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -34,6 +35,11 @@ def frame_of(topic: bytes) -> tuple[Frame, bytes]:
     """One that a viewer was shown."""
     frame = Frame(topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"picture")
     return frame, frame.pack()
+
+
+def cookie_of(gateway: Gateway) -> str:
+    """The name of the cookie that a browser keeps for a server."""
+    return f"culet-{urlsplit(gateway.url).port}"
 
 
 def settings(**given: object) -> GatewaySettings:
@@ -149,7 +155,8 @@ async def test_without_the_token_nothing_is_made_rendered_or_uploaded(engine: En
     async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
         http = guarded.http
         wrong = {"Authorization": "Bearer " + TOKEN[::-1]}
-        for headers in ({}, wrong, {"Authorization": f"Basic {TOKEN}"}, {"Cookie": f"culet-80={TOKEN}"}):
+        forged = [{"Cookie": f"{cookie_of(guarded)}={value}"} for value in (TOKEN, Token(TOKEN[::-1]).cookie)]
+        for headers in ({}, wrong, {"Authorization": f"Basic {TOKEN}"}, *forged):
             for answer in (
                 await http.post("/api/sessions", json={}, headers=headers),
                 await http.get("/api/render.png", params=SMALL, headers=headers),
@@ -178,10 +185,18 @@ async def test_a_browser_keeps_a_cookie_in_the_token_s_place(engine: Endpoints, 
         for word in ("HttpOnly", "SameSite=strict", "Path=/"):
             assert word in kept
         assert "Secure" not in kept  # by plain http a browser would not keep it
-        assert guarded.http.cookies, "the client keeps it"
+        assert list(guarded.http.cookies) == [cookie_of(guarded)], "the client keeps it"
         assert (await guarded.http.post("/api/sessions", json={})).status_code == 201
         assert (await guarded.http.delete("/api/login")).status_code == 204
         assert (await guarded.http.post("/api/sessions", json={})).status_code == 401
+
+
+async def test_a_cookie_counts_whatever_other_programs_keep_for_the_host(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+        own = f"{cookie_of(guarded)}={Token(TOKEN).cookie}"
+        for kept in (own, f"a=b; {own}", f'x={{"a":1}}; {own}', f"{own}; y=[1,2]; z"):
+            answer = await guarded.http.post("/api/sessions", json={}, headers={"Cookie": kept})
+            assert answer.status_code == 201, kept
 
 
 async def test_programs_say_the_token(engine: Endpoints, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

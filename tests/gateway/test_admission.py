@@ -111,11 +111,15 @@ async def test_the_documentation_is_found_without_a_slash_too_wherever_a_proxy_h
 
 async def test_an_allowed_page_uses_the_rest_interface_and_others_do_not() -> None:
     async with gateway_alone(allow_origin=(SHOP,)) as gateway:
-        asked = {"Access-Control-Request-Method": "PATCH", "Access-Control-Request-Headers": "content-type"}
+        asked = {
+            "Access-Control-Request-Method": "PATCH",
+            "Access-Control-Request-Headers": "authorization,content-type",
+        }
         preflight = await gateway.http.options("/api/sessions/x", headers={"Origin": SHOP, **asked})
         assert preflight.status_code == 200
         assert preflight.headers["Access-Control-Allow-Origin"] == SHOP
         assert "PATCH" in preflight.headers["Access-Control-Allow-Methods"]
+        assert "Authorization" in preflight.headers["Access-Control-Allow-Headers"]
         made = await gateway.http.post("/api/sessions", json={}, headers={"Origin": SHOP})
         assert made.status_code == 503, "there is no engine"
         assert made.headers["Access-Control-Allow-Origin"] == SHOP

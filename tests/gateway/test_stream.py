@@ -118,6 +118,30 @@ async def test_a_question_about_the_picture_is_answered_to_who_asked(gateway: Ga
         assert not {"picked", "outlined"} & {told["type"] for told in other.notices}
 
 
+async def test_questions_of_who_only_watches_take_no_room_of_the_session_s_events(
+    gateway: Gateway, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However long the engine takes for them."""
+    asked, session = 0, await gateway.session()
+
+    async def never_answered(*_: object) -> None:
+        nonlocal asked
+        asked += 1
+        await asyncio.Event().wait()
+
+    async def all_asked() -> bool:
+        return asked == EVENTS_UNDER_WAY
+
+    monkeypatch.setattr(gateway.parts.sessions, "ask", never_answered)
+    async with gateway.viewer(session) as steering, gateway.viewer(watch_id(session)) as watching:
+        first = await steering.frame()
+        for number in range(2 * EVENTS_UNDER_WAY):
+            await watching.say(Pick(number=number, x=0, y=0))
+        await eventually(all_asked)
+        await steering.say(Orbit(yaw=0.1, pitch=0))
+        await steering.until(lambda: steering.frames[-1].step > first.step)
+
+
 async def test_nobody_watching_means_nothing_rendered(gateway: Gateway) -> None:
     session = await gateway.session()
     async with gateway.viewer(session) as viewer:

@@ -5,14 +5,20 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import io
+import threading
 import zipfile
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
-from gateway.running import Gateway, eventually
+from culet.errors import BusyError
+from culet.gateway.state import CLIENT_TURNTABLES, MOST_TURNTABLES
+from culet.gateway.still_places import StillPlaces
+from culet.gateway.turntables import Kind, TurntableQuery, _made
+from gateway.running import PATIENCE, Gateway, eventually
 from gateway.test_rest import assert_problem
 
 QUERY: dict[str, Any] = {"preset": "matte", "width": 48, "height": 32, "samples": 1}
@@ -91,6 +97,57 @@ async def test_all_frames_together_may_be_as_much_work_as_one_still(gateway: Gat
     """7e10 pixels x samples x bands: 12 million pixels of 3 bands may have some 1900 samples."""
     query = QUERY | {"frames": 300, "width": 200, "height": 200, "samples": 4000}
     assert_problem(await gateway.http.get("/api/turntable.webp", params=query), 422, "samples")
+
+
+def test_one_client_leaves_turntables_to_others() -> None:
+    places = StillPlaces(CLIENT_TURNTABLES, "turntables", MOST_TURNTABLES)
+    with contextlib.ExitStack() as held:
+        for _ in range(CLIENT_TURNTABLES):
+            held.enter_context(places.place("192.0.2.1"))
+        with pytest.raises(BusyError, match="waits for 2 turntables already"), places.place("192.0.2.1"):
+            pass
+        for _ in range(MOST_TURNTABLES - CLIENT_TURNTABLES):
+            held.enter_context(places.place("192.0.2.2"))
+        with pytest.raises(BusyError, match="as many turntables are being made"), places.place("192.0.2.3"):
+            pass
+    assert len(places) == 0
+
+
+async def test_a_client_with_its_turntables_under_way_gets_no_further_one(gateway: Gateway) -> None:
+    query = QUERY | {"frames": 2}
+    with contextlib.ExitStack() as held:
+        for _ in range(CLIENT_TURNTABLES):
+            held.enter_context(gateway.parts.turntables.place("127.0.0.1"))
+        assert_problem(await gateway.http.get("/api/turntable.zip", params=query), 429)
+    assert (await gateway.http.get("/api/turntable.zip", params=query)).status_code == 200
+    assert len(gateway.parts.turntables) == 0
+
+
+async def test_a_turntable_keeps_its_place_until_nobody_packs_its_frames(gateway: Gateway) -> None:
+    """A thread goes on when its client has left, and with it the memory of the frames."""
+    begun, let = threading.Event(), threading.Event()
+
+    def packed(_: Sequence[bytes | memoryview], _seconds: float) -> bytes:
+        begun.set()
+        let.wait(PATIENCE)
+        return b""
+
+    query = TurntableQuery.model_validate(QUERY | {"frames": 2})
+    kind, place = Kind("image/webp", packed), contextlib.ExitStack()
+    place.enter_context(gateway.parts.turntables.place("127.0.0.1"))
+    with place:
+        making = asyncio.create_task(_made(gateway.parts, query.scene(), query, kind, "127.0.0.1", place))
+        assert await asyncio.to_thread(begun.wait, PATIENCE)
+        making.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await making
+    assert len(gateway.parts.turntables) == 1
+    let.set()
+
+    async def given_back() -> bool:
+        return len(gateway.parts.turntables) == 0
+
+    await eventually(given_back)
 
 
 async def test_who_leaves_is_not_waited_for_and_others_come_in_between(gateway: Gateway) -> None:

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from enum import Flag, auto
-from http.cookies import CookieError, SimpleCookie
 
 from starlette.datastructures import Headers
+from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from culet.gateway.origins import own_origin
@@ -94,7 +94,7 @@ class Access:
         kind, _, given = headers.get("authorization", "").partition(" ")
         if kind.lower() == "bearer" and self._token.is_it(given.strip()):
             return ALL
-        kept = _cookie(headers.get("cookie", ""), cookie_name(scope))
+        kept = cookie_parser(headers.get("cookie", "")).get(cookie_name(scope))  # whatever else a browser keeps
         return ALL if kept is not None and self._token.is_cookie(kept) else NOTHING
 
 
@@ -102,11 +102,3 @@ def cookie_name(scope: Scope) -> str:
     """Of the cookie that a browser keeps for this server: cookies know hosts, and not their ports."""
     origin = own_origin(scope)
     return f"culet-{0 if origin is None else origin.port}"
-
-
-def _cookie(header: str, name: str) -> str | None:
-    try:
-        found = SimpleCookie(header).get(name)
-    except CookieError:
-        return None
-    return None if found is None else found.value

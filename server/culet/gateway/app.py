@@ -97,6 +97,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
             CORSMiddleware,
             allow_origins=settings.allow_origin,
             allow_methods=("GET", "HEAD", "POST", "PATCH", "DELETE"),
+            allow_headers=("Authorization",),  # the server's token
             expose_headers=("Location", "Retry-After", "Content-Disposition", "ETag", *QUALITY_HEADERS),
             allow_private_network=True,
         )

@@ -16,6 +16,8 @@ from culet.gateway.uploads import Uploads
 
 MOST_TURNTABLES = 4
 """Being made for all clients together: the gateway holds their frames, as `culet.gateway.turntables` says."""
+CLIENT_TURNTABLES = 2
+"""Of one client, so that others can have theirs."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,9 @@ class Gateway:
     metrics: Metrics
     grades: ClientTurns = field(default_factory=ClientTurns)
     """The engine takes turns between the grades that are asked for at once; each client has one among them."""
-    turntables: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_TURNTABLES))
+    turntables: StillPlaces = field(
+        default_factory=lambda: StillPlaces(CLIENT_TURNTABLES, "turntables", MOST_TURNTABLES)
+    )
     """Held by those that are being made."""
     stopping: asyncio.Event = field(default_factory=asyncio.Event)
     """Set when the server was told to stop."""

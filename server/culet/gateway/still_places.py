@@ -1,4 +1,4 @@
-"""How many stills each client waits for."""
+"""How many pictures each client waits for: stills, and turntables."""
 
 from __future__ import annotations
 
@@ -10,10 +10,13 @@ from culet.gateway.holdings import Holdings
 
 
 class StillPlaces:
-    """So many for each client; a place is given back when its still is there, or its client gone."""
+    """So many for each client; a place is given back when its picture is there, or its client gone."""
 
-    def __init__(self, limit: int) -> None:
+    def __init__(self, limit: int, what: str = "pictures", most: int | None = None) -> None:
+        """`limit` for each client, `most` for all together, of `what`."""
         self._limit = limit
+        self._what = what
+        self._most = most
         self._taken = Holdings()
 
     def __len__(self) -> int:
@@ -23,6 +26,8 @@ class StillPlaces:
     def place(self, client: str) -> Iterator[None]:
         """Hold a place, or BusyError."""
         if self._taken.of(client) >= self._limit:
-            raise BusyError(f"{client} waits for {self._limit} pictures already, which is the limit for one client")
+            raise BusyError(f"{client} waits for {self._limit} {self._what} already, which is the limit for one client")
+        if self._most is not None and len(self) >= self._most:
+            raise BusyError(f"as many {self._what} are being made as there may be at once; try again later")
         with self._taken.held(client):
             yield

@@ -10,6 +10,7 @@ import asyncio
 import contextlib
 import logging
 import time
+from functools import partial
 from typing import assert_never
 
 from fastapi import WebSocket, WebSocketDisconnect
@@ -100,6 +101,11 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str, *, onl
         gateway.sessions.leave(session, viewer)
 
 
+QUESTIONS_UNDER_WAY = 8
+"""Questions of one viewer that the engine has not answered. They take no room of the session's events: whoever only
+watches must not hold up who steers."""
+
+
 class _Stream:
     """The two tasks of one viewer."""
 
@@ -114,6 +120,8 @@ class _Stream:
         """What the viewer may still say."""
         self._client = client
         """What its client may still ask for."""
+        self._questions = asyncio.Semaphore(QUESTIONS_UNDER_WAY)
+        """Held for each question until the engine has answered."""
         self._under_way: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:
@@ -211,11 +219,12 @@ class _Stream:
                 continue
             if isinstance(event, SessionEvent | Question):
                 self._messages.spend(EVENT_COST - 1, time.monotonic())
-                await self._session.room.acquire()
+                room = self._session.room if isinstance(event, SessionEvent) else self._questions
+                await room.acquire()
                 # Not awaited: events travel in order on the engine's socket without waiting for each other.
                 task = asyncio.create_task(self._bring(event))
                 self._under_way.add(task)
-                task.add_done_callback(self._done)
+                task.add_done_callback(partial(self._done, room))
             else:
                 self._heed(event)
 
@@ -251,10 +260,10 @@ class _Stream:
             case _:
                 assert_never(event)
 
-    def _done(self, task: asyncio.Task[None]) -> None:
+    def _done(self, room: asyncio.Semaphore, task: asyncio.Task[None]) -> None:
         # Here and not in the task: one that is cancelled before it began runs no `finally`.
         self._under_way.discard(task)
-        self._session.room.release()
+        room.release()
 
     async def _bring(self, event: SessionEvent | Question) -> None:
         """To the engine."""

@@ -6,6 +6,7 @@ import asyncio
 import io
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from types import MappingProxyType
 from typing import Annotated, Any, NamedTuple
 
@@ -13,7 +14,6 @@ from fastapi import APIRouter, Query, Request, Response
 from PIL import Image
 from pydantic import Field, ValidationInfo, field_validator
 
-from culet.errors import BusyError
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.entity_tag import entity_tag, names
@@ -111,11 +111,9 @@ def _offer(ending: str, kind: Kind) -> None:
         if names(http.headers.get("If-None-Match"), tag):
             return Response(status_code=304, headers=headers)
         client = client_of(http.scope)
-        if gateway.turntables.locked():
-            raise BusyError("as many turntables are being made as there may be at once; try again later")
-        with gateway.stills.place(client):
-            async with gateway.turntables:
-                data, quality = await while_waited_for(http, _made(gateway, scene, query, kind, client))
+        with gateway.stills.place(client), ExitStack() as place:
+            place.enter_context(gateway.turntables.place(client))
+            data, quality = await while_waited_for(http, _made(gateway, scene, query, kind, client, place))
         answer = PictureResponse(data, media_type=kind.media_type, headers=quality)
         if answer.headers.get(TARGET) != MISSED:  # as of a still
             answer.headers.update(headers)
@@ -145,9 +143,12 @@ for _ending, _kind in KINDS.items():
 
 
 async def _made(
-    gateway: Gateway, scene: Scene, query: TurntableQuery, kind: Kind, client: str
+    gateway: Gateway, scene: Scene, query: TurntableQuery, kind: Kind, client: str, place: ExitStack
 ) -> tuple[bytes, dict[str, str]]:
-    """Frame by frame, each a still like any other, so that those of others take their turns in between."""
+    """Frame by frame, each a still like any other, so that those of others take their turns in between.
+
+    The place is held as long as the frames are: a thread that packs them cannot be given up.
+    """
     error = DEFAULT_ERROR if query.samples is None and query.error is None else query.error
     frames: list[bytes | memoryview] = []
     reached: list[Mapping[str, Any]] = []
@@ -159,7 +160,10 @@ async def _made(
         result, data = await gateway.uploads.request(message, patient=True)
         frames.append(bytes(data))
         reached.append(result)
-    return await asyncio.to_thread(kind.packed, frames, query.seconds), quality_headers(_least(reached))
+    packing = asyncio.create_task(asyncio.to_thread(kind.packed, frames, query.seconds))
+    held = place.pop_all()
+    packing.add_done_callback(lambda _: held.close())
+    return await asyncio.shield(packing), quality_headers(_least(reached))
 
 
 def _least(reached: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
