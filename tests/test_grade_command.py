@@ -40,6 +40,14 @@ def test_a_cut_is_graded_with_its_tilt_curves() -> None:
     assert run.stdout.count("\n") > 2 * 37
 
 
+def test_an_error_that_all_rays_do_not_reach_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("culet.grading.grades.MOST_PIECES", 1)
+    run = invoke("grade", "single", "--error", "0.001")
+    assert run.returncode == 0, run.stderr
+    assert "not 0.001: all rays are used" in " ".join(run.stdout.split())
+    assert "all rays are used" not in invoke("grade", "single", "--error", "10").stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

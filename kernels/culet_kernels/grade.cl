@@ -26,7 +26,8 @@
 #define FIRE 13       // light of two wavelengths that comes from directions further apart than a threshold
 #define RETURNED 14   // light of two wavelengths from the dome
 #define SPREAD 15     // degrees between the two, times light that both bring by the same facets
-#define ELEVATIONS 16 // then light without glare, by degrees of elevation above the dome's rim, from -90 on
+#define TOGETHER 16   // that light: what both bring from the dome by the same facets
+#define ELEVATIONS 17 // then light without glare, by degrees of elevation above the dome's rim, from -90 on
 #define DEGREES 180
 #define GRADE_NUMBERS (ELEVATIONS + DEGREES)
 
@@ -135,6 +136,7 @@ static inline void part_wavelengths(domeL dome, realL *sums, rows_t rows, chains
     sums[RETURNED] += of_blue + of_red;
     sums[FIRE] += only(!(both & (degrees <= threshold)), of_blue + of_red);
     sums[SPREAD] += only(both, degrees * (of_blue + of_red));
+    sums[TOGETHER] += only(both, of_blue + of_red);
     blue.alive &= blue.weight >= cutoff;
     red.alive &= red.weight >= cutoff;
   }

@@ -75,7 +75,7 @@ def grade(
             ):  # fmt: skip
                 advance(report.done)
         assert report is not None  # noqa: S101 - there is a first one
-        _print(report)
+        _print(report, error)
         if out is not None:
             write_whole(out, (json.dumps(asdict(report), indent=2) + "\n").encode(), "out")
 
@@ -103,9 +103,10 @@ def _with_material(stage: Stage, name: str | None, index: float | None) -> Stage
     return stage.showing(Scene.read(data))
 
 
-def _print(report: Report) -> None:
+def _print(report: Report, target: float) -> None:
     from rich.table import Table
 
+    from culet.grading.grades import SIGMAS
     from culet.grading.report import table_of
 
     console = report_console()
@@ -121,6 +122,9 @@ def _print(report: Report) -> None:
         bound = f"{number.bound:.{digits + 1}f}" if number.bound else ""
         table.add_row(name, f"{number.value:.{digits}f} {unit}", f"{number.error:.{digits + 1}f}", bound)
     console.print(table)
+    reached = SIGMAS * report.grades.iso.error
+    if reached > target:
+        console.print(f"twice the standard error of ISO is {reached:.4f} points, not {target:g}: all rays are used")
     for axis, points in (report.tilt or {}).items():
         curve = Table(f"tilt about {axis}", "ISO", "COS", "SC2", "standard error", box=None)
         for point in points:

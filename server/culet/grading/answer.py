@@ -52,6 +52,6 @@ class Report:
     weighted_light_return: Number | None = None
     """A part of 1."""
     tilt: dict[str, tuple[TiltPoint, ...]] | None = None
-    """By the axis that the stone turns about: `x` is its length's, `z` its width's."""
+    """By the axis of its own shape that the stone turns about, `x` or `z`, level both."""
     done: float = 0.0
     """The part of the work."""

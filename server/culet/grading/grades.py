@@ -37,21 +37,23 @@ Sums = NDArray[np.float64]
 
 
 def grade(sums: LightSums, shape: Shape, optics: StoneOptics, rules: Rules, target: float = TARGET) -> Iterator[Grades]:
-    """Face up, better and better: until twice the standard error of ISO is below `target`, in points. MeshError for a
-    stone that is not convex."""
+    """Face up, better and better: until twice the standard error of ISO is below `target`, in points, or MOST_PIECES
+    are done. MeshError for a stone that is not convex."""
     found: Sums | None = None
     rays = FIRST_RAYS
     for seed in range(MOST_PIECES):
         more = sums.of(shape, optics, rules, [View()], batches=BATCHES, rays=rays, seed=seed, fire=True)[0]
         found = more if found is None else found + more
-        grades = _grades(found, optics)
+        grades = grades_of(found, optics)
         yield grades
         if SIGMAS * grades.iso.error <= target:
             return
         rays = MOST_RAYS
 
 
-def _grades(found: Sums, optics: StoneOptics) -> Grades:
+def grades_of(found: Sums, optics: StoneOptics) -> Grades:
+    """By the sums (batches, NUMBERS) of one view, with fire."""
+
     def of(name: str) -> Sums:
         return found[:, KERNEL[name]]
 
@@ -69,10 +71,12 @@ def _grades(found: Sums, optics: StoneOptics) -> Grades:
     shares |= {"leak": percent(elevation[:, :middle].sum(axis=1), of("LOST")), "absorbed": percent(of("ABSORBED"))}
     shares["cut"] = percent(of("LOST"))
     iso = percent(of("ISO"), of("LOST"))
-    mean, square = iso.value / 100, ratio(of("SQUARES"), hits)
-    deviation = math.sqrt(max(0.0, square.value - mean * mean))
-    deviation_error = square.error / (2 * deviation) if deviation > 0 else 0.0
-    spread = ratio(of("SPREAD"), of("RETURNED")) if optics.blue_index != optics.red_index else Number(0.0, 0.0)
+    mean = iso.value / 100
+    deviation = math.sqrt(max(0.0, ratio(of("SQUARES"), hits).value - mean * mean))
+    # Of the variance to first order, since a batch that is brighter has a larger mean of squares, too.
+    variance_error = ratio(of("SQUARES") - 2 * mean * of("ISO"), hits).error
+    deviation_error = variance_error / (2 * deviation) if deviation > 0 else 0.0
+    spread = ratio(of("SPREAD"), of("TOGETHER")) if optics.blue_index != optics.red_index else Number(0.0, 0.0)
     return Grades(
         iso=iso,
         cos=percent(of("COS"), of("LOST")),

@@ -18,7 +18,7 @@ from culet.scene.stone import StoneSettings
 from culet.stage import Stage
 
 AXES = {"x": 90.0, "z": 0.0}
-"""The axes about which a stone is tilted for a curve: the azimuth that the viewer then sees the stone from."""
+"""The axes of its own shape about which a stone is tilted for a curve: the azimuth that it is then seen from."""
 
 
 def reports(

@@ -254,8 +254,8 @@ export const grades = {
   degrees: "Tilt, \u00b0",
   tiltPoint: (degrees: number, iso: string) => `${iso} % at ${degrees}\u00b0`,
   tiltCurve: (axis: string, points: string) => `${axis}: ${points}.`,
-  /** Of the tilt curves: what the stone turns about. */
-  axes: ["ISO, about its length", "ISO, about its width"],
+  /** Of the tilt curves: which of its own axes the stone turns about. */
+  axes: ["ISO, about x", "ISO, about z"],
   size: (millimetres: string, carats: string) => `${millimetres} mm, ${carats} ct`,
   sure: (meaning: string, error: string, bound: string) =>
     `${meaning}. Standard error ${error}, cut off at most ${bound}`,
