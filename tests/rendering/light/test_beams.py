@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pyopencl as cl
@@ -10,7 +11,7 @@ import pytest
 
 from culet.geometry.shape import Shape
 from culet.rendering.device import Device
-from culet.rendering.light.beams import Beams
+from culet.rendering.light.beams import FIRST_JOBS, Beams
 from culet.rendering.light.light_map import frame_of
 from culet.rendering.placed_stone import rotation_matrix
 from culet.scene import Scene
@@ -217,3 +218,30 @@ def test_pieces_of_a_pass_make_the_map_of_a_whole_one(beams: Beams) -> None:
     cl.enqueue_copy(beams.device.queue, made, target)
     other = thrown(beams, [sun((1, 2, 0))], cutoff=1e-3)
     assert made == pytest.approx(0.75 * whole.map + 0.25 * other.map, abs=1e-4)
+
+
+def test_a_pass_of_more_stones_begins_with_few_jobs_for_nobody_knows_how_long_they_take(device: Device) -> None:
+    """A job that was quick among two stones may take long among eight."""
+    launched: list[int] = []
+
+    class Noting(Beams):
+        def _launch(self, kernel: object, buffers: Sequence[object], begin: int, end: int, *more: int) -> None:
+            launched.append(end - begin)
+            super()._launch(kernel, buffers, begin, end, *more)
+
+    noting = Noting(device)
+
+    def begun_with(count: int) -> int:
+        """The jobs of the first launch that follows light."""
+        placed = [{**UPRIGHT, "id": f"s{k}", "scale": 0.2, "position": [0.5 * k, 0, 0]} for k in range(count)]
+        stage = staged(Scene.read({**DARK, "stones": placed}))
+        frame = frame_of(stage)
+        target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
+        launched.clear()
+        for _ in noting.pieces(stage, [sun()] * 2, frame, target, cutoff=0.5, seconds=60):
+            pass
+        return launched[1]  # after the one of shadows
+
+    assert begun_with(2) == FIRST_JOBS
+    assert begun_with(2) > FIRST_JOBS
+    assert begun_with(8) == FIRST_JOBS

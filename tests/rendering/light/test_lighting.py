@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from culet.errors import DeviceError
 from culet.geometry.shape import Shape
+from culet.rendering.chains import AUTO_BANDS, CHANNELS
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import Effort
@@ -88,6 +89,21 @@ def test_what_changes_the_light_needs_another_map(renderer: Renderer, changes: d
     stages = Stage.of(scene_of(stones=[{}])), Stage.of(scene_of(**{"stones": [{}], **changes}))
     assert renderer.lighting.of(stages[0]) is not renderer.lighting.of(stages[1])
     assert renderer.lighting.of(stages[0]) is renderer.lighting.of(Stage.of(stages[0].scene, before=stages[0]))
+
+
+@pytest.mark.parametrize(
+    ("material", "bands"), [({"ior": [1.5, 1.5, 1.5]}, CHANNELS), ("diamond", AUTO_BANDS)], ids=["flat", "dispersive"]
+)
+def test_open_wavelengths_have_the_map_of_as_many_that_are_asked_for(
+    renderer: Renderer, material: object, bands: int
+) -> None:
+    """A picture at rest leaves them open, and a moving one asks for three: where that is the same light, it is kept."""
+    found = {
+        asked: renderer.lighting.of(Stage.of(scene_of(stones=[{"material": material}], optics={"bands": asked})))
+        for asked in ("auto", CHANNELS, AUTO_BANDS)
+    }
+    assert found["auto"] is found[bands]
+    assert found[CHANNELS] is not found[AUTO_BANDS]
 
 
 @pytest.mark.parametrize(

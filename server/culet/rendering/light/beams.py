@@ -7,7 +7,7 @@ import time
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyopencl as cl
@@ -70,8 +70,8 @@ class Beams:
         self.tally: Tally | None = None
         """Of the last pass."""
         self._programs: dict[tuple[int, ...], Any] = {} if like is None else like._programs
-        self._paces: dict[tuple[str, int, int], float] = {} if like is None else like._paces
-        """s that a job of a kernel took, by the power of two of the cut-off."""
+        self._paces: dict[_Kind, float] = {} if like is None else like._paces
+        """s that a job took."""
         self._scratch: dict[tuple[int, int], tuple[Any, ...]] = {}
         self._clean = True
 
@@ -160,7 +160,8 @@ class Beams:
             )  # fmt: skip
             # Of several stones a job follows all bands of a light.
             entries = int(room["entries"]) * len(group) * (bands if len(stones) == 1 else 1)
-            throw = partial(self._launches, program, buffers, cutoff, seconds)
+            size = len(stones).bit_length(), solids.planes.size.bit_length()
+            throw = partial(self._launches, program, buffers, cutoff, seconds, size)
             if gauged and not diverging:
                 band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
                 for _ in throw("gauge_light", entries, band):
@@ -207,10 +208,19 @@ class Beams:
         return [f"-DREAL={'double' if self.real is np.float64 else 'float'}"]
 
     def _launches(
-        self, program: _Kernels, buffers: Sequence[Any], cutoff: float, seconds: float, name: str, jobs: int, *more: int
+        self,
+        program: _Kernels,
+        buffers: Sequence[Any],
+        cutoff: float,
+        seconds: float,
+        size: tuple[int, int],
+        name: str,
+        jobs: int,
+        *more: int,
     ) -> Iterator[float]:
-        """All jobs of a kernel, in launches of about so many seconds; yields the part that is done, between them."""
-        kernel, kind = getattr(program, name), (name, id(program), math.frexp(cutoff)[1])
+        """All jobs of a kernel, in launches of about so many seconds; yields the part that is done, between them.
+        `size`: of the scene, within a factor of two."""
+        kernel, kind = getattr(program, name), _Kind(name, id(program), math.frexp(cutoff)[1], size)
         done, chunk = 0, jobs
         if math.isfinite(seconds):
             known = self._paces.get(kind)
@@ -257,6 +267,17 @@ class Beams:
     def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401
         flags = cl.mem_flags.READ_WRITE | cl.mem_flags.COPY_HOST_PTR
         return cl.Buffer(self.device.context, flags, hostbuf=np.ascontiguousarray(array))
+
+
+class _Kind(NamedTuple):
+    """Of jobs that take about as long as each other."""
+
+    kernel: str
+    program: int
+    cutoff: int
+    """Its power of two."""
+    size: tuple[int, int]
+    """Of the stones' number and of their facets', the powers of two: a beam is cut by all stones."""
 
 
 @dataclass(frozen=True)

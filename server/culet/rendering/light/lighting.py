@@ -13,7 +13,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.rendering.chains import is_spectral
+from culet.rendering.chains import band_count, is_spectral
 from culet.rendering.compiling import compiling
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
@@ -181,7 +181,7 @@ def _key(stage: Stage) -> _Key:
         tuple(map(id, stage.shapes)),
         (scene.emitters, scene.environment, id(stage.panorama)),
         (scene.floor.kind, scene.walls.kind),
-        (optics.fresnel, optics.bands, optics.polarised, optics.caustics, optics.max_bounces, scene.millimetres),
+        (optics.fresnel, band_count(scene), optics.polarised, optics.caustics, optics.max_bounces, scene.millimetres),
     )
 
 
