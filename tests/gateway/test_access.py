@@ -151,6 +151,15 @@ def test_a_gateway_is_told_the_token_where_no_list_of_processes_shows_it(monkeyp
     assert GatewaySettings.model_validate_json(part.command[-1]).token == TOKEN
 
 
+def test_a_gateway_that_wants_no_token_does_not_take_up_the_environment_s(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CULET_TOKEN", TOKEN)
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        part = gateway_part(listening, settings(token=None, no_token=True))
+    for name, value in part.environment.items():
+        monkeypatch.setenv(name, value)
+    assert GatewaySettings.model_validate_json(part.command[-1]).token is None
+
+
 async def test_without_the_token_nothing_is_made_rendered_or_uploaded(engine: Endpoints, tmp_path: Path) -> None:
     async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
         http = guarded.http

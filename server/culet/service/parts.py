@@ -34,7 +34,7 @@ def gateway_part(
         "gateway",
         gateway_command(number, settings.model_dump_json(exclude={"token"})),
         GATEWAY_SILENCE_SECONDS,
-        environment={} if settings.token is None else {variable("token"): settings.token},
+        environment={variable("token"): settings.token or ""},  # this process's own may not count
         inherited=(number,),
         has_spare=spare,
         start_seconds=math.inf if alone else START_SECONDS,

@@ -20,9 +20,9 @@ LARGE = Grade(scene=DEFAULT, error=10, tilt=True)
 SMALL = Grade(scene=DEFAULT, error=10)
 
 
-def requests(library: Library = NOTHING, **limits: float) -> StoneRequests:
+def requests(library: Library = NOTHING, grade_seconds: float = 60) -> StoneRequests:
     """Of scenes; there are no sessions."""
-    return StoneRequests(cast(OpenSessions, {}), library, Limits(**limits))
+    return StoneRequests(cast(OpenSessions, {}), library, Limits(grade_seconds=grade_seconds))
 
 
 async def test_grades_end_in_their_time_and_tell_what_is_known_by_then() -> None:
