@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
+from weakref import ref
 
 import numpy as np
 import pytest
 
 from culet.rendering.chains import AUTO_BANDS, band_count, bands_seen, first_sample, is_spectral
 from culet.rendering.features import features_of
+from culet.rendering.inputs import Inputs
 from culet.rendering.renderer import Renderer
 from culet.rendering.target import Target
 from culet.scene import Scene
@@ -102,6 +105,32 @@ def test_it_begins_anew_with_three_indices(renderer: Renderer) -> None:
     picture.begin_anew()
     picture.refine()
     assert np.asarray(picture.linear(), np.float64).tobytes() == linear(renderer, with_bands(3), 1).tobytes()
+
+
+def test_what_the_first_sample_reads_leaves_the_device_after_it(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or an uploaded mesh would be there twice while the picture lasts."""
+    made: list[ref[Inputs]] = []
+
+    class Noted(Inputs):
+        def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - as the real one's
+            super().__init__(*arguments)
+            made.append(ref(self))
+
+    def kept() -> list[bool]:
+        return [each() is not None for each in made]
+
+    monkeypatch.setattr("culet.rendering.renderer.Inputs", Noted)
+    picture = renderer.picture(Stage.of(SCENE), *SIZE)
+    picture.refine()
+    assert kept() == [True]
+    picture.refine(2)
+    assert kept() == [False, True]
+    assert picture.program is not None
+    picture.begin_anew()
+    picture.refine(2)
+    assert kept() == [False, True, False]
 
 
 def test_its_error_is_estimated_as_of_any_picture(renderer: Renderer) -> None:

@@ -223,11 +223,11 @@ class Picture:
         def tracing(traced: Stage, wanted: Features) -> Tracing:
             get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
             kernel = get(wanted, renderer.variant)
-            inputs = Inputs(renderer.device, traced, width, height, wanted, real, bound)
-            return Tracing(kernel, inputs, renderer.pace_of(kernel, triangles))
+            inputs = partial(Inputs, renderer.device, traced, width, height, wanted, real, bound)
+            return Tracing(kernel, renderer.pace_of(kernel, triangles), inputs)
 
         self._tracings = Tracings(stage, features, tracing)
-        self._tracings.of(0)  # what cannot be drawn is refused at once
+        _ = self._tracings.of(0).inputs  # what cannot be drawn is refused at once
         self._lit_by = 0
         """Version of the map that its samples saw."""
         self._light_errors: list[float] = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from culet.rendering.build import Kernel
 from culet.rendering.chains import first_sample
@@ -13,18 +13,29 @@ from culet.rendering.pace import Pace
 from culet.stage import Stage
 
 
-@dataclass(frozen=True, eq=False)
 class Tracing:
     """Of samples of one kind."""
 
-    kernel: Kernel
-    inputs: Inputs
-    pace: Pace
+    def __init__(self, kernel: Kernel, pace: Pace, make: Callable[[], Inputs]) -> None:
+        self.kernel, self.pace = kernel, pace
+        self._make = make
+        self._inputs: Inputs | None = None
+
+    @property
+    def inputs(self) -> Inputs:
+        """On the device from now on."""
+        self._inputs = self._inputs or self._make()
+        return self._inputs
+
+    def release(self) -> None:
+        """Take what it reads off the device, until it is asked for again."""
+        self._inputs = None
 
 
 class Tracings:
     """Of one picture: the first sample may be of another kind than those after it (`first_sample`). Each kind is made
-    when its first sample is due, and then kept: a program that comes to be ready meanwhile might round otherwise."""
+    when its first sample is due, and then kept: a program that comes to be ready meanwhile might round otherwise. What
+    only the first sample reads leaves the device after it: a mesh with its tree is large."""
 
     def __init__(self, stage: Stage, features: Features, make: Callable[[Stage, Features], Tracing]) -> None:
         """`features` of the samples after the first one."""
@@ -39,6 +50,9 @@ class Tracings:
         number = min(sample, len(self._made) - 1)
         made = self._made[number] or self._make(*self._kinds[number])
         self._made[number] = made
+        first = self._made[0]
+        if number > 0 and first is not None:
+            first.release()
         return made
 
 
