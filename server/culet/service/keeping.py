@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 import signal
 import threading
-import webbrowser
 from pathlib import Path
 
 from culet.notify import Notice, notify
+from culet.service.browser import show
 from culet.service.supervisor import Part, Supervisor
-
-log = logging.getLogger(__name__)
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | None = None) -> None:
-    """Keep all of them running until SIGINT or SIGTERM; the first one is stopped first. `folder` is for their sockets.
+    """Keep all of them running until SIGINT or SIGTERM; the first one is stopped first. `folder` is for their
+    sockets, and for what leads a browser to the page.
 
     Once the first one is ready, whoever supervises this process is told, a line, if there is one, is printed, and the
     user's browser is shown the page, if there is one.
@@ -31,7 +29,7 @@ async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | Non
     first, *others = parts
     supervisors = [Supervisor(first, folder, ready.set), *(Supervisor(part, folder) for part in others)]
     running = [asyncio.create_task(supervisor.run()) for supervisor in supervisors]
-    announcement = asyncio.create_task(_announce(ready, ready_line, page))
+    announcement = asyncio.create_task(_announce(ready, ready_line, page, folder))
     stop = asyncio.create_task(stopping.wait())
     try:
         await asyncio.wait([*running, stop], return_when=asyncio.FIRST_COMPLETED)
@@ -47,15 +45,10 @@ async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | Non
             raise result
 
 
-async def _announce(ready: asyncio.Event, line: str, page: str | None) -> None:
+async def _announce(ready: asyncio.Event, line: str, page: str | None, folder: Path) -> None:
     await ready.wait()
     if line:
         print(line, flush=True)
     notify(Notice.READY)
     if page is not None:  # in a thread of its own that nobody waits for: a browser may run in the terminal
-        threading.Thread(target=_show, args=(page,), daemon=True).start()
-
-
-def _show(page: str) -> None:
-    if not webbrowser.open(page):
-        log.warning("no browser could be started; open %s", page)
+        threading.Thread(target=show, args=(page, folder), daemon=True).start()
