@@ -78,6 +78,16 @@ def test_a_bad_value_is_told_by_the_name_that_its_user_gave(
     assert str(by_variable.value) == f"{variable(name)}: {wanted}; got {value!r}"
 
 
+def test_a_bad_token_is_refused_without_being_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Messages end in logs, and it may be nearly the right one."""
+    with pytest.raises(InputError, match=r"^--token: expected 16 to 200 letters") as by_option:
+        GatewaySettings.read({"token": "hunter2 hunter2 hunter2"}, **ENDPOINTS)
+    monkeypatch.setenv("CULET_TOKEN", "hunter2")
+    with pytest.raises(InputError, match=r"^CULET_TOKEN: expected 16 to 200 letters") as by_variable:
+        GatewaySettings.read({}, **ENDPOINTS)
+    assert "hunter2" not in f"{by_option.value} {by_variable.value}"
+
+
 @pytest.mark.parametrize("value", ["*", "proxy", "10.0.0.0/40", "10.0.0.1/8"])
 def test_a_proxy_that_is_no_address_is_told_by_the_name_that_its_user_gave(value: str) -> None:
     with pytest.raises(InputError, match=r"^--trusted-proxy: expected an address or a network such as"):

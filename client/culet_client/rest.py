@@ -13,6 +13,16 @@ from culet_client.errors import ClientError, RefusedError
 from culet_protocol.messages import Message
 
 
+class _NoRedirects(urllib.request.HTTPRedirectHandler):
+    """What another server is asked, it would be asked with this one's token."""
+
+    def redirect_request(self, *_: object) -> None:
+        """None that is followed: the answer counts as a refusal."""
+
+
+_OPENER = urllib.request.build_opener(_NoRedirects)
+
+
 class Rest:
     """A gateway's interface."""
 
@@ -72,9 +82,12 @@ class Rest:
             self.server + path, data, self._headers, method=method
         )
         try:
-            with urllib.request.urlopen(request, timeout=self._timeout) as answer:  # noqa: S310
+            with _OPENER.open(request, timeout=self._timeout) as answer:
                 answered: bytes = answer.read()
         except urllib.error.HTTPError as error:
+            elsewhere = error.headers.get("Location")
+            if 300 <= error.code < 400 and elsewhere:
+                raise ClientError(f"{self.server} answers with a redirect to {elsewhere}; name that server") from error
             raise _refusal(error) from error
         except (OSError, http.client.HTTPException) as error:
             raise ClientError(f"cannot reach {self.server}: {getattr(error, 'reason', error)}") from error

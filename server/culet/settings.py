@@ -64,7 +64,9 @@ class Settings(BaseSettings):
             name = str(finding["loc"][0])
             source = option(name) if name in own else variable(name)
             wanted = "expected a size such as 64MiB" if finding["type"].startswith("byte_size") else expected(finding)
-            raise InputError(f"{source}: {wanted}; got {str(finding['input'])!r}", name) from None
+            secret = name in cls.model_fields and not cls.model_fields[name].repr
+            came = "" if secret else f"; got {str(finding['input'])!r}"
+            raise InputError(f"{source}: {wanted}{came}", name) from None
 
     @classmethod
     def words(cls, given: Mapping[str, Any]) -> Iterator[str]:

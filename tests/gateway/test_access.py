@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import socket
 from pathlib import Path
+from typing import cast
 from urllib.parse import urlsplit
 
 import pytest
@@ -14,6 +16,8 @@ from websockets.typing import Subprotocol
 from culet.errors import InputError, NotFoundError
 from culet.gateway.access import NOTHING, Right, needed
 from culet.gateway.address import entrance
+from culet.gateway.app import create_app
+from culet.gateway.openapi import Application
 from culet.gateway.server_token import PATTERN, Token, is_own_machine
 from culet.gateway.settings import GatewaySettings, settings_of, with_token
 from culet.service.parts import gateway_part
@@ -69,6 +73,15 @@ def settings(**given: object) -> GatewaySettings:
 )
 def test_what_a_request_needs(method: str, path: str, right: Right) -> None:
     assert needed(method, path, settings()) == right
+
+
+def test_the_description_says_which_requests_need_the_token() -> None:
+    asked = settings()
+    paths = json.loads(cast(Application, create_app(asked)).document())["paths"]
+    for path, operations in paths.items():
+        for method, operation in operations.items():
+            needs = needed(method.upper(), path, asked) != NOTHING
+            assert ("401" in operation["responses"]) is needs, (method, path)
 
 
 def test_health_and_metrics_have_switches_of_their_own() -> None:

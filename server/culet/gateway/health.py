@@ -30,7 +30,7 @@ async def readyz(gateway: ThisGateway) -> dict[str, str]:
     return {"status": "ready"}
 
 
-@router.get("/metrics", response_class=PlainTextResponse, responses=answers(429))
+@router.get("/metrics", response_class=PlainTextResponse, responses=answers(401, 429))
 async def metrics(gateway: ThisGateway) -> Response:
     """Counters of the gateway and the engine. No labels that grow with use, such as sessions."""
     try:

@@ -31,7 +31,7 @@ async def login(request: Request, gateway: ThisGateway) -> Response:
     return response
 
 
-@router.delete(LOGIN_PATH, status_code=204, responses=answers(429))
+@router.delete(LOGIN_PATH, status_code=204, responses=answers(401, 429))
 async def logout(request: Request) -> Response:
     """Forget the cookie."""
     response = Response(status_code=204)

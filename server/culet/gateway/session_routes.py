@@ -101,7 +101,7 @@ class FrameQuery(Model):
     error: Error | None = None
 
 
-@router.post("/api/sessions", status_code=201, responses=answers(404, 413, 422, 429, 503))
+@router.post("/api/sessions", status_code=201, responses=answers(401, 404, 413, 422, 429, 503))
 async def create_session(
     http: Request,
     gateway: ThisGateway,

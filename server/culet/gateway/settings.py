@@ -33,6 +33,7 @@ class GatewaySettings(Settings):
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 for a free one.")
     token: str | None = Field(
         None,
+        repr=False,  # a secret: neither a log nor a message says it
         description="Who has it may do everything here, who has none only what a session's links let do; at least 16 "
         "letters, digits, - and _. One is made, and printed with the address, if other machines can reach the server: "
         "by --host, or by a proxy that --trusted-proxy or a name that --allow-host tells of.",

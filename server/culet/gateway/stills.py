@@ -157,7 +157,7 @@ def _offer(ending: str, file_format: Format) -> None:
         responses={
             **picture_answers(MEDIA_TYPES[file_format], headers=("ETag", "Cache-Control", "Vary")),
             304: {"description": "The picture is as it was."},
-            **answers(404, 422, 429, 503),
+            **answers(401, 404, 422, 429, 503),
         },
     )
 
@@ -169,7 +169,7 @@ for _ending, _format in ENDINGS.items():
 @router.post(
     "/api/render",
     response_class=Response,
-    responses={**picture_answers(*MEDIA_TYPES.values()), **answers(413, 422, 429, 503)},
+    responses={**picture_answers(*MEDIA_TYPES.values()), **answers(401, 413, 422, 429, 503)},
 )
 async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> Response:
     """Render a scene in the format asked for."""

@@ -58,7 +58,7 @@ class DiagramRequest(Model):
     stone: StoneName | None = None
 
 
-@router.post("/api/grade", responses=answers(413, 422, 429, 503))
+@router.post("/api/grade", responses=answers(401, 413, 422, 429, 503))
 async def grade(http: Request, request: GradeRequest, gateway: ThisGateway) -> Report:
     """Grade a stone of a scene: brightness, leak, contrast, fire, each number with its error."""
     scene = request.scene.model_dump(mode="json")
@@ -74,7 +74,9 @@ async def grade_session(
     return await _graded(http, gateway, Grade(session=session.id, **query.model_dump()), session)
 
 
-@router.post("/api/design/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(413, 422, 429, 503)})
+@router.post(
+    "/api/design/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(401, 413, 422, 429, 503)}
+)
 async def diagram(http: Request, request: DiagramRequest, gateway: ThisGateway) -> Response:
     """The cutting diagram of a stone of a scene, to be printed on a page."""
     scene = request.scene.model_dump(mode="json")

@@ -133,7 +133,7 @@ def _offer(ending: str, kind: Kind) -> None:
         responses={
             **picture_answers(kind.media_type, headers=("ETag", "Cache-Control", "Vary")),
             304: {"description": "The turntable is as it was."},
-            **answers(404, 422, 429, 503),
+            **answers(401, 404, 422, 429, 503),
         },
     )
 

@@ -53,7 +53,7 @@ class SkyAnswer(Model):
     description: DescribedSky
 
 
-@router.post(MESHES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
+@router.post(MESHES_PATH, status_code=201, responses=answers(401, 413, 422, 429, 503), openapi_extra=_FORM)
 async def upload_mesh(request: Request, gateway: ThisGateway) -> MeshAnswer:
     """Upload a mesh as the form field `file`, .obj, .off, .stl, .ply or .glb, or a cutter's design, .asc and .gem of
     GemCad or .gcs of Gem Cut Studio. The answer says what was found in it."""
@@ -61,7 +61,7 @@ async def upload_mesh(request: Request, gateway: ThisGateway) -> MeshAnswer:
     return MeshAnswer(id=name, description=DescribedMesh.model_validate(described))
 
 
-@router.post(SKIES_PATH, status_code=201, responses=answers(413, 422, 429, 503), openapi_extra=_FORM)
+@router.post(SKIES_PATH, status_code=201, responses=answers(401, 413, 422, 429, 503), openapi_extra=_FORM)
 async def upload_sky(request: Request, gateway: ThisGateway) -> SkyAnswer:
     """Upload an equirectangular picture of a sky as the form field `file`: .exr or .hdr (linear) or .png (sRGB, unless
     it says otherwise). The answer says what was found in it."""

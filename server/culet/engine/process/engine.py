@@ -26,7 +26,7 @@ from culet_protocol import engine as protocol
 log = logging.getLogger(__name__)
 
 HEARTBEAT_SECONDS = 1.0
-WAITED_FOR = (protocol.Render, protocol.PutMesh, protocol.PutSky)
+WAITED_FOR = (protocol.Render, protocol.Grade, protocol.DrawDiagram, protocol.PutMesh, protocol.PutSky)
 """Requests whose work is for who asked alone. Others are quickly done, and meant whether or not somebody waits."""
 RETRY_SECONDS = 10.0
 """Until a picture is tried again that something passing was in the way of."""
@@ -127,7 +127,7 @@ class Engine:
             task.cancel()
 
     def _give_up(self, peer: bytes) -> None:
-        """A gateway is gone, and with it whoever waited for pictures and for files to be read."""
+        """A gateway is gone, and with it whoever waited for pictures, for grades and for files to be read."""
         for request in [request for request in self._waited_for if request[0] == peer]:
             if request in self._under_way:
                 self._under_way[request].cancel()
