@@ -40,10 +40,7 @@ async def test_metrics_are_prometheus_text_without_a_label_that_grows(gateway: G
         assert re.search(rf'^{name}_bucket{{le="\+Inf"}} [1-9]', answer.text, re.MULTILINE)
 
 
-async def test_the_documentation_lists_every_route_and_loads_nothing_from_elsewhere(gateway: Gateway) -> None:
-    page = (await gateway.http.get("/docs")).text
-    assert "openapi.json" in page
-    assert "//" not in re.sub(r"^// .*$", "", page, flags=re.MULTILINE), "no address of another server"
+async def test_the_documentation_lists_every_route(gateway: Gateway) -> None:
     paths = (await gateway.http.get("/openapi.json")).json()["paths"]
     session = "/api/sessions/{session_id}"
     for path in ("/api/render.tga", "/api/render", "/api/presets", "/api/materials", "/api/cuts"):
@@ -81,7 +78,7 @@ async def test_every_example_in_the_documentation_runs(gateway: Gateway) -> None
                 answer = await gateway.http.request(method, path.replace("{session_id}", session), json=example)
                 assert answer.status_code in (200, 201), (path, answer.text)
                 ran += 1
-    assert ran == 4
+    assert ran == 6
 
 
 def test_a_server_without_a_page_says_so_when_it_starts(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

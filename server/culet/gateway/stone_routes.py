@@ -6,7 +6,7 @@ from contextlib import nullcontext
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import Field, TypeAdapter
+from pydantic import ConfigDict, Field, TypeAdapter
 
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
@@ -24,6 +24,7 @@ router = APIRouter(tags=["stones"])
 
 SVG = "image/svg+xml"
 REPORT: TypeAdapter[Report] = TypeAdapter(Report)
+_EXAMPLES = ConfigDict(json_schema_extra={"examples": [{"scene": {"stones": [{"cut": "emerald"}]}}]})
 _DRAWING: dict[int | str, dict[str, Any]] = {200: {"content": {SVG: {"schema": {"type": "string"}}}}}
 
 StoneName = Annotated[str, Field(max_length=32, description="Id of the stone; without one the first.")]
@@ -50,12 +51,16 @@ class GradeRequest(GradeQuery):
 
     scene: Scene = Scene()
 
+    model_config = Model.model_config | _EXAMPLES
+
 
 class DiagramRequest(Model):
     """A stone of a scene."""
 
     scene: Scene = Scene()
     stone: StoneName | None = None
+
+    model_config = Model.model_config | _EXAMPLES
 
 
 @router.post("/api/grade", responses=answers(401, 413, 422, 429, 503))

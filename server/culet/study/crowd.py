@@ -30,6 +30,7 @@ TURNS = 5.0
 """A second, of each session's camera: as many frames are drawn, however many look on."""
 TURN = 0.05
 """rad."""
+POLL_SECONDS = 0.05
 READY = "culet is ready: "
 START_SECONDS = 60.0
 SETTLE_SECONDS = 1.5
@@ -71,10 +72,10 @@ class Service:
         tasks = [asyncio.create_task(_look_on(viewer, counts, number)) for number, viewer in enumerate(everyone)]
         tasks += [asyncio.create_task(_turn(crowd[0])) for crowd in crowds]
         try:
-            await _unless_ended(tasks, SETTLE_SECONDS)
+            await _until_all_saw(tasks, counts, SETTLE_SECONDS)
             before, began = self._spent(), time.perf_counter()
             counts[:] = [0] * len(counts)
-            await _unless_ended(tasks, seconds)
+            await _until_all_saw(tasks, counts, seconds)
             lasted, after = time.perf_counter() - began, self._spent()
             spent = sum(after[process] - before[process] for process in before.keys() & after)
             return Load(spent / lasted, statistics.fmean(counts) / lasted)
@@ -149,6 +150,17 @@ async def _turn(viewer: ClientConnection) -> None:
     while True:
         await viewer.send(event)
         await asyncio.sleep(1 / TURNS)
+
+
+async def _until_all_saw(tasks: list[asyncio.Task[None]], counts: list[int], seconds: float) -> None:
+    """Wait so long, and on until every viewer has had a frame: programs may have to be compiled first. CuletError if one
+    has none for START_SECONDS."""
+    await _unless_ended(tasks, seconds)
+    late = time.perf_counter() + START_SECONDS
+    while min(counts) == 0:
+        if time.perf_counter() > late:
+            raise CuletError(f"expected a frame for each viewer within {START_SECONDS:g} s, got none for one of them")
+        await _unless_ended(tasks, POLL_SECONDS)
 
 
 async def _unless_ended(tasks: list[asyncio.Task[None]], seconds: float) -> None:
