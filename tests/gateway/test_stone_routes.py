@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -54,6 +55,20 @@ async def test_a_stone_of_a_scene_has_a_diagram(gateway: Gateway) -> None:
     drawing = await gateway.http.post("/api/design/diagram.svg", json={"scene": scene})
     assert drawing.status_code == 200, drawing.text
     assert "chevron" in text_of(drawing.text)
+
+
+async def test_a_client_is_graded_one_stone_at_a_time(gateway: Gateway) -> None:
+    async def grade() -> int:
+        return (await gateway.http.post("/api/grade", json={"stone": "x"})).status_code
+
+    assert await grade() == 422, "the engine has what it needs to answer at once"
+    async with gateway.parts.grades.turn("127.0.0.1"):
+        second = asyncio.create_task(grade())
+        for _ in range(5):  # longer than the engine takes to refuse
+            assert (await gateway.http.post("/api/design/diagram.svg", json={})).status_code == 200
+        assert not second.done()
+        assert len(gateway.parts.stills) == 1, "it has a place, and waits"
+    assert await second == 422
 
 
 async def test_what_cannot_be_graded_or_drawn_is_a_problem(gateway: Gateway) -> None:
