@@ -153,8 +153,8 @@ async def _turn(viewer: ClientConnection) -> None:
 
 
 async def _until_all_saw(tasks: list[asyncio.Task[None]], counts: list[int], seconds: float) -> None:
-    """Wait so long, and on until every viewer has had a frame: programs may have to be compiled first. CuletError if one
-    has none for START_SECONDS."""
+    """Wait so long, and on until every viewer has had a frame: programs may have to be compiled first. CuletError if
+    one has none for START_SECONDS."""
     await _unless_ended(tasks, seconds)
     late = time.perf_counter() + START_SECONDS
     while min(counts) == 0:
