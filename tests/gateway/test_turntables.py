@@ -151,12 +151,8 @@ async def test_a_turntable_keeps_its_place_until_nobody_packs_its_frames(gateway
 
 
 async def test_who_leaves_is_not_waited_for_and_others_come_in_between(gateway: Gateway) -> None:
-    query = QUERY | {
-        "frames": 360,
-        "width": 200,
-        "height": 200,
-        "samples": 16,
-    }  # a frame may take 1/360 of a still's time
+    """Of few samples: a frame may take 1/360 of a still's time, on a machine that does much else too."""
+    query = QUERY | {"frames": 360, "width": 200, "height": 200, "samples": 16}
     asking = asyncio.create_task(gateway.http.get("/api/turntable.webp", params=query))
 
     async def under_way() -> bool:
