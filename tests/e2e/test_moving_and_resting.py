@@ -14,7 +14,7 @@ pytestmark = pytest.mark.timed
 
 MOVING_STATUS = " \u00b7 ".join(
     (
-        r"^\d+\.\d frames/s",
+        r"^\d+\.\d frames/s( \u00b7 limited by [a-z ]+)?",
         r"server [\d.]+ ms \(simulate [\d.]+, render [\d.]+, encode [\d.]+\)",
         r"round trip [\d.]+ ms",
         r"frontier's error [\d.]+",
