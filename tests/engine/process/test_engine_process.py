@@ -452,7 +452,7 @@ def test_a_viewer_needs_no_gateway_to_make_a_session_and_to_steer(engine: Engine
     with connect(
         engine.frames, control=engine.control, scene=scene, size=(64, 36), timeout_seconds=PATIENCE
     ) as connection:
-        assert next(image for image in connection if image.pixels.min() > 127).pixels.shape == (36, 64, 3)
+        assert next(image for image in connection if image.pixels.shape == (36, 64, 3)).pixels.min() > 127
         connection.send(PatchScene(patch={"environment": {"kind": "dark"}}))
         assert next(image for image in connection if image.pixels.max() < 128).frame.sequence > 1
         with pytest.raises(RefusedError, match="lava"):
