@@ -98,7 +98,8 @@ def connect(
             address (`http://...`); without it one can only look.
         token: the server's, where it has one and a new session is to be made. `url` may have it too, `#token=...`, as
             culet prints it; without either the variable CULET_TOKEN counts.
-        size: width and height that pictures should have, pixels, at most; those that were on their way already may be larger.
+        size: width and height that pictures should have, pixels, at most; those that were on their way already may be
+            larger.
         timeout_seconds: for whatever is waited for, unless `image` is told otherwise.
 
     Raises:

@@ -461,6 +461,6 @@ def test_a_viewer_needs_no_gateway_to_make_a_session_and_to_steer(engine: Engine
         assert session is not None
     with (
         connect(engine.frames, session=session, control=engine.control, timeout_seconds=PATIENCE) as late,
-        pytest.raises(RefusedError, match=f"no session {session}"),
+        pytest.raises(RefusedError, match="no such session"),
     ):
         late.send(ToggleFall())
