@@ -263,5 +263,5 @@ window.addEventListener("hashchange", () => location.reload());
 showStatus(element("status", HTMLElement), visit);
 exposeVisit(visit, screen, delays, complaints.kept);
 panel.update(visit.state);
+attempt(() => visit.start()); // first: a browser sends only so many requests at a time
 if (embedding.ui) loadCatalogues();
-attempt(() => visit.start());

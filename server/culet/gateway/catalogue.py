@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, Literal
 
 from fastapi import APIRouter, Response
@@ -10,7 +11,7 @@ from culet.gateway.picture_response import picture_answers
 from culet.optics.dispersion import RGB_NANOMETRES, channel_indices
 from culet.optics.materials import MATERIALS
 from culet.scene import PRESETS, Scene
-from culet.scene.cuts import CUTS, TITLES, AnyCut, CutName, summary
+from culet.scene.cuts import CUTS, TITLES, CutName, summary
 from culet.scene.fields import Model
 from culet.scene.presets import Group
 from culet.scene.thumbnails import thumbnail_of
@@ -209,6 +210,11 @@ async def materials() -> Materials:
 @router.get("/api/cuts")
 async def cuts() -> Cuts:
     """Cuts that a stone can have, with their proportions, limits and defaults."""
+    return _all_cuts()
+
+
+@cache  # schemas take some 0.1 s of the loop that all streams go through
+def _all_cuts() -> Cuts:
     return Cuts(
         cuts=tuple(
             Cut(
@@ -220,11 +226,6 @@ async def cuts() -> Cuts:
             for name, cut in CUTS.items()
         )
     )
-
-
-def _properties(cut: type[AnyCut]) -> dict[str, Any]:
-    properties: dict[str, Any] = cut.model_json_schema()["properties"]
-    return properties
 
 
 @router.get("/api/skies")

@@ -113,11 +113,6 @@ class World:
         self.previous, self.state = before, WorldState(before.step + 1, time, bodies)
         self.at_start = False
 
-    def advance_to(self, time: float) -> None:
-        """As many whole steps as end by that time, s."""
-        while self.state.time + self.law.time_step <= time * (1 + 1e-12):
-            self.step()
-
     def push(self, name: str, impulse: Triple, point: Triple) -> None:
         """Strike a stone at a point of the world (R) with an impulse (mass R/s), and wake it. One that is held does not
         move.

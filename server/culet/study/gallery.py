@@ -34,7 +34,6 @@ POSES = (0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
 POSES_SIZE, POSES_SAMPLES = (640, 360), 8
 
 Band = tuple[float, float]
-INFINITE = float("inf")
 WANTED: Mapping[str, Mapping[str, Band]] = {
     "default": {
         "lightness": (52, 64), "low": (0, 27), "high": (94, 100), "dark": (0.08, 0.25), "clipped": (0, 0.005),
