@@ -8,7 +8,7 @@ import os
 import subprocess
 import sys
 from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -176,13 +176,27 @@ class Watcher:
         self._socket.close()
 
 
+@contextmanager
+def watching(context: zmq.asyncio.Context, frames: str) -> Iterator[Callable[[str], Watcher]]:
+    """A way to watch. All watchers leave at the end: ZeroMQ warns of one that its test let go of while it watched."""
+    with ExitStack() as watchers:
+
+        def watch(session: str) -> Watcher:
+            watcher = Watcher(context, frames, session)
+            watchers.callback(watcher.leave)
+            return watcher
+
+        yield watch
+
+
 @asynccontextmanager
 async def connected(engine: EngineProcess) -> AsyncIterator[tuple[Peer, Callable[[str], Watcher]]]:
     """A peer, and a way to watch."""
     context = zmq.asyncio.Context()
     peer = Peer(context, engine.control)
     try:
-        yield peer, lambda session: Watcher(context, engine.frames, session)
+        with watching(context, engine.frames) as watch:
+            yield peer, watch
     finally:
         peer.reader.cancel()
         await asyncio.gather(peer.reader, return_exceptions=True)

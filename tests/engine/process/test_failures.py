@@ -29,7 +29,7 @@ from culet.stage import Library, Stage
 from culet_protocol.frame import Flags
 from culet_protocol.messages import SessionEvent
 from culet_protocol.watch import watch_id
-from engine.peer import Peer, Watcher
+from engine.peer import Peer, Watcher, watching
 
 REFUSED: dict[str, Any] = {"environment": {"kind": "half"}}
 GOOD: dict[str, Any] = {"environment": {"kind": "dark"}, "floor": {"kind": "none"}}
@@ -76,7 +76,8 @@ async def served(folder: Path) -> AsyncIterator[tuple[Peer, Callable[[str], Watc
     running = asyncio.create_task(engine.run_until(stopping))
     peer = Peer(context, control)
     try:
-        yield peer, lambda session: Watcher(context, frames, session)
+        with watching(context, frames) as watch:
+            yield peer, watch
     finally:
         stopping.set()
         await running
