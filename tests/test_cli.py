@@ -108,6 +108,11 @@ def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_pa
     turned = "34 22 10 94 82 70 58 46"  # 48 less those of its own wheel: a .gcs has no offset, and counts one way
     for part in ("crown", "35.00", turned, "T/W", "0.6273", "made for a refractive index of 1.54"):
         assert part.lower() in shown.lower()
+    steeper = tmp_path / "steeper.asc"
+    assert invoke("design", "convert", back, steeper, "--crown-ratio", "1.2", "--table", "50").returncode == 0
+    shown = invoke("design", "show", steeper).stdout
+    assert "40.04" in shown  # tan = 1.2 tan 35 degrees
+    assert "0.5000" in shown
     assert invoke("design", "diagram", back, "-o", tmp_path / "stone.svg").returncode == 0
     assert (tmp_path / "stone.svg").read_text().count("<polygon") > 25
     for file in (there, back):
@@ -127,6 +132,7 @@ def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_pa
         (("convert", "wrong.asc", "a.asc"), "wrong.asc: .asc: line 2: expected a distance, got 'x'"),
         (("diagram", "open.asc", "-o", "a.svg"), "open.asc: the design is open above and below"),
         (("diagram", "open.asc", "-o", "a.png"), "out: expected a name that ends in .svg"),
+        (("convert", "wrong.asc", "a.asc", "--crown-ratio", "9"), "crown_ratio: expected at most 5; got 9"),
         (("convert", "open.asc", "a.gem"), "out: expected a name that ends in .asc"),
         (("convert", "open.asc", "missing/a.asc"), "there is no folder"),
     ],

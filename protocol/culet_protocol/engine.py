@@ -146,6 +146,16 @@ class DrawDiagram(Message):
     stone: str | None = None
 
 
+class Measure(Message):
+    """The proportions of a convex stone of a scene, or of what a session shows, the first if none is named; the reply's
+    result is `culet.geometry.designs.measures.Proportions` in R."""
+
+    type: Literal["measure"] = "measure"
+    scene: dict[str, Any] | None = None
+    session: SessionId | None = None
+    stone: str | None = None
+
+
 class PutMesh(Message):
     """Parse the mesh or the design in the bytes and keep it under an id; the reply is a DescribedMesh."""
 
@@ -215,6 +225,7 @@ Request = (
     | Render
     | Grade
     | DrawDiagram
+    | Measure
     | PutMesh
     | PutSky
     | Cancel

@@ -115,7 +115,7 @@ def _resolved(scene: Scene) -> object:
 
 
 def _form(stone: StoneSettings) -> object:
-    return stone.cut if stone.mesh is None else ("mesh", stone.mesh)
+    return stone.cut if stone.mesh is None else ("mesh", stone.mesh), stone.recut
 
 
 def _image(scene: Scene) -> str | None:

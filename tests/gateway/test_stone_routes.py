@@ -57,6 +57,23 @@ async def test_a_stone_of_a_scene_has_a_diagram(gateway: Gateway) -> None:
     assert "chevron" in text_of(drawing.text)
 
 
+async def test_a_stone_of_a_scene_or_a_session_tells_its_proportions_as_it_is_cut_anew(gateway: Gateway) -> None:
+    scene = {"stones": [{"id": "a", "recut": {"table_percent": 61.5, "girdle_percent": 4}}]}
+    told = await gateway.http.post("/api/design/proportions", json={"scene": scene})
+    assert told.status_code == 200, told.text
+    assert told.json()["table_percent"] == pytest.approx(61.5)
+    assert told.json()["girdle_percent"] == pytest.approx(4)
+    session = (await gateway.http.post("/api/sessions", json={"scene": scene})).json()["id"]
+    patch = {"stones": {"a": {"recut": {"crown_ratio": 1.1}}}}
+    assert (await gateway.http.patch(f"/api/sessions/{session}", json=patch)).status_code == 200
+    steeper = (await gateway.http.get(f"/api/sessions/{session}/proportions")).json()
+    assert steeper["table_percent"] == pytest.approx(61.5)
+    assert steeper["crown_percent"] > told.json()["crown_percent"]
+    wide = {"stones": {"a": {"recut": {"girdle_percent": 0.001, "crown_ratio": 7}}}}
+    assert_problem(await gateway.http.patch(f"/api/sessions/{session}", json=wide), 422, "stones.a.recut.crown_ratio")
+    await gateway.http.delete(f"/api/sessions/{session}")
+
+
 async def test_a_client_is_graded_one_stone_at_a_time(gateway: Gateway) -> None:
     async def grade() -> int:
         return (await gateway.http.post("/api/grade", json={"stone": "x"})).status_code

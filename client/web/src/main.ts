@@ -170,6 +170,7 @@ const panel = new Panel(element("panel", HTMLElement), {
   patch: (patch) => visit.send({ type: "patch_scene", patch }),
   newSession: () => visit.startAnew(),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
+  measure: (scene) => rest.proportions(scene),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
   share: () => attempt(() => share()),
   clamped,

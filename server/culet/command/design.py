@@ -14,6 +14,7 @@ from culet.sources import naming
 
 if TYPE_CHECKING:
     from culet.geometry.designs.design import Design
+    from culet.scene.recut import Recut
 
 app = typer.Typer(
     help="Gem designs of cutters' programs: .asc, .gem and .gcs.", no_args_is_help=True, add_completion=False
@@ -45,15 +46,31 @@ def show(file: DesignFile) -> None:
 def convert(
     file: DesignFile,
     out: Annotated[Path, typer.Argument(metavar="OUT.asc", help="Design to write, as GemCad's text.")],
+    crown_ratio: Annotated[
+        float, typer.Option(metavar="K", help="Crown steeper by this tangent ratio, all meets kept.")
+    ] = 1,
+    pavilion_ratio: Annotated[float, typer.Option(metavar="K", help="Pavilion steeper by this tangent ratio.")] = 1,
+    girdle: Annotated[
+        float | None, typer.Option(metavar="PERCENT", help="Height of the girdle, of the width: the crown is moved.")
+    ] = None,
+    table: Annotated[
+        float | None, typer.Option(metavar="PERCENT", help="Width of the table, of the stone's: the table is moved.")
+    ] = None,
 ) -> None:
-    """Write a design as .asc: the same facets, tiers, names and notes. The file is read back and compared first."""
+    """Write a design as .asc: the same facets, tiers, names and notes. The file is read back and compared first.
+
+    With ratios, a girdle or a table the design is cut anew.
+    """
     from culet.geometry.designs.asc import read_asc
     from culet.geometry.designs.asc_writer import asc_of, planes_apart
+    from culet.geometry.designs.recut import recut_design
 
     with errors_in_one_line():
         check_place(out, "out", ["asc"])
+        recut = _recut(crown_ratio, pavilion_ratio, girdle, table)
         design = read(file)
         with naming(str(file)):
+            design = recut_design(design, recut)
             written, data, said = asc_of(design)
         for finding in (*design.findings, *said):
             typer.echo(f"{file}: {finding}", err=True)
@@ -79,6 +96,19 @@ def diagram(
             solid = Solid(design)
         write_whole(out, diagram_of(solid).encode("utf-8", "replace"), "out")
         typer.echo(f"{out}: {len(solid.cut.used)} facets in {len(design.tiers)} tiers")
+
+
+def _recut(crown: float, pavilion: float, girdle: float | None, table: float | None) -> Recut:
+    """SceneError names the proportion that is out of range."""
+    from pydantic import ValidationError
+
+    from culet.scene.recut import Recut
+    from culet.scene.refusal import scene_error
+
+    try:
+        return Recut(crown_ratio=crown, pavilion_ratio=pavilion, girdle_percent=girdle, table_percent=table)
+    except ValidationError as error:
+        raise scene_error(error, Recut) from error
 
 
 def read(file: Path) -> Design:

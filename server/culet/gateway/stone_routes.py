@@ -1,4 +1,4 @@
-"""What is asked about one stone of a scene or of a session: its grades, its cutting diagram."""
+"""What is asked about one stone of a scene or of a session: its grades, its proportions, its cutting diagram."""
 
 from __future__ import annotations
 
@@ -14,16 +14,18 @@ from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
+from culet.geometry.designs.measures import Proportions
 from culet.grading.answer import Report
 from culet.grading.rules import Convention
 from culet.scene import Scene
 from culet.scene.fields import Model
-from culet_protocol.engine import DrawDiagram, Grade
+from culet_protocol.engine import DrawDiagram, Grade, Measure
 
 router = APIRouter(tags=["stones"])
 
 SVG = "image/svg+xml"
 REPORT: TypeAdapter[Report] = TypeAdapter(Report)
+PROPORTIONS: TypeAdapter[Proportions] = TypeAdapter(Proportions)
 _EXAMPLES = ConfigDict(json_schema_extra={"examples": [{"scene": {"stones": [{"cut": "emerald"}]}}]})
 _DRAWING: dict[int | str, dict[str, Any]] = {200: {"content": {SVG: {"schema": {"type": "string"}}}}}
 
@@ -54,7 +56,7 @@ class GradeRequest(GradeQuery):
     model_config = Model.model_config | _EXAMPLES
 
 
-class DiagramRequest(Model):
+class StoneRequest(Model):
     """A stone of a scene."""
 
     scene: Scene = Scene()
@@ -82,7 +84,7 @@ async def grade_session(
 @router.post(
     "/api/design/diagram.svg", response_class=Response, responses={**_DRAWING, **answers(401, 413, 422, 429, 503)}
 )
-async def diagram(http: Request, request: DiagramRequest, gateway: ThisGateway) -> Response:
+async def diagram(http: Request, request: StoneRequest, gateway: ThisGateway) -> Response:
     """The cutting diagram of a stone of a scene, to be printed on a page."""
     scene = request.scene.model_dump(mode="json")
     return await _drawn(http, gateway, DrawDiagram(scene=scene, stone=request.stone))
@@ -101,6 +103,29 @@ async def diagram_of_session(
     return await _drawn(http, gateway, DrawDiagram(session=session.id, stone=stone), session)
 
 
+@router.post("/api/design/proportions", responses=answers(401, 413, 422, 429, 503))
+async def proportions(http: Request, request: StoneRequest, gateway: ThisGateway) -> Proportions:
+    """The proportions of a convex stone of a scene, in R and in per cent of the stone's width."""
+    scene = request.scene.model_dump(mode="json")
+    return await _measured(http, gateway, Measure(scene=scene, stone=request.stone))
+
+
+@router.get("/api/sessions/{session_id}/proportions", responses=answers(404, 422, 429, 503))
+async def proportions_of_session(
+    http: Request, session_id: str, gateway: ThisGateway, stone: StoneName | None = None
+) -> Proportions:
+    """The proportions of a convex stone of what a session shows."""
+    session = gateway.sessions.get(session_id)
+    return await _measured(http, gateway, Measure(session=session.id, stone=stone), session)
+
+
+async def _measured(
+    http: Request, gateway: Gateway, message: Measure, session: SessionRecord | None = None
+) -> Proportions:
+    result, _ = await _answered(http, gateway, message, session)
+    return PROPORTIONS.validate_python(result)
+
+
 async def _graded(http: Request, gateway: Gateway, message: Grade, session: SessionRecord | None = None) -> Report:
     result, _ = await _answered(http, gateway, message, session)
     return REPORT.validate_python(result)
@@ -114,7 +139,7 @@ async def _drawn(
 
 
 async def _answered(
-    http: Request, gateway: Gateway, message: Grade | DrawDiagram, session: SessionRecord | None
+    http: Request, gateway: Gateway, message: Grade | DrawDiagram | Measure, session: SessionRecord | None
 ) -> tuple[dict[str, Any], bytes | memoryview]:
     """The engine's answer, about the session if there is one, in a place of the client; grades in the client's turn."""
     client = client_of(http.scope)

@@ -6,17 +6,28 @@ from collections.abc import Mapping
 
 from culet.errors import MeshError, SceneError
 from culet.geometry.cuts.cut import shape_of_cut
+from culet.geometry.recut import recut_shape
 from culet.geometry.shape import Shape
 from culet.scene.cuts import proportions
 from culet.scene.stone import StoneSettings
 
 
 def shape_of(settings: StoneSettings, meshes: Mapping[str, Shape], field: str = "stones.0") -> Shape:
-    """The mesh that the settings name, or else their cut.
+    """The mesh that the settings name, or else their cut, cut anew if they say so.
 
     `meshes` holds what was uploaded, by id; `field` is the stone's place in the scene. SceneError if the id is unknown;
-    MeshError, its field within the scene, if the cut's proportions make no shape.
+    MeshError, its field within the scene, if the proportions make no shape.
     """
+    shape = _as_it_came(settings, meshes, field)
+    if settings.recut is None:
+        return shape
+    try:
+        return recut_shape(shape, settings.recut)
+    except MeshError as error:
+        raise _within(f"{field}.recut", error) from error
+
+
+def _as_it_came(settings: StoneSettings, meshes: Mapping[str, Shape], field: str) -> Shape:
     if settings.mesh is not None:
         try:
             return meshes[settings.mesh]
@@ -25,5 +36,8 @@ def shape_of(settings: StoneSettings, meshes: Mapping[str, Shape], field: str = 
     try:
         return shape_of_cut(proportions(settings.cut))
     except MeshError as error:
-        within = f"{field}.cut" if error.field is None else f"{field}.cut.{error.field}"
-        raise MeshError(str(error), within) from error
+        raise _within(f"{field}.cut", error) from error
+
+
+def _within(field: str, error: MeshError) -> MeshError:
+    return MeshError(str(error), field if error.field is None else f"{field}.{error.field}")

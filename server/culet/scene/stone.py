@@ -13,6 +13,7 @@ from pydantic.config import JsonDict
 
 from culet.scene.cuts import Cut
 from culet.scene.fields import Model, Orientation, Vector
+from culet.scene.recut import Recut
 
 MOST_STONES = 64
 CARATS_PER_GRAM = 5
@@ -82,6 +83,9 @@ class StoneSettings(Model):
     )
     cut: Cut = "brilliant"
     mesh: UploadId | None = Field(None, description="Id of an uploaded mesh; takes the place of the cut.")
+    recut: Recut | None = Field(
+        None, description="How the mesh or the design, or else the cut, is cut anew; of convex stones."
+    )
     scale: Annotated[float, Field(ge=0.01, le=100)] = Field(
         1, description="Its radius, from the centre of mass to the farthest corner, in R."
     )

@@ -52,7 +52,8 @@ export class Opening {
     const mesh = await this.read(file, rest.uploadMesh);
     const { scene, stone } = this.world.state();
     this.toasts.finding(words.files.found(file.name, mesh.findings.join("\n")));
-    this.world.send({ type: "patch_scene", patch: stonePatch(scene, { mesh: mesh.id }, stone ?? undefined) });
+    const patch = stonePatch(scene, { mesh: mesh.id, recut: null }, stone ?? undefined);
+    this.world.send({ type: "patch_scene", patch });
   }
 
   async sky(file: File): Promise<void> {

@@ -1,4 +1,4 @@
-/** The panel's list of cuts, and sliders for the proportions of the stone's; a mesh has none. */
+/** The panel's list of cuts, and sliders for the proportions of the stone's, or for how a file's design is cut anew. */
 
 import { Choice } from "../controls/choice";
 import { Command } from "../controls/command";
@@ -11,6 +11,7 @@ import { hasStone, stoneOf, stonePatch } from "../stones/stones";
 import { words } from "../words/words";
 import { cutName, cutOf, cutPatch, type Proportion, proportionsOf, shapeName, shapePatch } from "./cut";
 import { LiveControls } from "./live-controls";
+import { type Measure, RecutSliders } from "./recut-sliders";
 
 type Send = (patch: Record<string, unknown>) => void;
 
@@ -18,6 +19,7 @@ export interface CutActions {
   patch: Send;
   clamped: Clamped;
   openDiagram: (stone: string) => void;
+  measure: Measure;
 }
 
 type Values = Record<string, number>;
@@ -53,9 +55,10 @@ export class CutPanel {
   private readonly kinds = new Map<string, CutKind>();
   private readonly sliders = new Map<string, Sliders>();
   private readonly place: HTMLElement;
+  private readonly anew: RecutSliders;
   private scene: ViewState["scene"] = null;
 
-  constructor(section: Section, { patch: send, clamped, openDiagram }: CutActions) {
+  constructor(section: Section, { patch: send, clamped, openDiagram, measure }: CutActions) {
     this.section = section.show(false);
     this.send = send;
     this.clamped = clamped;
@@ -65,6 +68,8 @@ export class CutPanel {
     );
     this.shape.listen("cut", section.add(this.list));
     this.place = section.add({ element: document.createElement("div") }).element;
+    this.anew = section.add(new RecutSliders(send, measure, clamped));
+    section.onFold((open) => this.anew.update(this.scene, open));
     const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene) }));
     this.usual = section.add(new Command(words.cut.usual, reset));
     section.add(new Command(words.grades.diagram, () => openDiagram(text(stoneOf(this.scene).id, ""))));
@@ -78,6 +83,7 @@ export class CutPanel {
     const kind = this.kinds.get(now ?? "");
     if (kind && !this.sliders.has(kind.name)) this.sliders.set(kind.name, this.slidersOf(kind));
     for (const [name, sliders] of this.sliders) sliders.update(name === now);
+    this.anew.update(scene, this.section.open);
     this.usual.show(kind !== undefined);
   }
 

@@ -61,7 +61,7 @@ describe("the list of cuts", () => {
 
   it("gives the stone another cut, of the usual proportions, in place of a mesh", () => {
     const patch = shapePatch({ stones: [{ ...STONE, cut: CUT, mesh: "m1" }] }, "oval");
-    expect(patch).toEqual({ stones: { ruby: { cut: "oval", mesh: null } } });
+    expect(patch).toEqual({ stones: { ruby: { cut: "oval", mesh: null, recut: null } } });
   });
 });
 

@@ -72,5 +72,5 @@ export function shapeName(scene: JsonObject | null): string {
 
 /** The merge patch that gives the stone another cut, of the usual proportions. */
 export function shapePatch(scene: JsonObject | null, name: string): JsonObject {
-  return stonePatch(scene, { cut: name, mesh: null });
+  return stonePatch(scene, { cut: name, mesh: null, recut: null });
 }

@@ -21,6 +21,7 @@ import { CutPanel } from "./cut-panel";
 import { EditButtons } from "./edit-buttons";
 import { FallPanel } from "./fall-panel";
 import { type Ask, GradePanel } from "./grade-panel";
+import type { Measure } from "./recut-sliders";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { SurfacePanel } from "./surface-panel";
 import { TiltControl } from "./tilt-control";
@@ -39,6 +40,8 @@ export interface PanelActions {
   newSession: () => void;
   /** Ask for a stone's grades. */
   grades: Ask;
+  /** Ask for a stone's proportions. */
+  measure: Measure;
   /** Show a stone's cutting diagram. */
   openDiagram: (stone: string) => void;
   /** Show the session's links. */

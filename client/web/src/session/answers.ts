@@ -152,6 +152,22 @@ export interface Presets {
   presets: Preset[];
 }
 /**
+ * In the file's units; per cent are of the width.
+ */
+export interface Proportions {
+  facets: number;
+  corners: number;
+  edges: number;
+  length: number;
+  width: number;
+  height: number;
+  volume: number;
+  table_percent: number | null;
+  crown_percent: number | null;
+  girdle_percent: number | null;
+  pavilion_percent: number | null;
+}
+/**
  * What is known so far.
  */
 export interface Report {

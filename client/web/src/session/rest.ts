@@ -15,6 +15,7 @@ import type {
   MeshAnswer,
   Preset,
   Presets,
+  Proportions,
   SessionAnswer,
   Skies,
   Sky,
@@ -161,6 +162,11 @@ export function integrators(): Promise<IntegratorDescription[]> {
 export async function grades(session: string, stone: string, tilt: boolean, signal: AbortSignal): Promise<JsonObject> {
   const query = new URLSearchParams({ stone, tilt: String(tilt), error: "0.2" });
   return object(await (await request(`api/sessions/${session}/grade?${query}`, { signal })).json());
+}
+
+/** The proportions of the only stone of a scene. */
+export async function proportions(scene: JsonObject): Promise<Proportions> {
+  return (await (await request("api/design/proportions", post({ scene }))).json()) as Proportions;
 }
 
 /** Address of the cutting diagram of a session's stone. */

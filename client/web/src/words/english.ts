@@ -239,6 +239,20 @@ export const cut = {
   /** Shown in the list of cuts for a stone whose shape comes from a file. */
   own: "A file's",
   usual: "The usual proportions",
+  /** Of the design of a file, by the scene's names: label, and what it means. */
+  anew: {
+    crown_ratio: [
+      "Crown, ratio",
+      "The tangent of each crown facet's angle is so many times the file's; all meets are kept",
+    ],
+    pavilion_ratio: [
+      "Pavilion, ratio",
+      "The tangent of each pavilion facet's angle is so many times the file's; all meets are kept",
+    ],
+    girdle_percent: ["Girdle, %", "From its lowest corner to its highest, of the stone's width: the crown is moved"],
+    table_percent: ["Table, %", "The top facet's width, of the stone's: it is cut higher or lower"],
+  } satisfies Record<string, Named>,
+  asItCame: "As the file has it",
   /** The name of a proportion, from the words of the scene's name for it, with its unit. */
   proportion: (said: string, unit: "percent" | "degrees" | null) => {
     const ending = { percent: ", %", degrees: ", \u00b0" };

@@ -26,7 +26,14 @@ from culet_protocol import engine as protocol
 log = logging.getLogger(__name__)
 
 HEARTBEAT_SECONDS = 1.0
-WAITED_FOR = (protocol.Render, protocol.Grade, protocol.DrawDiagram, protocol.PutMesh, protocol.PutSky)
+WAITED_FOR = (
+    protocol.Render,
+    protocol.Grade,
+    protocol.DrawDiagram,
+    protocol.Measure,
+    protocol.PutMesh,
+    protocol.PutSky,
+)
 """Requests whose work is for who asked alone. Others are quickly done, and meant whether or not somebody waits."""
 RETRY_SECONDS = 10.0
 """Until a picture is tried again that something passing was in the way of."""

@@ -116,6 +116,8 @@ class Requests:
                 return await self._stones.grade(request), None
             case protocol.DrawDiagram():
                 return {}, await self._stones.diagram(request)
+            case protocol.Measure():
+                return await self._stones.measure(request), None
             case protocol.PutMesh():
                 return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
             case protocol.PutSky():

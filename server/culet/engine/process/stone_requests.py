@@ -1,4 +1,4 @@
-"""What is asked about one stone: its grades, its cutting diagram."""
+"""What is asked about one stone: its grades, its proportions, its cutting diagram."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from culet.engine.session import events
 from culet.errors import InputError, MeshError
 from culet.geometry.cuts.wording import headings_of
 from culet.geometry.designs.diagram import diagram_of
+from culet.geometry.designs.measures import proportions_of
 from culet.geometry.designs.of_shape import design_of
 from culet.geometry.designs.solid import Solid
+from culet.geometry.shape import Shape
 from culet.grading.answer import Report
 from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
@@ -26,7 +28,7 @@ from culet.rendering.device import open_device
 from culet.rendering.features import MOST_HALF_SPACES
 from culet.scene import Scene
 from culet.stage import Library, Stage
-from culet_protocol.engine import DrawDiagram, Grade
+from culet_protocol.engine import DrawDiagram, Grade, Measure
 
 T = TypeVar("T")
 
@@ -66,12 +68,17 @@ class StoneRequests:
         stage = await self._staged(request)
         return await _in(self._drawing, _diagram, stage, request.stone)
 
+    async def measure(self, request: Measure) -> dict[str, Any]:
+        """Proportions, in R; InputError, NotFoundError."""
+        stage = await self._staged(request)
+        return await _in(self._drawing, _measured, stage, request.stone)
+
     def _light_sums(self) -> LightSums:
         if self._sums is None:
             self._sums = LightSums(open_device())
         return self._sums
 
-    async def _staged(self, request: Grade | DrawDiagram) -> Stage:
+    async def _staged(self, request: Grade | DrawDiagram | Measure) -> Stage:
         if (request.scene is None) == (request.session is None):
             raise InputError("expected either a scene or a session, got both or neither", "scene")
         if request.session is None:
@@ -92,13 +99,24 @@ def _next(reports: Iterator[Report]) -> tuple[Report | None, float]:
     return next(reports, None), time.monotonic() - begun
 
 
-def _diagram(stage: Stage, stone: str | None) -> bytes:
+def _measured(stage: Stage, stone: str | None) -> dict[str, Any]:
     place = place_of(stage, stone)
-    settings, shape = stage.scene.stones[place], stage.shapes[place]
+    shape = _of_few_facets(stage.shapes[place])
+    return asdict(proportions_of(Solid(design_of(shape))))
+
+
+def _of_few_facets(shape: Shape) -> Shape:
+    """The shape; MeshError if it has more facets than anybody cuts."""
     if len(shape.planes) > MOST_HALF_SPACES:
         raise MeshError(
             f"{shape.name}: expected a stone of at most {MOST_HALF_SPACES} facets to draw; got {len(shape.planes)}"
         )
+    return shape
+
+
+def _diagram(stage: Stage, stone: str | None) -> bytes:
+    place = place_of(stage, stone)
+    settings, shape = stage.scene.stones[place], _of_few_facets(stage.shapes[place])
     size = size_of(shape, settings, stage.scene.millimetres)
     design = design_of(shape, [*headings_of(settings, shape), size.words()])
     return diagram_of(Solid(design)).encode("utf-8", "replace")

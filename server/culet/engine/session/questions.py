@@ -52,5 +52,5 @@ def _placed(scene: Scene, stage: Stage) -> Iterator[Placed]:
         if stone.id not in shapes:
             continue
         now, shape = shapes[stone.id]
-        if (now.cut, now.mesh) == (stone.cut, stone.mesh):
+        if (now.cut, now.mesh, now.recut) == (stone.cut, stone.mesh, stone.recut):
             yield Placed(stone.id, shape, stone.scale, stone.position, stone.orientation)
