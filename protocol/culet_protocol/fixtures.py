@@ -153,6 +153,7 @@ NOTICES: tuple[messages.Message, ...] = (
         code="unusable_scene", message="camera.fov_degrees: too large; got 300", field="camera.fov_degrees"
     ),
     messages.Engine(status="down"),
+    messages.Leaving(seconds=599.5),
     messages.Pong(time=1234.5),
     messages.Picked(number=3, stone=None),
     messages.Outlined(stone="stone", step=42, points=(0.5, 0.25, -0.5, 0.25, 0, -0.75)),

@@ -362,6 +362,13 @@ class Engine(Message):
     status: Literal["down", "up"]
 
 
+class Leaving(Message):
+    """The server is about to be stopped. This session goes on until nobody watches any more, or the time is up."""
+
+    type: Literal["leaving"] = "leaving"
+    seconds: float
+
+
 class Pong(Message):
     """The answer to a Ping."""
 
@@ -401,7 +408,9 @@ class Reached(Message):
 Answer = Picked | Outlined | Reached
 """What a Question is answered by."""
 
-AnyNotice = Hello | State | Change | Snapshot | Viewers | Problem | Engine | Pong | Picked | Outlined | Reached
+AnyNotice = (
+    Hello | State | Change | Snapshot | Viewers | Problem | Engine | Leaving | Pong | Picked | Outlined | Reached
+)
 Notice = Annotated[AnyNotice, Field(discriminator="type")]
 
 control_event: TypeAdapter[SessionEvent | Question | ViewerEvent] = TypeAdapter(ControlEvent)

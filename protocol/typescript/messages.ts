@@ -375,6 +375,12 @@ export interface Engine {
   status: "down" | "up";
 }
 
+/** The server is about to be stopped. This session goes on until nobody watches any more, or the time is up. */
+export interface Leaving {
+  type: "leaving";
+  seconds: number;
+}
+
 /** The answer to a Ping. */
 export interface Pong {
   type: "pong";
@@ -416,6 +422,7 @@ export type Notice =
   | Viewers
   | Problem
   | Engine
+  | Leaving
   | Pong
   | Picked
   | Outlined
@@ -457,6 +464,7 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
   viewers: { count: ["integer"] },
   problem: { code: ["string"], message: ["string"], field: ["string", "null", "absent"] },
   engine: { status: ["down", "up"] },
+  leaving: { seconds: ["number"] },
   pong: { time: ["number"] },
   picked: { number: ["integer"], stone: ["string", "null"] },
   outlined: { stone: ["string"], step: ["integer"], points: ["array"] },

@@ -9,6 +9,7 @@
     ├── NotFoundError           no such session, mesh or state
     ├── BusyError               a queue or a number of sessions is at its limit
     ├── EngineUnavailableError  the render process does not answer
+    ├── LeavingError            the server is about to be stopped
     ├── SolverUnavailableError  no compiled solver, and no compiler to make one
     └── DeviceError             no OpenCL device that works, or a kernel that does not build
         └── KernelCacheError    the driver cannot write the programs that it compiles
@@ -80,6 +81,13 @@ class EngineUnavailableError(CuletError):
 
     status = 503
     title = "engine unavailable"
+
+
+class LeavingError(CuletError):
+    """The server is about to be stopped, and takes nothing new."""
+
+    status = 503
+    title = "server is being stopped"
 
 
 class SolverUnavailableError(CuletError):

@@ -22,6 +22,8 @@ class Notice(StrEnum):
     """It does what it is for."""
     ALIVE = "WATCHDOG=1"
     """It still works; one that does not say so for long is taken for hung."""
+    STOPPING = "STOPPING=1"
+    """It is about to end, as it was told to."""
 
 
 def notify_patience(seconds: float) -> None:

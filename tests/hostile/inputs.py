@@ -197,6 +197,7 @@ async def whole_interface(serving: Serving, examples: int, seed: int) -> Finding
     command = [
         sys.executable, "-m", "schemathesis.cli", "run", f"{serving.url}/openapi.json", "--max-examples", str(examples),
         "--seed", str(seed), "--checks", "not_a_server_error", "--phases", "examples,coverage,fuzzing",
+        "--exclude-path", "/api/drain",  # which it would end the server by
         "--suppress-health-check", "all", "--rate-limit", "100/s", "--request-timeout", str(PATIENCE), "--no-color",
     ]  # fmt: skip
     engine = serving.engine.pid

@@ -246,6 +246,48 @@ async def test_a_stop_signal_ends_both_within_seconds_though_a_viewer_watches_an
     assert not alive(engine)
 
 
+async def test_a_server_that_may_drain_ends_with_its_last_session_and_lets_a_killed_engine_come_back_until_then(
+    tmp_path: Path,
+) -> None:
+    with _serve(tmp_path, "--drain-seconds", "600") as (process, url):
+        async with httpx.AsyncClient(base_url=url, timeout=PATIENCE) as http:
+            served = Served(process, http)
+            session = (await http.post("/api/sessions")).json()["id"]
+            engine = served.engine()
+            assert engine
+            async with served.viewer(session) as viewer:
+                await viewer.frame()
+                process.send_signal(signal.SIGTERM)
+                assert (await viewer.notice("leaving"))["seconds"] > 500
+                assert (await http.post("/api/sessions")).status_code == 503
+                os.kill(engine, signal.SIGKILL)
+                await viewer.notice("engine")
+                assert (await viewer.notice("engine"))["status"] == "up"
+                await viewer.frame()
+                assert (await http.delete(f"/api/sessions/{session}")).status_code == 204
+                assert await asyncio.to_thread(process.wait, PATIENCE) == 0
+                await viewer.websocket.wait_closed()
+
+
+async def test_a_server_that_drains_ends_at_once_when_told_again(tmp_path: Path) -> None:
+    with _serve(tmp_path, "--drain-seconds", "600", "--no-spare") as (process, url):
+        async with httpx.AsyncClient(base_url=url, timeout=PATIENCE) as http:
+            session = (await http.post("/api/sessions")).json()["id"]
+            async with Served(process, http).viewer(session) as viewer:
+                await viewer.frame()
+                process.send_signal(signal.SIGTERM)
+                await viewer.notice("leaving")
+                process.send_signal(signal.SIGTERM)
+                assert await asyncio.to_thread(process.wait, PATIENCE) == 0
+                await viewer.websocket.wait_closed()
+                assert viewer.websocket.close_code == 1012
+
+
+async def test_a_server_that_its_administrator_drains_ends_as_a_whole_and_is_not_started_again(own: Served) -> None:
+    assert (await own.http.post("/api/drain", json={"seconds": 500})).status_code == 202
+    assert await asyncio.to_thread(own.process.wait, PATIENCE) == 0
+
+
 async def test_an_engine_that_nobody_asks_for_anything_sleeps(served: Served) -> None:
     engine = served.engine()
     assert engine

@@ -37,7 +37,7 @@ class Right(Flag):
     UPLOAD = auto()
     """Bring meshes and skies."""
     ADMINISTER = auto()
-    """Know how the server is."""
+    """Know how the server is, and have it stopped."""
 
 
 NOTHING, ALL = Right(0), Right.WATCH | Right.STEER | Right.UPLOAD | Right.ADMINISTER
@@ -47,6 +47,7 @@ _NAMED = re.compile(r"/api/(sessions/[^/]+(/.*)?|stream)")
 _LISTS = re.compile(r"/api/(presets|materials|cuts|skies|integrators)(/.*)?")
 """What there is to choose from."""
 _UPLOADS = frozenset({"/api/meshes", "/api/skies"})
+_ADMINISTRATION = frozenset({"/api/drain"})
 _HEALTH = frozenset({"/healthz", "/readyz"})
 
 
@@ -56,6 +57,8 @@ def needed(method: str, path: str, settings: GatewaySettings) -> Right:
         return NOTHING if settings.open_health else Right.ADMINISTER
     if path == "/metrics":
         return NOTHING if settings.open_metrics else Right.ADMINISTER
+    if path in _ADMINISTRATION:
+        return Right.ADMINISTER
     if not path.startswith("/api/") or _NAMED.fullmatch(path):
         return NOTHING
     if path in _UPLOADS and method == "POST":

@@ -15,6 +15,7 @@ from starlette.middleware.cors import CORSMiddleware
 
 from culet.gateway import (
     catalogue,
+    drain_routes,
     health,
     login_routes,
     problems,
@@ -45,7 +46,7 @@ from culet.version import __version__
 
 log = logging.getLogger(__name__)
 
-PARTS = (login_routes, stills, turntables, session_routes, stone_routes, catalogue, upload_routes, health)
+PARTS = (login_routes, stills, turntables, session_routes, stone_routes, catalogue, upload_routes, drain_routes, health)
 NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
 <h1>culet runs without its page</h1>
 <p>The <a href="openapi.json">REST interface</a> is here, for instance <a href="api/render.png">a picture</a>."""
@@ -142,6 +143,7 @@ def _gateway(settings: GatewaySettings) -> Gateway:
     metrics.watch("culet_frames_received", "Frames from the engine.", lambda: link.frames_received, counts=True)
     metrics.watch("culet_sessions", "Sessions open.", sessions.__len__)
     metrics.watch("culet_viewers", "Viewers connected.", lambda: sessions.viewers)
+    metrics.watch("culet_draining", "1 while no new sessions are taken.", sessions.drain.begun.is_set)
     metrics.watch("culet_upload_bytes_kept", "Bytes of uploads kept.", lambda: uploads.kept_bytes)
     return Gateway(
         settings,

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Query, Response
 from fastapi.responses import PlainTextResponse
 from prometheus_client import CollectorRegistry, generate_latest
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
 
 from culet.errors import CuletError, EngineUnavailableError
+from culet.gateway.drain import REFUSAL
 from culet.gateway.metrics import EngineStatus
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
@@ -22,9 +25,25 @@ async def healthz() -> dict[str, str]:
     return {"status": "ok"}
 
 
-@router.get("/readyz", responses=answers(503))
-async def readyz(gateway: ThisGateway) -> dict[str, str]:
-    """The engine answers too."""
+LEAVING = 503
+
+
+@router.get("/readyz", responses=answers(422, 503))
+async def readyz(
+    gateway: ThisGateway,
+    draining: Annotated[
+        int,
+        Query(
+            ge=400,
+            le=599,
+            description="Status of the answer while the server is about to be stopped: HAProxy, by `disable-on-404`, "
+            "takes 404 for a server that keeps the sessions it has.",
+        ),
+    ] = LEAVING,
+) -> dict[str, str]:
+    """The engine answers too, and new sessions are welcome."""
+    if gateway.sessions.drain.begun.is_set() and gateway.link.ready.is_set():
+        raise HTTPException(draining, REFUSAL)
     if not gateway.link.ready.is_set():
         raise EngineUnavailableError("no heartbeat from the render process")
     return {"status": "ready"}

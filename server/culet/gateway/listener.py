@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import signal
 import socket
 from collections.abc import Iterator
@@ -22,6 +23,8 @@ from culet.gateway.state import Gateway
 from culet.notify import Notice, notify
 from culet.settings import MEBIBYTE
 
+log = logging.getLogger(__name__)
+
 GRACEFUL_SHUTDOWN_SECONDS = 3
 """For answers under way at SIGTERM; containers are killed after 10 s."""
 MAX_WEBSOCKET_MESSAGE = MEBIBYTE
@@ -31,7 +34,6 @@ PONG_SECONDS = 40.0
 ACCEPTED_AT_ONCE = 64
 """Connections that are accepted before those that make room for them are closed."""
 ALIVE_SECONDS = 1.0
-STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Listener:
@@ -49,6 +51,8 @@ class Listener:
         metrics.watch("culet_connections", "Connections open.", guard.__len__)
         metrics.watch("culet_connections_ended", "Ended for owing, or for others.", lambda: guard.ended, counts=True)
         self._stopping: asyncio.Task[None] | None = None
+        self._told = False
+        """SIGTERM has come."""
         self._server = _Server(
             GuardedConfig(
                 app,
@@ -68,11 +72,13 @@ class Listener:
         )
 
     async def run(self) -> None:
-        """Serve until a stop signal or `stop`."""
+        """Serve until SIGINT or `stop`; or, once SIGTERM has come or a drain was begun, until nobody is there any more
+        or the settings' time is up. A second SIGTERM ends it at once."""
         loop = asyncio.get_running_loop()
-        for number in STOP_SIGNALS:
-            loop.add_signal_handler(number, self.stop)
+        loop.add_signal_handler(signal.SIGTERM, self._terminate)
+        loop.add_signal_handler(signal.SIGINT, self.stop)
         companions = [
+            asyncio.create_task(self._drain()),
             asyncio.create_task(self._say_that_it_lives()),
             asyncio.create_task(self._server.config.guard.run()),
         ]
@@ -81,13 +87,34 @@ class Listener:
         finally:
             for task in companions:
                 task.cancel()
-            for number in STOP_SIGNALS:
+            for number in (signal.SIGTERM, signal.SIGINT):
                 loop.remove_signal_handler(number)
 
     def stop(self) -> None:
         """Close streams, finish answers, leave `run`."""
         if self._stopping is None:
             self._stopping = asyncio.create_task(self._stop())
+
+    def _terminate(self) -> None:
+        if self._told:
+            self.stop()
+        self._told = True
+        self.gateway.sessions.drain.begin(self.gateway.settings.drain_seconds)
+
+    async def _drain(self) -> None:
+        sessions = self.gateway.sessions
+        await sessions.drain.begun.wait()
+        notify(Notice.STOPPING)
+        if sessions.drain.left > 0:
+            log.info("draining: no new sessions; ending in %.0f s, or when nobody is left", sessions.drain.left)
+            sessions.warn()
+
+        async def busy() -> bool:
+            # A request or a stream each: stills and turntables of no session are waited for too.
+            return bool(self._server.server_state.tasks) or await sessions.in_use()
+
+        await sessions.drain.over(busy)
+        self.stop()
 
     async def _stop(self) -> None:
         self.gateway.stopping.set()

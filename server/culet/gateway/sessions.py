@@ -15,9 +15,10 @@ from typing import Any
 from culet.errors import BusyError, CuletError, EngineUnavailableError, ForbiddenError, NotFoundError
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.demands import Demands
+from culet.gateway.drain import Drain
 from culet.gateway.engine_news import EngineNews
 from culet.gateway.link import EngineLink
-from culet.gateway.session_places import SessionPlaces
+from culet.gateway.session_places import RELOAD_SECONDS, SessionPlaces
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
@@ -26,6 +27,7 @@ from culet_protocol import engine as to_engine
 from culet_protocol.messages import (
     Answer,
     Engine,
+    Leaving,
     Message,
     Problem,
     Question,
@@ -58,6 +60,8 @@ class Sessions:
         self._news = link.events = EngineNews(link, self._sessions, self._give_again)
         self._deleted: OrderedDict[str, None] = OrderedDict()
         self._viewer_numbers = itertools.count(1)
+        self.drain = Drain()
+        """Once begun there are no new sessions."""
         uploads.used = self._words
 
     @property
@@ -138,7 +142,9 @@ class Sessions:
         name: str | None = None,
         snapshot: dict[str, Any] | None = None,
     ) -> SessionRecord:
-        """A new session in the engine, which may be starting; BusyError at the client's limit, or that of all."""
+        """A new session in the engine, which may be starting; BusyError at the client's limit, or that of all,
+        LeavingError if the server is about to be stopped."""
+        self.drain.admit()
         await self._link.until_up()
         session = SessionRecord(name or secrets.token_hex(16), scene, client)
         self._sessions[session.id] = session  # before the engine tells its state, and before others count
@@ -213,6 +219,22 @@ class Sessions:
                 while self.viewers:  # noqa: ASYNC110 - each leaves by itself
                     await asyncio.sleep(0.01)
 
+    async def in_use(self) -> bool:
+        """Whether anybody watches a session, or may be about to come back to one."""
+        lately = time.monotonic() - RELOAD_SECONDS
+        if any(session.viewers or session.used > lately for session in self._sessions.values()):
+            return True
+        with contextlib.suppress(EngineUnavailableError):
+            for session in list(self._sessions.values()):
+                if await self._watched_elsewhere(session):
+                    return True
+        return False
+
+    def warn(self) -> None:
+        """Tell all viewers that the server is about to be stopped."""
+        for session in self._sessions.values():
+            session.tell(Leaving(seconds=self.drain.left))
+
     def join(self, session: SessionRecord, client: str = UNKNOWN, *, steers: bool = True) -> Viewer:
         """A new viewer, who steers or only watches, told who it is and what it sees; BusyError at the limit."""
         limit, strangers = self._settings.max_viewers, sum(one.client != session.owner for one in session.viewers)
@@ -228,6 +250,8 @@ class Sessions:
         viewer.tell(Viewers(count=len(session.viewers)))  # the others are told of many that come and go at once
         if not self._link.ready.is_set():
             viewer.tell(Engine(status="down"))
+        if self.drain.begun.is_set():
+            viewer.tell(Leaving(seconds=self.drain.left))
         if session.latest:
             viewer.offer(*session.latest)
         return viewer

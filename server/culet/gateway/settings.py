@@ -126,6 +126,13 @@ class GatewaySettings(Settings):
         description="Folder where accepted uploads are kept too, so that a gateway that is started after one that died "
         "has them; one gateway's alone. culet serve has one for as long as it runs.",
     )
+    drain_seconds: float = Field(
+        0,
+        ge=0,
+        description="When told to stop (SIGTERM, or POST /api/drain), take no new sessions, and let those who are "
+        "there stay for so many seconds; end before if all have left. 0 stops at once: right for a server alone, to "
+        "which pages come back with their sessions once it is started again.",
+    )
     request_seconds: float = Field(
         10, gt=0, description="An engine that lives but does not answer a small request for so long is unavailable."
     )

@@ -14,6 +14,7 @@ from culet_protocol.messages import (
     Engine,
     Fall,
     Hello,
+    Leaving,
     Message,
     Notice,
     Outlined,
@@ -113,7 +114,7 @@ class Viewer:
         """Queue a notice. Of those that say how something is, only the latest waits; of equal ones, only one."""
         key: object
         match notice:
-            case State() | Change() | Snapshot() | Viewers() | Engine():
+            case State() | Change() | Snapshot() | Viewers() | Engine() | Leaving():
                 key = type(notice)
             case Problem():
                 key = notice

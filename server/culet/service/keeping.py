@@ -11,21 +11,30 @@ from culet.notify import Notice, notify
 from culet.service.browser import show
 from culet.service.supervisor import Part, Supervisor
 
-STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-
 
 async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | None = None) -> None:
-    """Keep all of them running until SIGINT or SIGTERM; the first one is stopped first. `folder` is for their
-    sockets, and for what leads a browser to the page.
+    """Keep all of them running until SIGINT or SIGTERM, or until one of them ends as it was asked to; the first one is
+    stopped first. `folder` is for their sockets, and for what leads a browser to the page.
+
+    At SIGTERM the first one may take its time (`Part.drain_seconds`), in which the others go on; SIGINT, and a second
+    SIGTERM, end all at once.
 
     Once the first one is ready, whoever supervises this process is told, a line, if there is one, is printed, and the
     user's browser is shown the page, if there is one.
     EngineUnavailableError if one dies again and again before it was ever ready.
     """
-    ready, stopping = asyncio.Event(), asyncio.Event()
+    ready, stopping, at_once = asyncio.Event(), asyncio.Event(), asyncio.Event()
+
+    def terminate() -> None:
+        (at_once if stopping.is_set() else stopping).set()
+
+    def interrupt() -> None:
+        at_once.set()
+        stopping.set()
+
     loop = asyncio.get_running_loop()
-    for number in STOP_SIGNALS:
-        loop.add_signal_handler(number, stopping.set)
+    loop.add_signal_handler(signal.SIGTERM, terminate)
+    loop.add_signal_handler(signal.SIGINT, interrupt)
     first, *others = parts
     supervisors = [Supervisor(first, folder, ready.set), *(Supervisor(part, folder) for part in others)]
     running = [asyncio.create_task(supervisor.run()) for supervisor in supervisors]
@@ -36,8 +45,9 @@ async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | Non
     finally:
         for task in (announcement, stop):
             task.cancel()
+        notify(Notice.STOPPING)
         for supervisor in supervisors:
-            await supervisor.stop()
+            await supervisor.stop(at_once)
         results = await asyncio.gather(*running, return_exceptions=True)
         await asyncio.gather(announcement, stop, return_exceptions=True)
     for result in results:

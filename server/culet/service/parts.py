@@ -38,4 +38,5 @@ def gateway_part(
         inherited=(number,),
         has_spare=spare,
         start_seconds=math.inf if alone else START_SECONDS,
+        drain_seconds=settings.drain_seconds,
     )

@@ -7,6 +7,7 @@ import contextlib
 import itertools
 import logging
 import os
+import signal
 import socket
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -51,6 +52,8 @@ class Part:
     """Another one waits for that line, ready to take over."""
     start_seconds: float = START_SECONDS
     """One that is not ready by then is replaced."""
+    drain_seconds: float = 0.0
+    """When told to end, it may take so long to let those go who use it, unless it is told again."""
 
 
 class Supervisor:
@@ -87,6 +90,9 @@ class Supervisor:
             ever_ready = ever_ready or process.ready.is_set()
             if self._stopping.is_set():
                 return
+            if process.leaving:
+                log.info("the %s %s, as it was asked to", name, why)
+                return
             deaths = 1 if process.ready.is_set() and time.monotonic() - began > STEADY_SECONDS else deaths + 1
             if deaths >= STARTS_BEFORE_GIVING_UP and not ever_ready:
                 raise EngineUnavailableError(f"the {name} {why}, {deaths} times in a row; its messages are above")
@@ -95,15 +101,16 @@ class Supervisor:
             if await self._stopped_within(pause):
                 return
 
-    async def stop(self) -> None:
-        """End the processes: SIGTERM, then SIGKILL for one that does not listen."""
+    async def stop(self, at_once: asyncio.Event | None = None) -> None:
+        """End the processes: SIGTERM, and SIGINT for one that may take its time once `at_once` is set; then SIGKILL for
+        one that does not listen."""
         self._stopping.set()
         if self._making_spare:
             await self._making_spare
         if self._spare:
             self._spare.kill()
         if self._current:
-            await self._current.stop(self.part.name)
+            await self._current.stop(self.part.name, self.part.drain_seconds, at_once)
         if self._spare:
             await self._spare.wait()
 
@@ -171,6 +178,8 @@ class _Process:
 
     def __init__(self, address: Path, silence_seconds: float) -> None:
         self.ready = asyncio.Event()
+        self.leaving = False
+        """It said that it is about to end, as somebody asked it to."""
         self.heard_at = 0.0
         """s, steady clock: when it last said that it lives."""
         self.silence_seconds = self._least_silence = silence_seconds
@@ -222,10 +231,19 @@ class _Process:
         self._close()
         return code
 
-    async def stop(self, name: str) -> None:
-        """End it in order, or else at once."""
+    async def stop(self, name: str, drain_seconds: float = 0.0, at_once: asyncio.Event | None = None) -> None:
+        """End it in order, or else at once: it may take `drain_seconds` unless `at_once` is set."""
         with contextlib.suppress(ProcessLookupError):
             self._process.terminate()
+        if drain_seconds > 0 and at_once is not None:
+            ending, hurry = asyncio.create_task(self.wait()), asyncio.create_task(at_once.wait())
+            await asyncio.wait({ending, hurry}, timeout=drain_seconds, return_when=asyncio.FIRST_COMPLETED)
+            for task in (ending, hurry):
+                task.cancel()
+            await asyncio.gather(ending, hurry, return_exceptions=True)
+            if at_once.is_set():
+                with contextlib.suppress(ProcessLookupError):
+                    self._process.send_signal(signal.SIGINT)
         try:
             async with asyncio.timeout(STOP_SECONDS):
                 await self.wait()
@@ -241,6 +259,7 @@ class _Process:
                 self.heard_at = time.monotonic()
                 if Notice.READY in said:
                     self.ready.set()
+                self.leaving = self.leaving or Notice.STOPPING in said
                 for text in said:
                     name, _, value = text.partition("=")
                     if name == PATIENCE and value.isdecimal():

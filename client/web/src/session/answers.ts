@@ -56,6 +56,19 @@ export interface DescribedSky {
   largest_radiance: number;
 }
 /**
+ * What is left.
+ */
+export interface DrainAnswer {
+  /**
+   * After which the server ends at the latest.
+   */
+  seconds: number;
+  /**
+   * Who watch; the server ends before if nobody does any more.
+   */
+  viewers: number;
+}
+/**
  * Per cent, but where said otherwise.
  */
 export interface Grades {

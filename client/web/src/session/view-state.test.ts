@@ -73,6 +73,13 @@ describe("the state after a notice", () => {
     expect(withNotice({ ...INITIAL, target: "light_2" }, shown(DEFAULT)).target).toBe("light_2");
   });
 
+  it("knows that the server is about to be stopped, until another one says hello", () => {
+    const leaving = withNotice(INITIAL, { type: "leaving", seconds: 600 });
+    expect(leaving.leaving).toBe(600);
+    const hello = { type: "hello", protocol: 2, session: "0", watch: "cd", viewer: 1 } as const;
+    expect(withNotice(leaving, hello).leaving).toBeNull();
+  });
+
   it("knows whether the engine lives; a new stream has one until told otherwise", () => {
     const down = withNotice(INITIAL, { type: "engine", status: "down" });
     expect(down.engine).toBe("down");

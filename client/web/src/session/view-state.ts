@@ -31,6 +31,8 @@ export interface ViewState {
   /** What this viewer sends changes the session; else it only watches. */
   steers: boolean;
   engine: "down" | "up";
+  /** Seconds after which the server is stopped, as it was last told; null while it is not about to be. */
+  leaving: number | null;
 }
 
 export const INITIAL: ViewState = {
@@ -50,6 +52,7 @@ export const INITIAL: ViewState = {
   viewers: 1,
   steers: true,
   engine: "up",
+  leaving: null,
 };
 
 export function withNotice(state: ViewState, notice: Notice): ViewState {
@@ -62,8 +65,10 @@ export function withNotice(state: ViewState, notice: Notice): ViewState {
       return { ...state, viewers: notice.count };
     case "engine":
       return { ...state, engine: notice.status };
+    case "leaving":
+      return { ...state, leaving: notice.seconds };
     case "hello":
-      return { ...state, engine: "up", steers: notice.steers ?? true };
+      return { ...state, engine: "up", leaving: null, steers: notice.steers ?? true };
     default:
       return state;
   }

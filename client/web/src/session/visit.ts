@@ -145,6 +145,7 @@ export class Visit {
         state: (before, after) => {
           this.world.state(before, after);
           this.signs.connected(viewer.stream.connection, after.engine);
+          if (before.leaving === null && after.leaving !== null) this.warn(after.leaving);
         },
         answer: this.world.answer,
         lacking: () => this.complaints.attempt(() => this.giveFilesAgain()),
@@ -167,6 +168,11 @@ export class Visit {
     }
     // A gateway that was restarted may not know the session any more, and a proxy may hide its close code.
     if (connection.status === "waiting" && session) void this.leaveIfUnknown(session);
+  }
+
+  /** The server is stopped in so many seconds at most. */
+  private warn(seconds: number): void {
+    this.complaints.tell(words.connection.leaving(Math.max(1, Math.ceil(seconds / 60))));
   }
 
   /** The server does not know the session any more: have it made again as this page last saw it. */

@@ -442,6 +442,9 @@ export const connection = {
   closedHere: "closed by the page",
   notSent: "Not connected: nothing was sent.",
   engineDown: "The render process stopped and is being restarted. The scene is kept.",
+  leaving: (minutes: number) =>
+    `This server is about to be stopped, within ${minutes} ${minutes === 1 ? "minute" : "minutes"}. Your session stays ` +
+    "until then, and then this page takes it to the next server by itself.",
   waiting: "Waiting for the first picture\u2026",
   waitingLong:
     "Waiting for the first picture\u2026\nA server that is new to its processor first compiles its kernels for it, once.",
