@@ -31,7 +31,7 @@ ALL_SKY: dict[str, Any] = {
 
 
 def test_a_picture_is_linear_radiance_and_what_a_screen_shows_of_it() -> None:
-    picture = culet.render(ALL_SKY, *SIZE)
+    picture = culet.render(ALL_SKY, *SIZE, samples=1)
     assert (picture.width, picture.height) == SIZE
     assert picture.linear.shape == picture.rgb.shape == (16, 24, 3)
     assert picture.linear.dtype == np.float32
@@ -62,10 +62,10 @@ def test_what_a_picture_misses_is_told() -> None:
     assert 0 < four.missed.cut < four.missed.bound
     assert math.isnan(four.missed.light_bound), "no caustics on this floor"
     assert f"too low by at most {four.missed.bound:.2g} (light of weight {four.missed.cut:.2g} cut off)" in repr(four)
-    sunny = culet.render("sun", *SIZE)
+    sunny = culet.render("sun", *SIZE, samples=1)
     assert sunny.missed.bound > sunny.linear.mean(), "whatever was cut off may have come from the sun"
     assert "which may all have come from the brightest lamp" in repr(sunny)
-    nothing = culet.render(ALL_SKY, *SIZE)
+    nothing = culet.render(ALL_SKY, *SIZE, samples=1)
     assert nothing.missed.bound == 0
 
 
@@ -81,6 +81,14 @@ def test_a_picture_is_refined_to_the_error_that_is_asked_for_and_says_so() -> No
     assert "(but 0.02 was asked for)" in missed.quality()
     assert culet.render("white", *SIZE, samples=2).met is None, "none was asked for"
     assert "error not known (0.02 was asked for)" in culet.render("white", *SIZE, error=0.02, samples=1).quality()
+
+
+def test_a_picture_looks_right_if_nobody_says_how_good_it_is_to_be() -> None:
+    picture = culet.render("white", *SIZE)
+    assert 16 < picture.cost.samples < 100  # measured 41
+    assert 0 < picture.missed.shown_error <= 0.01
+    assert (picture.error, picture.met) == (None, None), "none was asked for"
+    assert culet.render(ALL_SKY, *SIZE).cost.samples == 16, "for smooth edges, though there is no error"
 
 
 def test_a_scene_may_be_named_in_every_way(tmp_path: Path) -> None:
@@ -124,7 +132,7 @@ def test_an_impossible_size_names_its_field(arguments: dict[str, Any], said: str
 
 
 def test_a_notebook_gets_the_pixels_as_a_png(tmp_path: Path) -> None:
-    picture = culet.render(ALL_SKY, *SIZE)
+    picture = culet.render(ALL_SKY, *SIZE, samples=1)
     (tmp_path / "shown.png").write_bytes(picture._repr_png_())
     with Image.open(tmp_path / "shown.png") as image:
         assert (np.asarray(image) == picture.rgb).all()
@@ -132,7 +140,7 @@ def test_a_notebook_gets_the_pixels_as_a_png(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["png", "webp", "tga"])
 def test_a_saved_picture_holds_what_a_screen_shows(tmp_path: Path, ending: str) -> None:
-    picture = culet.render("white", *SIZE)
+    picture = culet.render("white", *SIZE, samples=1)
     saved = picture.save(tmp_path / f"gem.{ending}")
     with Image.open(saved) as image:
         assert (np.asarray(image) == picture.rgb).all()
@@ -140,13 +148,13 @@ def test_a_saved_picture_holds_what_a_screen_shows(tmp_path: Path, ending: str) 
 
 
 def test_a_saved_exr_holds_the_radiance(tmp_path: Path) -> None:
-    picture = culet.render("white", *SIZE)
+    picture = culet.render("white", *SIZE, samples=1)
     picture.save(str(tmp_path / "gem.EXR"))
     assert (OpenEXR.File(str(tmp_path / "gem.EXR")).channels()["RGB"].pixels == picture.linear).all()
 
 
 def test_a_picture_is_not_saved_under_an_ending_that_it_does_not_know(tmp_path: Path) -> None:
-    picture = culet.render(ALL_SKY, *SIZE)
+    picture = culet.render(ALL_SKY, *SIZE, samples=1)
     with pytest.raises(InputError, match=r"expected a name that ends in \.tga, .*; got 'gem\.gif'"):
         picture.save(tmp_path / "gem.gif")
     with pytest.raises(InputError, match="there is no folder"):
@@ -158,13 +166,13 @@ def test_files_take_the_place_of_stone_and_sky_and_what_is_found_in_them_is_told
     mesh, sky = tmp_path / "gem.off", tmp_path / "sky.png"
     mesh.write_bytes(TETRAHEDRON)
     Image.new("RGB", (16, 9), (255, 0, 255)).save(sky)
-    picture = culet.render(ALL_SKY | {"environment": {"kind": "constant"}}, *SIZE, sky=sky)
+    picture = culet.render(ALL_SKY | {"environment": {"kind": "constant"}}, *SIZE, sky=sky, samples=1)
     assert picture.linear.mean((0, 1)) == pytest.approx([1, 0, 1], abs=1e-6)
     (finding,) = picture.findings
     assert finding.startswith(f"{sky}: 16 x 9 pixels are stretched")
-    gem = culet.render("white", *SIZE, mesh=mesh)
+    gem = culet.render("white", *SIZE, mesh=mesh, samples=1)
     assert gem.scene.stones[0].mesh == "file"
-    assert not np.array_equal(gem.linear, culet.render("white", *SIZE).linear)
+    assert not np.array_equal(gem.linear, culet.render("white", *SIZE, samples=1).linear)
 
 
 def test_progress_goes_from_nothing_to_all() -> None:
@@ -175,14 +183,14 @@ def test_progress_goes_from_nothing_to_all() -> None:
 
 
 def test_a_transparent_picture_has_alpha(tmp_path: Path) -> None:
-    picture = culet.render(ALL_SKY, *SIZE, background="transparent")
+    picture = culet.render(ALL_SKY, *SIZE, background="transparent", samples=1)
     assert (picture.rgb == 0).all(), "nothing is there"
     assert picture.linear.shape == (16, 24, 4)
     with Image.open(picture.save(tmp_path / "gem.png")) as image:
         assert image.mode == "RGBA"
-    said_so = culet.render(ALL_SKY | {"film": {"background": "transparent"}}, *SIZE)
+    said_so = culet.render(ALL_SKY | {"film": {"background": "transparent"}}, *SIZE, samples=1)
     assert (said_so.rgb == picture.rgb).all()
-    colour = culet.render(ALL_SKY, *SIZE, background="#f4f1ea")
+    colour = culet.render(ALL_SKY, *SIZE, background="#f4f1ea", samples=1)
     assert (colour.rgb == (0xF4, 0xF1, 0xEA)).all(), "to the last bit, whatever the tone map is"
     with pytest.raises(SceneError, match=r"film\.background: expected text that matches .*; got 'blue'"):
         culet.render(ALL_SKY, *SIZE, background="blue")

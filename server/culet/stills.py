@@ -166,8 +166,8 @@ def render(
         scene: as `load_scene` takes it: a preset's name, a mapping, a file, a Scene; without it the default scene.
         width: pixels, 1 to 8192.
         height: pixels, 1 to 8192.
-        samples: of each pixel, 1 to 65536; without it the scene's `sampling.samples_per_pixel`, or with an
-            `error` at most 65536.
+        samples: of each pixel, 1 to 65536, with an `error` at most. Without either, what is shown is taken to an
+            estimated error of 0.01, with 16 to 256 samples, or more if the scene's `samples_per_pixel` says so.
         error: take samples until what is shown, from 0 to 1, is estimated to be off by this, root mean square over
             pixels and colours; from 0.004 on no difference is seen. Whether that is `met` the picture says.
         background: `transparent` for nothing behind the stones, with alpha, or a colour, such as `#f4f1ea`, for exactly

@@ -17,7 +17,7 @@ from culet.engine.process.limits import Limits
 from culet.engine.process.serve import run
 run(sys.argv[1], [sys.argv[2]], Limits(max_uploads=1))
 """
-SIZE = {"width": 16, "height": 9}
+SIZE = {"width": 16, "height": 9, "samples": 1}
 COMMENT = 3
 """Bytes that make a file another one."""
 ROOM = 2 * (len(TETRAHEDRON) + COMMENT)

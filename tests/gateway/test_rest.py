@@ -21,6 +21,7 @@ from culet_protocol.watch import watch_id
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
 SMALL = {"width": 64, "height": 36}
+TINY: dict[str, Any] = {"width": 16, "height": 9, "samples": 1}
 JSON = {"Content-Type": "application/json"}
 
 
@@ -48,6 +49,17 @@ async def test_without_parameters_the_picture_is_640_by_360(gateway: Gateway) ->
     assert Image.open(io.BytesIO(answer.content)).size == (640, 360)
 
 
+async def test_a_still_looks_right_if_nobody_says_how_good_it_is_to_be(gateway: Gateway) -> None:
+    """Edges of 16 samples, and what is shown off by 0.01; no more is promised than what is asked for."""
+    for answer in (
+        await gateway.http.get("/api/render.png", params=SMALL),
+        await gateway.http.post("/api/render", json=SMALL),
+    ):
+        assert 16 <= int(answer.headers["culet-samples"]) < 100  # measured 39
+        assert 0 < float(answer.headers["culet-error"]) <= 0.01
+        assert "culet-target" not in answer.headers
+
+
 @pytest.mark.parametrize(
     ("file_format", "media_type", "magic"),
     [
@@ -61,7 +73,7 @@ async def test_without_parameters_the_picture_is_640_by_360(gateway: Gateway) ->
 async def test_a_scene_renders_in_every_format(
     gateway: Gateway, file_format: str, media_type: str, magic: bytes
 ) -> None:
-    answer = await gateway.http.post("/api/render", json={"scene": {}, **SMALL, "format": file_format})
+    answer = await gateway.http.post("/api/render", json={"scene": {}, **SMALL, "samples": 1, "format": file_format})
     assert answer.status_code == 200, answer.text
     assert answer.headers["content-type"] == media_type
     assert answer.content.startswith(magic)
@@ -97,7 +109,7 @@ async def test_an_address_ends_as_the_picture_that_it_answers_with(
 
 async def test_another_sky_of_a_preset_is_seen(gateway: Gateway) -> None:
     """Behind the atelier's backdrop it would not be: with it the corners are nearly black."""
-    query: dict[str, str | int] = {**SMALL, "environment": "light"}
+    query: dict[str, str | int] = {**SMALL, "environment": "light", "samples": 1}
     picture = Image.open(io.BytesIO((await gateway.http.get("/api/render.png", params=query)).content))
     assert np.asarray(picture)[0, 0].min() > 150  # measured 198
 
@@ -130,7 +142,9 @@ async def test_every_preset_is_a_scene_that_renders(gateway: Gateway) -> None:
     presets = (await gateway.http.get("/api/presets")).json()["presets"]
     assert {"default", "classic"} <= {preset["name"] for preset in presets}
     for preset in presets:
-        answer = await gateway.http.post("/api/render", json={"scene": preset["scene"], "width": 16, "height": 9})
+        answer = await gateway.http.post(
+            "/api/render", json={"scene": preset["scene"], "width": 16, "height": 9, "samples": 1}
+        )
         assert answer.status_code == 200, (preset["name"], answer.text)
 
 
@@ -143,14 +157,16 @@ async def test_materials_and_cuts_can_be_named_in_a_scene(gateway: Gateway) -> N
     assert {material["name"] for material in materials} == set(get_args(MaterialName))
     for material in materials:
         stone = {"cut": {"name": cuts[0]["name"], "table_percent": 57}, "material": material["name"]}
-        answer = await gateway.http.post("/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9})
+        answer = await gateway.http.post(
+            "/api/render", json={"scene": {"stones": [stone]}, "width": 16, "height": 9, "samples": 1}
+        )
         assert answer.status_code == 200, (material["name"], answer.text)
     assert {cut["name"] for cut in cuts} == set(CUTS)
     for cut in cuts:
         sliders = [name for name, schema in cut["proportions"].items() if "usual" in schema]
         own = {name: cut["proportions"][name]["default"] for name in sliders[-1:]}
         scene = {"stones": [{"cut": {"name": cut["name"], **own}}]}
-        answer = await gateway.http.post("/api/render", json={"scene": scene, "width": 16, "height": 9})
+        answer = await gateway.http.post("/api/render", json={"scene": scene, **TINY})
         assert answer.status_code == 200, (cut["name"], answer.text)
     refused = {"stones": [{"cut": {"name": "trillion", "table_percent": 88}}]}
     assert_problem(await gateway.http.post("/api/render", json={"scene": refused}), 422, "stones.0.cut.table_percent")
@@ -173,7 +189,7 @@ async def test_a_material_says_where_its_numbers_come_from(gateway: Gateway) -> 
     assert classic["indices"] == [1.7, 1.8, 1.9]
     assert materials["emerald"]["confidence"] == "weak source"
     assert ruby["span_nm"] == [200, 5000]
-    still = await gateway.http.get("/api/render.tga", params={**SMALL, "material": "ruby"})
+    still = await gateway.http.get("/api/render.tga", params={**SMALL, "material": "ruby", "samples": 1})
     assert still.status_code == 200
 
 
@@ -377,7 +393,7 @@ async def test_the_description_says_of_what_kind_every_picture_is(gateway: Gatew
 
 
 async def test_a_transparent_picture_has_alpha(gateway: Gateway) -> None:
-    query = SMALL | {"preset": "ruby", "background": "transparent"}
+    query: dict[str, str | int] = {**SMALL, "preset": "ruby", "background": "transparent", "samples": 1}
     alphas = []
     for ending, mode in (("png", "RGBA"), ("webp", "RGBA"), ("jpg", "RGB")):
         answer = await gateway.http.get(f"/api/render.{ending}", params=query)
@@ -456,7 +472,7 @@ async def test_a_still_whose_client_left_is_not_rendered(gateway: Gateway) -> No
         return (await gateway.engine_status())["stills_waiting"] == 0
 
     await eventually(none_waits)
-    small = await gateway.http.post("/api/render", json={"width": 16, "height": 9})
+    small = await gateway.http.post("/api/render", json=TINY)
     assert small.status_code == 200
     assert 'culet_http_answers_total{status="499"} 1' in (await gateway.http.get("/metrics")).text
 

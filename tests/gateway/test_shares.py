@@ -122,7 +122,7 @@ async def test_strangers_that_fill_a_session_leave_its_owner_a_place(crowded: Ga
 
 ENDLESS = {"scene": {"sampling": {"samples_per_pixel": 16384}}, "width": 1024, "height": 1024}
 """Three quarters of the work that one still may make: more would be refused, and not be waited for."""
-SMALL = {"width": 32, "height": 18}
+SMALL = {"width": 32, "height": 18, "samples": 1}
 
 
 @asynccontextmanager

@@ -99,11 +99,17 @@ def test_a_target_that_no_picture_can_have_is_refused(samples: int, error: float
         Target(samples, error)
 
 
-def test_the_scene_says_how_many_samples_unless_somebody_asks() -> None:
-    scene = Scene.read({"sampling": {"samples_per_pixel": 3}})
-    settings = ((None, None), (5, None), (None, 0.1), (5, 0.1))
-    asked = [Target.of(samples, error, scene) for samples, error in settings]
-    assert [(each.samples, each.error) for each in asked] == [(3, None), (5, None), (65536, 0.1), (5, 0.1)]
+@pytest.mark.parametrize(("own", "least", "most"), [(1, 16, 256), (40, 40, 256), (300, 300, 300)])
+def test_a_still_looks_right_unless_somebody_asks_for_something_else(own: int, least: int, most: int) -> None:
+    """It has the samples that its scene says at least, and those that an error of 0.01 takes."""
+    scene = Scene.read({"sampling": {"samples_per_pixel": own}})
+    assert Target.of(None, None, scene) == Target(most, 0.01, least=least)
+
+
+def test_what_is_asked_for_of_a_still_counts_and_not_what_its_scene_says() -> None:
+    scene = Scene.read({"sampling": {"samples_per_pixel": 40}})
+    asked = [Target.of(samples, error, scene) for samples, error in ((5, None), (None, 0.1), (5, 0.1))]
+    assert [(each.samples, each.error, each.least) for each in asked] == [(5, None, 2), (65536, 0.1, 2), (5, 0.1, 2)]
 
 
 @pytest.mark.parametrize("error", [1e-300, 5e-324])

@@ -16,7 +16,7 @@ from culet.gateway.problems import answers
 from culet.gateway.quality import MISSED, TARGET, quality_headers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
-from culet.scene.film import MOST_SAMPLES
+from culet.scene.film import MOST_SAMPLES, STILL_ERROR, STILL_LEAST, STILL_SAMPLES
 from culet.scene.patch import patched
 from culet.scene.sky_seen import under
 from culet.scene.stone import MaterialName
@@ -43,7 +43,10 @@ Height = Annotated[int, Field(ge=1, le=8192, description="Pixels.")]
 Samples = Annotated[
     int,
     Field(
-        ge=1, le=MOST_SAMPLES, description="Per pixel, with an `error` at most; without either the scene says how many."
+        ge=1,
+        le=MOST_SAMPLES,
+        description="Per pixel, with an `error` at most. Without either a still is taken to an error of "
+        f"{STILL_ERROR}, with {STILL_LEAST} to {STILL_SAMPLES} samples.",
     ),
 ]
 Error = Annotated[

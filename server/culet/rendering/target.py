@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from culet.errors import InputError
-from culet.scene.film import MOST_SAMPLES
+from culet.scene.film import MOST_SAMPLES, STILL_ERROR, STILL_LEAST, STILL_SAMPLES
 from culet.scene.model import Scene
 
 
@@ -31,7 +31,9 @@ class Target:
 
     @classmethod
     def of(cls, samples: int | None, error: float | None, scene: Scene) -> Self:
-        """Of what somebody asks for: with an error the samples are a limit, without either the scene says how many."""
-        if samples is None:
-            samples = scene.sampling.samples_per_pixel if error is None else MOST_SAMPLES
-        return cls(samples, error)
+        """Of what somebody asks for: with an error the samples are a limit; without either the picture is to look
+        right, and has at least the samples that the scene says."""
+        if samples is None and error is None:
+            own = scene.sampling.samples_per_pixel
+            return cls(max(STILL_SAMPLES, own), STILL_ERROR, least=max(STILL_LEAST, own))
+        return cls(MOST_SAMPLES if samples is None else samples, error)

@@ -203,7 +203,7 @@ async def test_a_step_that_was_never_shown_is_not_found(engine: EngineProcess) -
 
 async def test_a_still_of_a_scene_is_what_was_asked_for(engine: EngineProcess) -> None:
     async with connected(engine) as (peer, _):
-        reply, data = await peer.ask_later(type="render", scene=PLAIN, width=33, height=17, format="tga")
+        reply, data = await peer.ask_later(type="render", scene=PLAIN, width=33, height=17, samples=1, format="tga")
         quality = {"samples": 1, "error": None, "met": None}
         assert reply["result"] == {"width": 33, "height": 17, "step": None, "format": "tga", **quality}
         assert data is not None

@@ -97,7 +97,7 @@ async def test_a_scene_that_cannot_be_rendered_is_a_problem_of_its_session_alone
         status = await peer.status()
         assert status["problems"] == 1  # not tried again and again
 
-        reply = await peer.ask(type="render", scene=REFUSED, width=16, height=16)
+        reply = await peer.ask(type="render", scene=REFUSED, width=16, height=16, samples=1)
         assert (reply["status"], reply["detail"]) == (500, "the kernel does not build")
 
         assert (await peer.control("set_scene", scene=GOOD))["status"] == 200

@@ -79,7 +79,7 @@ async def test_one_session_that_shows_ever_other_skies_levels_off(small_engine: 
         assert status["memory_skies_bytes"] == status["skies"] * SKY_BYTES
         assert status["memory_budget_bytes"] == BUDGET
 
-        still: dict[str, Any] = {"type": "render", "session": peer.session, "width": 32, "height": 16}
+        still: dict[str, Any] = {"type": "render", "session": peer.session, "width": 32, "height": 16, "samples": 1}
         assert (await peer.ask(**still, step=steps[-1]))["status"] == 200
         assert (await peer.ask(**still, step=steps[-2]))["status"] == 200
         gone = await peer.ask(**still, step=steps[0])
@@ -98,9 +98,9 @@ async def test_a_sky_that_is_shown_outlives_those_that_are_not(small_engine: Eng
         for number in range(5):
             assert (await put(peer, f"other-{number}", 50 + number))["status"] == 200
         assert (await peer.control("patch_scene", patch={"environment": {"turn_degrees": 90}}))["status"] == 200
-        reply = await peer.ask(type="render", scene=scene("shown"), width=32, height=16)
+        reply = await peer.ask(type="render", scene=scene("shown"), width=32, height=16, samples=1)
         assert reply["status"] == 200, reply
-        forgotten = await peer.ask(type="render", scene=scene("other-0"), width=32, height=16)
+        forgotten = await peer.ask(type="render", scene=scene("other-0"), width=32, height=16, samples=1)
         assert (forgotten["status"], forgotten["field"]) == (422, "environment.image")
         await peer.result(type="close_session", session=peer.session)
 

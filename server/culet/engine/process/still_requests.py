@@ -25,12 +25,12 @@ from culet_protocol.engine import Render
 from culet_protocol.sizes import STILL_SIZE
 
 
-def quality(still: Still) -> dict[str, Any]:
-    """What a still that is done has reached: samples, error if that is known, and whether an error asked for is met."""
+def quality(still: Still, *, promised: bool) -> dict[str, Any]:
+    """What a still that is done has reached: samples, error if that is known, and whether an error promised is met."""
     picture, target = still.picture, still.target
     assert picture is not None  # noqa: S101 - it is done
     error = picture.shown_error()
-    met = None if target.error is None else picture.meets(target)
+    met = picture.meets(target) if promised and target.error is not None else None
     return {"samples": picture.samples, "error": None if math.isnan(error) else error, "met": met}
 
 
@@ -73,23 +73,25 @@ class StillRequests:
             await self._painter.make_ready(stage, samples)
         self._make_room_for(still)
         data = await self._painted(still)
-        reached = {"width": width, "height": height, "step": step, "format": request.format, **quality(still)}
+        promised = request.session is not None or request.error is not None
+        reached = quality(still, promised=promised)
+        reached |= {"width": width, "height": height, "step": step, "format": request.format}
         return reached, data
 
     def _target(self, request: Render, scene: Scene, width: int, height: int) -> Target:
         """What is asked for, of a session by default what it has at rest. InputError if it is too much work."""
         limits = self._limits.model_copy(update={"max_still_work": self._limits.max_still_work * request.part})
+        bands, own = band_count(scene) * pictures_of(scene), scene.sampling.samples_per_pixel
+        target = Target.of(request.samples, request.error, scene)
         if request.session is not None and request.samples is None and request.error is None:
-            rest, own = self._limits.rest, scene.sampling.samples_per_pixel
+            rest = self._limits.rest
             target = replace(rest, samples=max(rest.samples, own), least=max(rest.least, own))
-        else:
-            target = Target.of(request.samples, request.error, scene)
-        bands = band_count(scene) * pictures_of(scene)
         if target.error is None or request.samples is not None:
             check_still_work(width, height, target.samples, bands, limits)
             return target
-        check_still_work(width, height, target.least, bands, limits)
-        return replace(target, samples=min(target.samples, most_samples(width, height, bands, limits)))
+        check_still_work(width, height, own if request.error is None else target.least, bands, limits)
+        most = most_samples(width, height, bands, limits)
+        return replace(target, samples=min(target.samples, most), least=min(target.least, most))
 
     async def _painted(self, still: Still) -> bytes:
         self._queue.put(still)
