@@ -95,12 +95,9 @@ static inline void mix_points(flat_t *to, int at, const flat_t *from, int i, int
   to->x[at] = mix_of(from->x[i], from->x[j], part);
   to->y[at] = mix_of(from->y[i], from->y[j], part);
 #if DIVERGING
-  real d[3] = {mix_of(from->dx[i], from->dx[j], part), mix_of(from->dy[i], from->dy[j], part),
-               mix_of(from->dz[i], from->dz[j], part)};
-  normalise_3(d);
-  to->dx[at] = d[0];
-  to->dy[at] = d[1];
-  to->dz[at] = d[2];
+  to->dx[at] = mix_of(from->dx[i], from->dx[j], part);
+  to->dy[at] = mix_of(from->dy[i], from->dy[j], part);
+  to->dz[at] = mix_of(from->dz[i], from->dz[j], part);
   to->a[at] = mix_of(from->a[i], from->a[j], part);
   to->b[at] = mix_of(from->b[i], from->b[j], part);
 #endif
@@ -188,6 +185,36 @@ static inline void leave(const job_t *job, tally_t *tally, beam_t *stack, int *t
   land_beam(job, tally, corners, count, d, flux, doubtful);
 }
 
+#define ABREAST 16 // planes that are looked at at a time, as the host fills them up
+typedef JOIN(REAL, ABREAST) abreast_t;
+typedef JOIN(MASK, ABREAST) numbers_t;
+
+// The facet that a ray inside meets first, but for the one that it comes from: that of the largest speed / gap, compared
+// without dividing. -1 if it meets none.
+static inline int facet_ahead(__global const real *planes, int padded, const real *p, const real *d, int from) {
+  abreast_t speeds = 0, gaps = 1;
+  numbers_t found = -1, number = (numbers_t)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  for (int f = 0; f < padded; f += ABREAST, number += ABREAST) {
+    const abreast_t x = vload16(0, planes + f), y = vload16(0, planes + padded + f),
+                    z = vload16(0, planes + 2 * padded + f), offset = vload16(0, planes + 3 * padded + f);
+    const abreast_t speed = d[0] * x + d[1] * y + d[2] * z,
+                    gap = fmax(offset - (p[0] * x + p[1] * y + p[2] * z), (real)1e-7);
+    const numbers_t sooner = (speed * gaps > speeds * gap) & (number != from);
+    speeds = sooner ? speed : speeds;
+    gaps = sooner ? gap : gaps;
+    found = sooner ? number : found;
+  }
+  const abreast_t rate = speeds / gaps;
+  const JOIN(REAL, 8) of_8 = fmax(rate.lo, rate.hi);
+  const real4 of_4 = fmax(of_8.lo, of_8.hi);
+  const real best = fmax(fmax(of_4.x, of_4.y), fmax(of_4.z, of_4.w));
+  if (!(best > 0)) return -1;
+  const numbers_t those = rate == best ? found : (numbers_t)INT_MAX;
+  const JOIN(MASK, 8) least_8 = min(those.lo, those.hi);
+  const JOIN(MASK, 4) least_4 = min(least_8.lo, least_8.hi);
+  return (int)min(min(least_4.x, least_4.y), min(least_4.z, least_4.w));
+}
+
 // One beam inside the stone: parts of it meet facets, where they leave, and are reflected as beams of their own.
 static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, int *top) {
   const beam_t beam = stack[--*top];
@@ -206,16 +233,9 @@ static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, i
   c0 /= count;
   c1 /= count;
   c2 /= count;
-  real rate[MOST_FACETS], best = 0;
-  for (int f = 0; f < padded; f++) {
-    const real speed = d0 * nx[f] + d1 * ny[f] + d2 * nz[f], gap = offset[f] - (c0 * nx[f] + c1 * ny[f] + c2 * nz[f]);
-    const real r = speed / fmax(gap, (real)1e-7);
-    rate[f] = f == beam.facet ? (real)0 : r;
-    best = fmax(best, rate[f]);
-  }
-  int first = 0;
-  while (first < facets && rate[first] != best) first++;
-  if (first >= facets || !(best > 0)) {
+  const real middle[3] = {c0, c1, c2};
+  const int first = facet_ahead(nx, padded, middle, beam.d, beam.facet);
+  if (first < 0) {
     tally->unresolved += job->weight * beam.flux;
     return;
   }
@@ -710,11 +730,16 @@ typedef struct {
   int stands_for_all;             // of a lamp that is gauged
 } bands_t;
 
+// A band ends where all do by what it adds to the light: of a red light the blue one, which adds little, much sooner.
 static inline void enter_bands(job_t *job, tally_t *tally, bands_t bands, int facet, const corner_t *part, int count) {
+  const real cutoff = job->cutoff, even = weight_of(light_colour(job->light)) / job->room->bands;
   for (int band = bands.first; band < bands.end; band++) {
     take_band(job, bands.chains + band);
     if (!job->light->gauges) {
+      if (!(job->weight > 0)) continue;
+      job->cutoff = cutoff * even / job->weight;
       enter(job, tally, facet, part, count);
+      job->cutoff = cutoff;
       continue;
     }
     tally_t own = {0};

@@ -80,6 +80,13 @@ static inline void go_to(job_t *job, int solid) {
   job->absorption = chain->absorption;
 }
 
+static inline float4 light_colour(__constant const light_t *light) {
+  return (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
+}
+
+// Mean of the channels.
+static inline real weight_of(float4 colour) { return (fabs(colour.x) + fabs(colour.y) + fabs(colour.z)) / 3; }
+
 // Of its shadow, until it takes up a band.
 static inline job_t job_of(__constant const throwing_t *room, __constant const light_t *light,
                            __constant const solid_t *solids, int solid, facets_t facets, canvas_t canvas) {
@@ -90,7 +97,7 @@ static inline job_t job_of(__constant const throwing_t *room, __constant const l
   job.chains = 0;
   job.facets = facets;
   job.canvas = canvas;
-  job.colour = (float4)(light->colour[0], light->colour[1], light->colour[2], 0);
+  job.colour = light_colour(light);
   job.weight = job.power = 1;
   job.eta = 1;
   job.share = 0;
@@ -107,8 +114,8 @@ static inline void take_band(job_t *job, __global const chain_t *chains) {
   go_to(job, job->solid - job->solids);
   __global const real *share = chains[job->solid->first_chain].share;
   job->share = (float4)((float)share[0], (float)share[1], (float)share[2], 0);
-  job->colour = (float4)(job->light->colour[0], job->light->colour[1], job->light->colour[2], 0) * job->share;
-  job->weight = (fabs(job->colour.x) + fabs(job->colour.y) + fabs(job->colour.z)) / 3;
+  job->colour = light_colour(job->light) * job->share;
+  job->weight = weight_of(job->colour);
   job->power = dot(job->colour, job->colour) / 3;
 }
 

@@ -106,6 +106,41 @@ def caustics(
 
 
 @app.command()
+def light(
+    scene: SceneFile = None,
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    poses: Annotated[int, typer.Option(min=1, max=1000, help="In which the stones are turned, at random.")] = 16,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 960,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 540,
+    cutoff: Annotated[
+        list[float] | None,
+        typer.Option(min=1e-6, max=1, help="Of the light, several times for several; by default 3e-3 to 1e-4."),
+    ] = None,
+    repeats: Annotated[int, typer.Option(min=1, max=100, help="Frames of each cut-off and pose.")] = 3,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON of all figures.")] = None,
+) -> None:
+    """Sweep the cut-off of the light that stones throw in a moving frame: its error and what is cut of it, against the
+    cost of the frame with shadows alone. Without a scene a diamond over a matte floor, under two points and a sun."""
+    from culet.rendering.renderer import Renderer
+    from culet.stage import Stage
+    from culet.study.light_bench import LIT
+    from culet.study.live_light import CUTOFFS, measure, table
+
+    with errors_in_one_line():
+        named = scene is not None or preset is not None or mesh is not None
+        stage = read_stage(scene, preset, mesh) if named else Stage.of(LIT)
+        with opened(out) as file:
+            with progress_bar("measuring") as advance:
+                cutoffs = tuple(dict.fromkeys(cutoff)) if cutoff else CUTOFFS
+                found = measure(Renderer(), stage, (width, height), cutoffs, poses, repeats, advance)
+            if file is not None:
+                file.truncate(0)
+                file.write(found.document() + "\n")
+        report_console().print(table(found))
+
+
+@app.command()
 def resting(
     scene: SceneFile = None,
     preset: Preset = None,

@@ -62,7 +62,7 @@ class Optics(Model):
         "of lamps of at most 1 degree. Without it stones throw their shadows alone.",
     )
     caustics_cutoff: Annotated[float, Field(ge=1e-9, le=1)] = Field(
-        1e-3,
+        1.7e-4,
         description="Flux at which a beam of that light ends, R^2 times the light's irradiance; what it carried is "
         "counted as cut.",
     )

@@ -21,7 +21,8 @@ from culet.scene.model import Scene
 from culet.scene.room import Plane
 from culet.stage import Stage
 
-LIVE_CUTOFF = 1e-3
+MAP_CUTOFF = 1e-3
+"""Of the maps, so coarse that what each pass takes besides its beams shows. Frames have their scene's own."""
 BESIDE = (-4.0, 6.0, 4.0)
 OUT_OF_REACH = 1e-3
 """Half size of a coarser level, R, that hardly any light lands on: what a map of one level takes."""
@@ -78,7 +79,7 @@ def _map(renderer: Renderer, scene: Scene, beams: Beams, levels: int = 2) -> Cal
 
     def run(number: int) -> None:
         del number
-        beams.make(stage, rays, frame, target, cutoff=LIVE_CUTOFF)
+        beams.make(stage, rays, frame, target, cutoff=MAP_CUTOFF)
 
     run(0)  # compiled, and warm
     return run

@@ -61,6 +61,22 @@ def test_a_coloured_plate_takes_its_part_of_every_passage(beams: Beams) -> None:
     assert abs(made.lost()) < 1e-6
 
 
+def test_of_a_coloured_light_what_adds_little_is_followed_less(beams: Beams, brilliant: Shape) -> None:
+    """Of as much light by as many beams less is cut. Measured: 0.154 of white light by 2826 beams, 0.125 of the red one
+    by 2746, 0.091 of what is red alone by 2359."""
+    white, red = (
+        thrown(beams, [sun(colour=colour)], brilliant, cutoff=1e-3) for colour in ((1, 1, 1), (2.6, 0.2, 0.2))
+    )
+    assert red.tally.incident == pytest.approx(white.tally.incident, rel=1e-5)
+    assert red.tally.cut < 0.9 * white.tally.cut
+    assert red.tally.beams < 1.05 * white.tally.beams
+    assert abs(red.lost()) < 1e-6
+    pure = thrown(beams, [sun(colour=(3, 0, 0))], brilliant, cutoff=1e-3)
+    assert pure.map[..., 0].max() > 0
+    assert not pure.map[..., 1:].any(), "nor is what there is none of"
+    assert pure.tally.cut < 0.9 * red.tally.cut
+
+
 def test_two_plates_pass_on_what_they_reflect_to_each_other(beams: Beams) -> None:
     """(1 - R) / (1 + 3 R): none of the light passes the lower plate unhindered, and none is lost between them."""
     r = fresnel(0, 1, INDEX)

@@ -56,6 +56,8 @@ COARSEST = 1.0
 """A cut-off at which hardly anything is followed."""
 PHOTONS = 30.0
 """Of each channel, over the cut-off: at 1e-3 then 30,000 photons, whose error is like that of beams."""
+FIRST_PHOTONS = 30_000
+"""In the first pass at most, in the next twice as many, and so on."""
 LEAST_PHOTONS = 3000
 """Of a moving frame: fewer make blots that jump, and nothing is better."""
 MOVING_PHOTON_SECONDS = 0.012
@@ -321,7 +323,7 @@ class Illumination:
         else:
             if self._photons is None:
                 self._photons = self._of.photons.maps(self.stage, self.bound.frame)
-            photons = PHOTONS / cutoff
+            photons = min(PHOTONS / cutoff, FIRST_PHOTONS * 2.0**number)
             if effort is Effort.MOVING:
                 photons = min(photons, MOVING_PHOTON_SECONDS / self._photons.photon_seconds)
                 follows = follows and photons >= LEAST_PHOTONS
