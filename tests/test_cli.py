@@ -24,7 +24,20 @@ from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
 from geometry.designs.files import design, gcs_of
 
-COMMANDS = ["render", "simulate", "bench", "serve", "gateway", "engine", "view", "record", "design", "grade"]
+COMMANDS = [
+    "render",
+    "simulate",
+    "bench",
+    "serve",
+    "gateway",
+    "engine",
+    "view",
+    "record",
+    "design",
+    "grade",
+    "sweep",
+    "animate",
+]
 TINY = ("--width", "48", "--height", "27")
 ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}
 """A scene of whose sky nothing is hidden."""

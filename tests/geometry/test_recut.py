@@ -63,9 +63,7 @@ def test_table_and_girdle_are_those_that_were_asked_for(name: str) -> None:
     shape = shape_of_design(design(name))
     now = measured(recut_shape(shape, Recut(table_percent=50, girdle_percent=5.5)))
     assert now.table_percent == pytest.approx(50, abs=1e-5)  # measured 1.2e-6, by the linear programme
-    assert now.girdle_percent == pytest.approx(
-        5.5, abs=1e-5
-    )  # corners nearer than 1e-4 are one where they are measured
+    assert now.girdle_percent == pytest.approx(5.5, abs=1e-5)  # corners within 1e-4 are one
     assert now.pavilion_percent == pytest.approx(measured(shape).pavilion_percent, abs=1e-9)
 
 
@@ -80,7 +78,7 @@ def test_a_rose_is_given_a_table_with_a_name_of_its_own() -> None:
 def test_a_refusal_names_the_proportion_and_says_how_far_it_may_go() -> None:
     wavy = shape_of_design(design("13_chiral_negative_wheel"))
     with pytest.raises(
-        MeshError, match="expected more than 3.117, where its thinnest place is nothing; got 2"
+        MeshError, match=r"expected more than 3\.117, where its thinnest place is nothing; got 2"
     ) as refused:
         recut_shape(wavy, Recut(girdle_percent=2))
     assert refused.value.field == "girdle_percent"

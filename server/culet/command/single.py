@@ -21,6 +21,8 @@ MODULES = {
     "study": "culet.command.study",
     "design": "culet.command.design",
     "grade": "culet.command.grade",
+    "sweep": "culet.command.sweep",
+    "animate": "culet.command.animate",
 }
 """Where the commands are, in the order in which they are listed. Each module has an `app`."""
 

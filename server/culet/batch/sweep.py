@@ -1,0 +1,110 @@
+"""A sweep: metrics of a scene while some of its fields vary, as a table."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Generator, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from culet.batch.digest import digest_of
+from culet.batch.metrics import Effort, check_metrics, columns_of, measure
+from culet.batch.variation import Variation, points_of, varied
+from culet.errors import InputError
+from culet.grading.metrics import GRADES
+from culet.grading.sums import LightSums
+from culet.journal import Journal
+from culet.places import write_whole
+from culet.rendering.device import open_device
+from culet.scene.model import Scene
+from culet.simulation.lying import put_down
+from culet.stage import Library, Stage
+from culet.version import __version__
+
+PROBLEM = "problem"
+"""The column that says why a scene has no numbers."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is asked for."""
+
+    stage: Stage
+    variations: tuple[Variation, ...]
+    metrics: tuple[str, ...]
+    effort: Effort = field(default_factory=Effort)
+
+    def identity(self) -> dict[str, Any]:
+        """What of another sweep is different."""
+        return {
+            "sweep": __version__,
+            "scene": digest_of(self.stage),
+            "vary": [[each.field, list(each.values)] for each in self.variations],
+            "metrics": list(self.metrics),
+            "effort": asdict(self.effort),
+        }
+
+    def columns(self) -> list[str]:
+        """Of the table."""
+        return [*(each.field for each in self.variations), *columns_of(self.metrics), PROBLEM]
+
+    def scene(self, values: Sequence[Any]) -> Scene:
+        """Of one point; SceneError for a field that there is not, or a value that a field cannot have."""
+        fields = (each.field for each in self.variations)
+        return varied(self.stage.scene, dict(zip(fields, values, strict=True)))
+
+    def library(self) -> Library:
+        """The shapes of files that stones name, to be cut anew."""
+        stones = zip(self.stage.scene.stones, self.stage.shapes, strict=True)
+        return Library({stone.mesh: shape for stone, shape in stones if stone.mesh and stone.recut is None})
+
+
+def journal_of(out: Path) -> Path:
+    """Beside the table."""
+    return out.with_name(f"{out.name}.journal")
+
+
+def run(sweep: Sweep, out: Path, *, fresh: bool = False) -> Generator[tuple[int, int], None, None]:
+    """Measure every point, and write the table; points done of all, at the start and after each.
+
+    What an earlier run of the same sweep has measured is taken from its journal; the table is written when the sweep
+    ends, however it ends. A point whose scene cannot be has no numbers, and a reason. InputError for what makes no
+    sweep, or for a journal of another one.
+    """
+    check_metrics(sweep.metrics)
+    points = points_of(sweep.variations)
+    sweep.scene(points[0])  # a field that there is not is told before anything is begun
+    with Journal(journal_of(out), sweep.identity(), kind="sweep", fresh=fresh) as journal:
+        if len(journal.records) > len(points) or not all(isinstance(record, dict) for record in journal.records):
+            raise InputError(f"{journal.path} holds lines that are no points of this sweep; --fresh begins anew")
+        sums = LightSums(open_device()) if set(sweep.metrics) & set(GRADES) else None
+        try:
+            yield len(journal.records), len(points)
+            for values in points[len(journal.records) :]:
+                journal.append(_measured(sweep, sums, values))
+                yield len(journal.records), len(points)
+        finally:
+            write_whole(out, _table(sweep, points, journal.records), "out")
+
+
+def _measured(sweep: Sweep, sums: LightSums | None, values: Sequence[Any]) -> dict[str, Any]:
+    """Columns of one point; those that are no numbers are left out."""
+    try:
+        stage = put_down(Stage.of(sweep.scene(values), sweep.library(), before=sweep.stage), sweep.stage)
+        found = measure(sums, stage, sweep.metrics, sweep.effort)
+    except InputError as error:
+        return {PROBLEM: str(error)}
+    return {name: value for name, value in found.items() if math.isfinite(value)}
+
+
+def _table(sweep: Sweep, points: Sequence[Sequence[Any]], records: Sequence[dict[str, Any]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(sweep.columns())
+    for values, record in zip(points, records, strict=False):
+        told = [record.get(column, "") for column in (*columns_of(sweep.metrics), PROBLEM)]
+        writer.writerow([*values, *told])
+    return text.getvalue().encode()

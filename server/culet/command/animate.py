@@ -1,0 +1,106 @@
+"""`culet animate`."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
+from culet.command.single import single_command
+from culet.command.stage import read_stage
+from culet.command.terminal import errors_in_one_line, progress_bar
+from culet.errors import InputError
+from culet.scene.film import MOST_SAMPLES
+
+if TYPE_CHECKING:
+    from culet.batch.animation import Animation
+    from culet.stage import Stage
+
+app = single_command()
+
+SECONDS = 4.0
+
+
+@app.command()
+def animate(
+    scene: SceneFile = None,
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the frames; made if missing.")
+    ] = Path("frames"),
+    turntable: Annotated[bool, typer.Option("--turntable", help="The camera goes once around the stones.")] = False,
+    fall: Annotated[bool, typer.Option("--fall", help="The stones fall, as of culet simulate.")] = False,
+    path: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CAMERAS.json",
+            help="The camera passes these: a list of objects with any of position, target, up, fov_degrees, height, "
+            "and time (s) of all or none.",
+        ),
+    ] = None,
+    seconds: Annotated[float, typer.Option(min=0.001, help="Of the film.")] = SECONDS,
+    fps: Annotated[float, typer.Option("--fps", min=0.1, max=1000, help="Frames a second.")] = 30,
+    width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 640,
+    height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels.")] = 360,
+    samples: Annotated[
+        int | None, typer.Option(min=1, max=MOST_SAMPLES, help="Samples per pixel, with --error at most.")
+    ] = None,
+    error: Annotated[
+        float | None, typer.Option(metavar="RMSE", help="Each frame to this error as shown, as of culet render.")
+    ] = None,
+    image: Annotated[str, typer.Option("--format", metavar="png|webp|jpg|tga|exr|npy", help="Of the frames.")] = "png",
+    preset: Preset = None,
+    mesh: MeshFile = None,
+    sky: SkyFile = None,
+    cut: CutText = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Render anew what an earlier run has left there.")] = False,
+) -> None:
+    """Render an animation, frame by frame.
+
+    Stopped with Ctrl-C, the same command goes on where it was; frames are there whole or not at all.
+    """
+    from culet.batch.animation import Animation, times_of
+    from culet.rendering.files import FORMATS
+
+    with errors_in_one_line():
+        if turntable + fall + (path is not None) != 1:
+            raise InputError("expected one of --turntable, --fall and --path", "turntable")
+        if image not in FORMATS:
+            raise InputError(f"format: expected one of {', '.join(FORMATS)}; got {image!r:.20}", "format")
+        if out.is_file():
+            raise InputError(f"out: expected a folder, got the file {out}", "out")
+        times = times_of(seconds, fps)
+        stage = read_stage(scene, preset, mesh, sky, cut)
+        stages = _stages(stage, times, seconds, fall=fall, path=path)
+        frames = Animation(stages, width, height, samples, error, image)
+        _render(frames, out, fresh=fresh)
+        typer.echo(f"{out}: {len(stages)} frames of {width} x {height}")
+
+
+def _stages(stage: Stage, times: list[float], seconds: float, *, fall: bool, path: Path | None) -> tuple[Stage, ...]:
+    from culet.batch import animation
+    from culet.batch.cameras import Way
+    from culet.sources import naming, parse_json
+
+    if fall:
+        with progress_bar("simulating") as advance:
+            return animation.fall(stage, times, advance)
+    if path is None:
+        return animation.turntable(stage, times)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"path: {path} cannot be read: {error.strerror}", "path") from error
+    with naming(str(path)):
+        return animation.on_a_way(stage, Way.read(parse_json(data)), seconds, times)
+
+
+def _render(frames: Animation, folder: Path, *, fresh: bool) -> None:
+    from culet.batch.animation import render_frames
+
+    steps = render_frames(frames, folder, fresh=fresh)
+    with closing(steps), progress_bar(f"rendering {folder.name}") as advance:
+        for done in steps:
+            advance(done)

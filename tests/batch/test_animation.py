@@ -1,0 +1,92 @@
+"""Animations: frames are the stills that they are alone, there whole or not at all, and made once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from culet.batch import animation
+from culet.batch.animation import JOURNAL, Animation, fall, render_frames, times_of, turntable
+from culet.errors import InputError
+from culet.scene import Scene
+from culet.stage import Stage
+from culet.stills import render_stage
+
+DEFAULT = Stage.of(Scene())
+SIZE = 48, 27
+
+
+def film(frames: int = 3, samples: int = 2) -> Animation:
+    return Animation(turntable(DEFAULT, times_of(1, frames)), *SIZE, samples)
+
+
+def files_in(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
+
+
+def test_each_frame_is_the_still_of_its_scene(tmp_path: Path) -> None:
+    asked = film()
+    assert list(render_frames(asked, tmp_path / "new" / "f"))[-1] == 1
+    files = sorted((tmp_path / "new" / "f").glob("*.png"))
+    assert [file.name for file in files] == ["frame-000001.png", "frame-000002.png", "frame-000003.png"]
+    for file, stage in zip(files, asked.stages, strict=True):
+        assert np.array_equal(np.asarray(Image.open(file)), render_stage(stage, *SIZE, samples=2).rgb)
+    assert asked.stages[0].scene == DEFAULT.scene
+    assert asked.stages[1].scene.camera != DEFAULT.scene.camera
+
+
+def test_an_animation_that_was_interrupted_goes_on_and_renders_no_frame_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    list(render_frames(film(4), tmp_path / "whole"))
+    rendered = []
+    render = animation.render_frame
+
+    def counting(asked: Animation, folder: Path, number: int) -> dict[str, object]:
+        rendered.append(number)
+        if rendered == [0, 1, 2]:
+            raise KeyboardInterrupt
+        return render(asked, folder, number)
+
+    monkeypatch.setattr(animation, "render_frame", counting)
+    folder = tmp_path / "f"
+    with pytest.raises(KeyboardInterrupt):
+        list(render_frames(film(4), folder))
+    (folder / "frame-000001.png").unlink()
+    (folder / "frame-000002.png").write_bytes(b"cut off")
+    assert list(render_frames(film(4), folder)) == [0, 0.25, 0.5, 0.75, 1]
+    assert rendered == [0, 1, 2, 0, 1, 2, 3], "what is not there as it was written is rendered again"
+    made, whole = files_in(folder), files_in(tmp_path / "whole")
+    assert {name: data for name, data in made.items() if name != JOURNAL} == {
+        name: data for name, data in whole.items() if name != JOURNAL
+    }
+    assert list(render_frames(film(4), folder)) == [1]
+
+
+def test_another_animation_is_refused_unless_it_begins_anew(tmp_path: Path) -> None:
+    list(render_frames(film(3), tmp_path))
+    was = files_in(tmp_path)
+    for other in (film(2), film(3, samples=3)):
+        with pytest.raises(InputError, match=r"of another animation .* --fresh"):
+            list(render_frames(other, tmp_path))
+        assert files_in(tmp_path) == was
+    list(render_frames(film(2), tmp_path, fresh=True))
+    assert list(files_in(tmp_path)) == ["frame-000001.png", "frame-000002.png", JOURNAL], (
+        "no frame of the other is left"
+    )
+
+
+def test_a_fall_has_the_stone_where_it_is_at_each_frames_time() -> None:
+    stages = fall(DEFAULT, times_of(0.5, 10))
+    heights = [stage.scene.stones[0].position[1] for stage in stages]
+    assert len(heights) == 5
+    assert heights[2] == pytest.approx(heights[0] - 9.81 * 0.2**2 / 2, abs=0.02)  # to a step of the simulation
+
+
+def test_no_frames_or_too_many_are_refused() -> None:
+    for seconds, rate in ((0.001, 30), (1e6, 1000)):
+        with pytest.raises(InputError, match="expected 1 to 100000 frames"):
+            times_of(seconds, rate)
