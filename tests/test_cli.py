@@ -37,6 +37,7 @@ COMMANDS = [
     "grade",
     "sweep",
     "animate",
+    "path",
 ]
 TINY = ("--width", "48", "--height", "27")
 ALL_SKY = {"stones": [], "floor": {"kind": "none"}, "backdrop": {"kind": "none"}}

@@ -36,6 +36,9 @@ static inline maskL mirrored_in_floor(world_t world, rayL *ray, maskL glossy, do
   const realL height = blend(enters, fmax(entry.t * onward.y, splat(0)), splat(0));
   const realL share = blend(enters, scene->floor_reflectance * exp_fast(-height / scene->floor_fade), splat(0));
   EACH (k, 3) radiance->channel[k] *= 1 - share;
+#if RECORDED
+  if (enters) scale_events(world, 0, 1 - share);
+#endif
   ray->weight *= blend(enters, share, splat(1));
   ray->direction = blend3(enters, onward, ray->direction);
   take_up(met, enters, entry);
@@ -102,6 +105,9 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
     --*steps;
     const primaryL primary = primary_rays(world.scene, column + x, row + y, jitter_x, jitter_y);
     rayL ray = {primary.origin, primary.direction, primary.eye, splat(1), unpolarised(primary.direction)};
+#if RECORDED
+    ray.event = NOWHERE;
+#endif
     const maskL all = in_picture(world.scene, column + x, row + y), none = all & !all;
     const int host = world.scene->camera_stone;
     meetingL met = {camera_inside ? all : none, splat(0),

@@ -103,6 +103,9 @@
 #ifndef FEW_MIRRORS // 1: a stone reflects light into few directions, which are kept exactly. Never RUNTIME.
 #define FEW_MIRRORS 0
 #endif
+#ifndef RECORDED // 1: one ray is followed, and what it meets written down: path.cl alone. Never RUNTIME.
+#define RECORDED 0
+#endif
 #ifndef CAMERA_INSIDE // 1: the camera is inside the stone
 #define CAMERA_INSIDE RUNTIME
 #endif

@@ -24,6 +24,9 @@ static inline void note(hits_t *hits, maskL mask, vec3L point, rayL ray, vec3L n
   packet.polarisation = ray.polarisation;
   packet.tag = tag;
   packet.stone = stone;
+#if RECORDED
+  packet.event = ray.event;
+#endif
   const packing_t packing = packing_of(mask);
   const int end = hits->count;
   pack_packet(packing, &packet, hits->number[0] + end, hits->whole[0] + end, HITS);

@@ -24,6 +24,9 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     const crossingL crossing = inner_exit(world, stone, packet.origin, packet.direction, alive);
     tile->segments += count_mask(alive);
     packet.origin = along(packet.origin, crossing.t, packet.direction);
+#if RECORDED
+    const real before = packet.weight[0];
+#endif
     if (ABSORPTION != 0) {
       EACH (k, WEIGHTS)
         packet.weight[k] *=
@@ -32,9 +35,15 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     const realL cos_s = clamp(dot3(packet.direction, crossing.normal), (realL)0, (realL)1);
     const realL squared_a = squared_cosine_in_air(cos_s, eta);
     const maskL leaves = alive & (squared_a > 0);
+#if RECORDED
+    if (alive) packet.event = tell_meeting(world, task, &packet, number, before, crossing.t, crossing.normal);
+#endif
     if (POLARISED || any_lane(leaves)) {
       const realL cos_a = sqrt(fmax(squared_a, (realL)0));
       const splitL parts = meet_boundary(world, &packet, crossing.normal, cos_a, cos_s, squared_a, eta);
+#if RECORDED
+      if (alive) tell_kept(world, packet.event, parts.kept);
+#endif
       if (any_lane(leaves)) {
         polarisationL transmitted = parts.transmitted;
         if (POLARISED) transmitted.axis = outward(stone, transmitted.axis);

@@ -24,11 +24,16 @@ static inline void put_away(world_t world, pools_t *pools, maskL mask, const pac
 }
 
 // Puts off a packet that may meet a stone. What finds no room is counted as cut.
-static inline void put_off(tile_t *tile, pools_t *pools, task_t task, maskL mask, const packetL *packet) {
+static inline void put_off(world_t world, tile_t *tile, pools_t *pools, task_t task, maskL mask,
+                           const packetL *packet) {
   if (has_room(&pools->towards))
     push(&pools->towards, mask, packet);
-  else
+  else {
+#if RECORDED
+    if (mask) tell_end(world, task, packet, 0, black());
+#endif
     lose(tile, mask, packet, over_channels(task, packet));
+  }
 }
 
 // Lets go what leaves a stone's surface at a point of the frame, reflected or from inside. `packet` is as it meets the surface.
@@ -40,7 +45,7 @@ static inline void leave(world_t world, tile_t *tile, pools_t *pools, task_t tas
   outer.polarisation = polarisation;
   scale_weights(&outer, share);
   if (EXCHANGE)
-    put_off(tile, pools, task, mask, &outer);
+    put_off(world, tile, pools, task, mask, &outer);
   else
     put_away(world, pools, mask, &outer);
 }
@@ -70,6 +75,11 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   const chainL eta = eta_of_each(world, task, packet);
   const realL cos_s = cosine_in_stone(cos_a, eta);
   const splitL parts = meet_boundary(world, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
+#if RECORDED
+  packetL told = *packet;
+  if (mask) told.event = tell_entry(world, task, packet, point, normal, parts.kept, glare);
+  packet = &told;
+#endif
   if (glare)
     leave(world, tile, pools, task, packet, point, reflect3(packet->direction, -cos_a, normal), parts.kept,
           parts.reflected, mask);
@@ -81,8 +91,12 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   const maskL goes_on = settle(world, tile, task, &inner, 0, mask, mask & !mask);
   if (has_room_inside(&pools->inside))
     push_inside(world, &pools->inside, goes_on, &inner);
-  else
+  else {
+#if RECORDED
+    if (goes_on) tell_end(world, task, &inner, 0, black());
+#endif
     lose(tile, goes_on, &inner, over_channels(task, &inner));
+  }
 }
 
 // The larger of the pools of what meets no stone next.
@@ -95,19 +109,29 @@ static inline void look_away(world_t world, tile_t *tile, pools_t *pools, pool_t
   maskL taken;
   packetL packet = pop(from, &taken);
   rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
+#if RECORDED
+  ray.event = packet.event;
+  const int first = world.record->count;
+#endif
   maskL towards = taken;
   realL cut = splat(0);
   const radianceL radiance =
       gather(world, &ray, largest_weight(&packet), BY_STONE, 0, &towards, 0, &cut, channels_of(task));
+#if RECORDED
+  weigh_events(world, first, task, &packet);
+#endif
   show(tile, task, taken, &packet, radiance);
   lose(tile, taken & (cut > 0), &packet, cut * over_channels(task, &packet));
   if (REENTRY && any_lane(towards)) {
     packet.origin = ray.origin;
     packet.direction = ray.direction;
     packet.polarisation = ray.polarisation;
+#if RECORDED
+    packet.event = ray.event;
+#endif
     packet.stone = (intL)(NOBODY);
     scale_weights(&packet, ray.weight);
-    put_off(tile, pools, task, towards, &packet);
+    put_off(world, tile, pools, task, towards, &packet);
   }
 }
 

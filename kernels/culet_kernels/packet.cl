@@ -19,6 +19,9 @@ typedef struct {
   realL weight[WEIGHTS];
   polarisationL polarisation;
   intL tag;
+#if RECORDED
+  intL event; // number of the event that it comes from
+#endif
   intL stone; // MANY: its number. Where a ray is at a stone or in it, its origin is in the stone's own measure.
 } packetL;
 
@@ -43,12 +46,18 @@ typedef struct {
     WITH((packet)->polarisation.axis.y)                                                                                \
     WITH((packet)->polarisation.axis.z)                                                                                \
   }
-#define WHOLES (STONES == MANY ? 2 : 1)
+#define WHOLES ((STONES == MANY ? 2 : 1) + RECORDED)
+#if RECORDED
+#define EACH_EVENT(packet, WITH) WITH((packet)->event)
+#else
+#define EACH_EVENT(packet, WITH)
+#endif
 #define EACH_WHOLE(packet, WITH)                                                                                       \
   WITH((packet)->tag)                                                                                                  \
   if (STONES == MANY) {                                                                                                \
     WITH((packet)->stone)                                                                                              \
-  }
+  }                                                                                                                    \
+  EACH_EVENT(packet, WITH)
 
 // Rows that lie `stride` numbers apart. A packet is written whole, and counted as far as it is meant.
 #define PACK_NUMBER(number)                                                                                            \

@@ -5,6 +5,7 @@
 #include "light_map.cl"
 #include "polarisation.cl"
 #include "stones.cl"
+#include "witness.cl"
 
 #define MIRROR_REFLECTANCE ((real)0.8)
 // The report's light: so much from all around, and so much of each light in its shadow.
@@ -21,6 +22,9 @@
 #define BY_CAMERA 1
 
 typedef struct {
+#if RECORDED
+  intL surface;        // of the room
+#endif
   maskL meets;         // floor or walls, not the sky
   maskL reflects;      // a mirror: the ray goes on
   maskL glossy;        // a studio floor, in which the camera sees the stone
@@ -73,6 +77,9 @@ typedef struct {
   realL start;
   realL weight;
   polarisationL polarisation;
+#if RECORDED
+  intL event; // number of the event that it comes from
+#endif
 } rayL;
 
 // Whether floor or walls come before the stone; only where the stone reaches through one of them.
@@ -152,6 +159,9 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
   view.point = ray.origin;
   view.normal = ray.direction;
   view.radiance = black();
+#if RECORDED
+  view.surface = 0;
+#endif
   const int has_map = DECIDED(LIGHT_MAP, scene->has_map);
   const int endless = walls_kind == NONE ? floor_kind == STUDIO_FLOOR : 0;
   const int same = has_map ? 0 : endless;
@@ -179,6 +189,9 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
       centre_across = blend(nearer, splat(scene->map_centre[i][1]), centre_across);
     }
     met |= nearer;
+#if RECORDED
+    view.surface = nearer ? i : view.surface;
+#endif
     const int kind = i == 0 ? floor_kind : walls_kind;
     mirror = kind == MIRROR ? mirror | nearer : mirror & !nearer;
     if (floor_kind == STUDIO_FLOOR) studio = i == 0 ? nearer : studio & !nearer;
@@ -249,6 +262,26 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
   return view;
 }
 
+#if RECORDED
+// What a ray outside sees, as if its weight came to 1 at its beginning.
+static inline int tell_view(world_t world, rayL ray, viewL view, channels_t channels) {
+  happening_t event = event_of(view.meets ? LANDS : SEES, ray.event);
+  set_place(&event, ray.origin, ray.direction, view.normal);
+  event.surface = view.meets ? view.surface : -1;
+  event.weight[0] = event.weight[1] = ray.weight;
+  event.kept = view.reflects ? MIRROR_REFLECTANCE : 0;
+  for (int k = 0; k < channels.count; k++) event.light[k] = ray.weight * view.radiance.channel[k];
+  return append_event(world, event);
+}
+
+static inline void tell_loss(world_t world, rayL ray) {
+  happening_t event = event_of(ENDS, ray.event);
+  set_place(&event, ray.origin, ray.direction, ray.direction);
+  event.weight[0] = event.weight[1] = event.cut = ray.weight;
+  append_event(world, event);
+}
+#endif
+
 // Light in a mirror is followed down to this part of the cut-off, so that what leaves a chain that goes on is seen in
 // full, by way of a few mirrors at least.
 #define MIRROR_CUTOFF ((real)0.1)
@@ -268,6 +301,9 @@ __attribute__((always_inline)) static inline radianceL gather(world_t world, ray
   for (;;) {
     const viewL view = look(world, *ray, active, viewer, backdrop, channels);
     EACH_CHANNEL (k, channels) radiance.channel[k] += blend(active, ray->weight * view.radiance.channel[k], splat(0));
+#if RECORDED
+    if (active) ray->event = tell_view(world, *ray, view, channels);
+#endif
     const int studio = DECIDED(FLOOR, world.scene->floor_kind) == STUDIO_FLOOR;
     if (studio ? viewer == BY_CAMERA : 0) {
       const maskL ends = active & view.glossy;
@@ -290,10 +326,16 @@ __attribute__((always_inline)) static inline radianceL gather(world_t world, ray
       const maskL matters = whole >= cutoff;
       *towards |= heading & matters;
       *cut += blend(heading & !matters, ray->weight, splat(0));
+#if RECORDED
+      if (heading & !matters) tell_loss(world, *ray);
+#endif
       active &= !(heading & matters);
     }
     const maskL faint = active & (whole < MIRROR_CUTOFF * cutoff);
     *cut += blend(faint, ray->weight, splat(0));
+#if RECORDED
+    if (faint) tell_loss(world, *ray);
+#endif
     active &= !faint;
   }
 }

@@ -4,59 +4,9 @@
 #include "packet.cl"
 #include "sky.cl"
 #include "stones.cl"
+#include "task.cl"
 #include "tile.cl"
-
-// What all rays of a pool have in common while it is worked on.
-typedef struct {
-  __global const chain_t *chains; // by group of pixels; of MANY stones those of the first
-  int first_channel;
-  uint seed;                      // of chance
-} task_t;
-
-// How many they are is written out, not kept in the task, so that the compiler knows it in functions that it does not inline.
-static inline channels_t channels_of(task_t task) {
-  const channels_t channels = {task.first_channel, CHANNELS};
-  return channels;
-}
-
-// A quantity of each lane's chain.
-#if SPECTRAL
-#define OF_CHAIN(task, tag, quantity)                                                                                  \
-  by_group(tag, (task).chains[0].quantity, (task).chains[1].quantity, (task).chains[2].quantity,                       \
-           (task).chains[3].quantity)
-static inline realL by_group(intL tag, real first, real second, real third, real fourth) {
-  const maskL odd = widen((tag >> PIXEL_BITS & 1) != 0), high = widen((tag >> PIXEL_BITS & 2) != 0);
-  return blend(high, blend(odd, splat(fourth), splat(third)), blend(odd, splat(second), splat(first)));
-}
-#else
-#define OF_CHAIN(task, tag, quantity) ((task).chains[0].quantity)
-#endif
-
-static inline realL largest_weight(const packetL *packet) {
-  realL largest = packet->weight[0];
-  for (int k = 1; k < WEIGHTS; k++) largest = fmax(largest, packet->weight[k]);
-  return largest;
-}
-
-static inline void scale_weights(packetL *packet, realL factor) {
-  EACH (k, WEIGHTS) packet->weight[k] *= factor;
-}
-
-// What a packet's weight is in a pixel's sum over the three channels.
-static inline realL summed_weight(task_t task, const packetL *packet) {
-  if (WEIGHTS == 3) return packet->weight[0] + packet->weight[1] + packet->weight[2];
-  if (SPECTRAL) return OF_CHAIN(task, packet->tag, summed_share) * packet->weight[0];
-  return CHANNELS * packet->weight[0];
-}
-
-// The most that a packet's weight can be in a pixel's sum over the three channels. Boundaries to come may turn polarisation
-// into intensity.
-static inline realL over_channels(task_t task, const packetL *packet) {
-  const realL weight = summed_weight(task, packet);
-  if (!POLARISED) return weight;
-  const polarisationL p = packet->polarisation;
-  return weight * (1 + sqrt(p.q * p.q + p.u * p.u + p.v * p.v));
-}
+#include "witness.cl"
 
 // Where light ends: in the tile's pixels.
 //
@@ -135,15 +85,25 @@ static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *pa
   if (end_kind == ROULETTE) { // Arvo & Kirk, Particle Transport and Image Synthesis (1990)
     const maskL faint = ends & !used_up, lucky = faint & (chance(task, packet) * world.scene->cutoff < weight);
     scale_weights(packet, blend(lucky, world.scene->cutoff / fmax(weight, splat((real)1e-30)), splat(1)));
+#if RECORDED
+    if (lucky)
+      packet->event = tell_chance(world, task, packet, host != 0, world.scene->cutoff / fmax(weight, (real)1e-30));
+    if (ends & !lucky) tell_end(world, task, packet, host, black());
+#endif
     lose(tile, ends & used_up, packet, over_channels(task, packet));
     return mask & (lucky | !ends);
   }
   if (EXCHANGE ? world.scene->stones > 1 || !world.stones->convex : 0)
     ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
+  radianceL seen = black();
   if (end_kind == SKYLIGHT) {
     const vec3L direction = host ? outward(host, packet->direction) : packet->direction;
-    show(tile, task, ends, packet, sky(world, direction, channels_of(task)));
+    seen = sky(world, direction, channels_of(task));
+    show(tile, task, ends, packet, seen);
   }
+#if RECORDED
+  if (ends) tell_end(world, task, packet, host, seen);
+#endif
   lose(tile, ends, packet, over_channels(task, packet));
   return mask & !ends;
 }

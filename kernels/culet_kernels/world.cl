@@ -4,6 +4,7 @@
 #include "facet_rows.cl"
 #include "mesh.cl"
 #include "parameters.cl"
+#include "record.cl"
 
 // The buffers that make a scene, in the order in which they are the kernel's first arguments. This is the only list of them:
 // the host passes them by these names (rendering/layout.py).
@@ -28,6 +29,10 @@
 
 typedef struct {
   WORLD_BUFFERS(AS_MEMBER)
+#if RECORDED
+  __global record_t *record;
+  __global happening_t *events;
+#endif
 } world_t;
 
 static inline tree_t tree_of(world_t world) {

@@ -156,6 +156,19 @@ class Measure(Message):
     stone: str | None = None
 
 
+class TracePath(Message):
+    """Tell all that becomes of the light of one pixel, or of one ray, of a scene or of what a session shows; the
+    reply's result is a `culet.paths.answer.Path`. `pixel` is x, y, width and height, `ray` an origin and a direction;
+    one of them is given. `wavelengths`, nm, are followed in place of the scene's own."""
+
+    type: Literal["trace_path"] = "trace_path"
+    scene: dict[str, Any] | None = None
+    session: SessionId | None = None
+    pixel: tuple[int, int, int, int] | None = None
+    ray: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    wavelengths: Annotated[tuple[Annotated[float, Field(ge=380, le=780)], ...], Field(max_length=16)] = ()
+
+
 class PutMesh(Message):
     """Parse the mesh or the design in the bytes and keep it under an id; the reply is a DescribedMesh."""
 
@@ -226,6 +239,7 @@ Request = (
     | Grade
     | DrawDiagram
     | Measure
+    | TracePath
     | PutMesh
     | PutSky
     | Cancel

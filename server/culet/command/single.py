@@ -23,6 +23,7 @@ MODULES = {
     "grade": "culet.command.grade",
     "sweep": "culet.command.sweep",
     "animate": "culet.command.animate",
+    "path": "culet.command.path",
 }
 """Where the commands are, in the order in which they are listed. Each module has an `app`."""
 

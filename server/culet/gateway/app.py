@@ -18,6 +18,7 @@ from culet.gateway import (
     drain_routes,
     health,
     login_routes,
+    path_routes,
     problems,
     session_routes,
     stills,
@@ -46,7 +47,18 @@ from culet.version import __version__
 
 log = logging.getLogger(__name__)
 
-PARTS = (login_routes, stills, turntables, session_routes, stone_routes, catalogue, upload_routes, drain_routes, health)
+PARTS = (
+    login_routes,
+    stills,
+    turntables,
+    session_routes,
+    stone_routes,
+    path_routes,
+    catalogue,
+    upload_routes,
+    drain_routes,
+    health,
+)
 NO_PAGE = """<!doctype html><meta charset="utf-8"><title>culet</title>
 <h1>culet runs without its page</h1>
 <p>The <a href="openapi.json">REST interface</a> is here, for instance <a href="api/render.png">a picture</a>."""

@@ -19,7 +19,7 @@ from culet.grading.answer import Report
 from culet.grading.rules import Convention
 from culet.scene import Scene
 from culet.scene.fields import Model
-from culet_protocol.engine import DrawDiagram, Grade, Measure
+from culet_protocol.engine import DrawDiagram, Grade, Measure, TracePath
 
 router = APIRouter(tags=["stones"])
 
@@ -122,24 +122,27 @@ async def proportions_of_session(
 async def _measured(
     http: Request, gateway: Gateway, message: Measure, session: SessionRecord | None = None
 ) -> Proportions:
-    result, _ = await _answered(http, gateway, message, session)
+    result, _ = await answered(http, gateway, message, session)
     return PROPORTIONS.validate_python(result)
 
 
 async def _graded(http: Request, gateway: Gateway, message: Grade, session: SessionRecord | None = None) -> Report:
-    result, _ = await _answered(http, gateway, message, session)
+    result, _ = await answered(http, gateway, message, session)
     return REPORT.validate_python(result)
 
 
 async def _drawn(
     http: Request, gateway: Gateway, message: DrawDiagram, session: SessionRecord | None = None
 ) -> Response:
-    _, drawing = await _answered(http, gateway, message, session)
+    _, drawing = await answered(http, gateway, message, session)
     return Response(bytes(drawing), media_type=SVG)
 
 
-async def _answered(
-    http: Request, gateway: Gateway, message: Grade | DrawDiagram | Measure, session: SessionRecord | None
+async def answered(
+    http: Request,
+    gateway: Gateway,
+    message: Grade | DrawDiagram | Measure | TracePath,
+    session: SessionRecord | None,
 ) -> tuple[dict[str, Any], bytes | memoryview]:
     """The engine's answer, about the session if there is one, in a place of the client; grades in the client's turn."""
     client = client_of(http.scope)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -93,18 +95,33 @@ def chains_of_stones(scene: Scene) -> tuple[list[int], list[StoneSettings]]:
     return numbers, sets
 
 
-def chain_table(scene: Scene, sample: int, real: Real, *, common: bool) -> NDArray[np.void]:
+def chain_table(
+    scene: Scene, sample: int, real: Real, *, common: bool, wavelengths: Sequence[float] = ()
+) -> NDArray[np.void]:
     """(S N,) one row a chain, N for each set of `chains_of_stones`. `common`: the channels share one index; else each
     has its own.
 
     A spectral scene has `bands` wavelengths for each of the GROUPS of pixels instead, which take the rows by turns;
-    they move within their strata from sample to sample. Absorption is per radius of the stone.
+    they move within their strata from sample to sample. Of `wavelengths` (nm) that are given in their place all groups
+    take each, with equal shares of every channel. Absorption is per radius of the stone.
     """
-    return np.concatenate([_chains(scene, stone, sample, real, common) for stone in chains_of_stones(scene)[1]])
+    return np.concatenate(
+        [_chains(scene, stone, sample, real, common, wavelengths) for stone in chains_of_stones(scene)[1]]
+    )
 
 
-def _chains(scene: Scene, stone: StoneSettings, sample: int, real: Real, common: bool) -> NDArray[np.void]:
-    material, scale = material_of(stone.material), stone.scale
+def wavelengths_of(scene: Scene, sample: int) -> NDArray[np.float64]:
+    """(N,) nm of the rows of a set of `chain_table`, of a spectral scene."""
+    return bands(band_count(scene), offset=(0.5 + sample * GOLDEN) % 1, groups=GROUPS).wavelength
+
+
+def _chains(
+    scene: Scene, stone: StoneSettings, sample: int, real: Real, common: bool, wavelengths: Sequence[float]
+) -> NDArray[np.void]:
+    scale = stone.scale
+    if wavelengths:
+        repeated = np.repeat(np.array(wavelengths, dtype=float), GROUPS)
+        return _spectral(scene, stone, repeated, np.full((len(repeated), 3), 1 / len(wavelengths)), real)
     if not is_spectral(scene):
         table = np.zeros(1 if common and scene.optics.estimator == "chain" else 3, struct("chain_t", real))
         table["eta"] = channel_indices(stone.material)[: len(table)]
@@ -112,12 +129,19 @@ def _chains(scene: Scene, stone: StoneSettings, sample: int, real: Real, common:
         table["share"] = np.eye(3)[: len(table)]
         return table
     spectrum = bands(band_count(scene), offset=(0.5 + sample * GOLDEN) % 1, groups=GROUPS)
-    table = np.zeros(len(spectrum.wavelength), struct("chain_t", real))
-    table["eta"] = material.index(spectrum.wavelength, clamp=True)
-    own = material.absorption_per_mm(spectrum.wavelength) * scene.millimetres
-    table["absorption"] = scale * (own + asked_absorption(stone, spectrum.wavelength))
-    table["share"] = spectrum.weights
-    table["summed_share"] = abs(spectrum.weights).sum(axis=1)
+    return _spectral(scene, stone, spectrum.wavelength, spectrum.weights, real)
+
+
+def _spectral(
+    scene: Scene, stone: StoneSettings, wavelength: NDArray[np.float64], shares: NDArray[np.float64], real: Real
+) -> NDArray[np.void]:
+    material, scale = material_of(stone.material), stone.scale
+    table = np.zeros(len(wavelength), struct("chain_t", real))
+    table["eta"] = material.index(wavelength, clamp=True)
+    own = material.absorption_per_mm(wavelength) * scene.millimetres
+    table["absorption"] = scale * (own + asked_absorption(stone, wavelength))
+    table["share"] = shares
+    table["summed_share"] = abs(shares).sum(axis=1)
     return table
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_spe
 from culet.rendering.device import Device, Real
 from culet.rendering.features import Features
 from culet.rendering.footprint import out_of_sight
+from culet.rendering.layout import struct
 from culet.rendering.light.light_map import BoundMap
 from culet.rendering.lit_room import set_light_map
 from culet.rendering.parameters import parameters
@@ -35,15 +37,22 @@ class Inputs:
         features: Features,
         real: Real,
         light_map: BoundMap | None = None,
+        wavelengths: Sequence[float] = (),
     ) -> None:
+        """`wavelengths`, nm, in place of the scene's own; then the program must be a spectral one."""
         scene, stones = stage.scene, placed_stones(stage)
         projection = project(scene, stones, width, height)
         # Stones that are left out still decide where the frame's origin is, so that all else keeps its bits.
         shown = [] if out_of_sight(scene, stones, projection, features, width, height) else grouped(stones)
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
+        self._wavelengths = tuple(wavelengths)
+        self.shown = tuple(shown)
+        """The stones, by their rows in the table."""
         self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
         self._sample = -1
+        self.chains = np.zeros(0, struct("chain_t", real))
+        """The table of the sample that was asked for last."""
         self._struct = parameters(stage, shown, projection, width, height, real)
         self._light_map = light_map
         if light_map is not None:
@@ -75,11 +84,12 @@ class Inputs:
         """The kernels' arguments for that sample."""
         if self._sample < 0 or (self._changes and sample != self._sample):
             scene = self._scene if self._scene.stones else Scene()
-            chains = chain_table(scene, sample, self._real, common=self._common)
+            chains = chain_table(scene, sample, self._real, common=self._common, wavelengths=self._wavelengths)
             sets = len(chains_of_stones(self._scene)[1])
             self._struct["sample"], self._struct["chains"] = sample, len(chains) // max(1, sets)
             stones = self._table.stones.copy()
             stones["first_chain"] *= self._struct["chains"]
+            self.chains = chains
             self._uploaded = self._upload(self._struct), self._upload(stones), self._upload(chains)
             self._sample = sample
         struct, table, chains = self._uploaded
@@ -87,6 +97,11 @@ class Inputs:
             "scene": struct, "stones": table, **self._fixed, "chains": chains, "panorama": self._panorama,
             "light_map": self._light_map.buffer if self._light_map else None,
         }  # fmt: skip
+
+    @property
+    def parameters(self) -> NDArray[np.void]:
+        """What `scene` holds: of the sample that was asked for last."""
+        return self._struct.copy()
 
     @property
     def chain_steps(self) -> int:

@@ -17,7 +17,9 @@ from engine.peer import PATIENCE, Peer
 from engine.process.test_failures import FailingRenderer
 
 
-@pytest.mark.parametrize("request_", [{"type": "render"}, {"type": "grade"}, {"type": "draw_diagram"}])
+@pytest.mark.parametrize(
+    "request_", [{"type": "render"}, {"type": "grade"}, {"type": "draw_diagram"}, {"type": "trace_path"}]
+)
 async def test_work_for_a_gateway_that_is_gone_is_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request_: dict[str, Any]
 ) -> None:

@@ -5,6 +5,21 @@ import type { JsonObject } from "@culet/protocol/messages";
 export type Scene = JsonObject;
 
 /**
+ * Light of one colour, which is followed by itself.
+ */
+export interface Chain {
+  wavelength: number | null;
+  channel: ("red" | "green" | "blue") | null;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  colour: [number, number, number];
+  indices: {
+    [k: string]: number;
+  };
+}
+/**
  * A named cut; `proportions` is the JSON schema of what it can be told, with what is `usual`.
  */
 export interface Cut {
@@ -146,6 +161,126 @@ export interface Materials {
 export interface MeshAnswer {
   id: string;
   description: DescribedMesh;
+}
+/**
+ * Of the pixel's light: where it comes from.
+ */
+export interface Part {
+  meets: "lamp" | "sky" | "head" | "backdrop" | "floor" | "left-wall" | "middle-wall" | "right-wall" | "cut" | "untold";
+  number: number | null;
+  side: ("above" | "below" | "left" | "right" | "ahead" | "behind") | null;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  light: [number, number, number];
+  share: number;
+}
+/**
+ * One chain at one step.
+ */
+export interface Pass {
+  chain: number | null;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  start: [number, number, number];
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  point: [number, number, number];
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  direction: [number, number, number];
+  weight_before: number;
+  weight: number;
+  cut: number;
+  kept: number;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  light: [number, number, number];
+  length?: number | null;
+  incidence_degrees?: number | null;
+  refraction_degrees?: number | null;
+  critical_degrees?: number | null;
+  reflectance?: Reflectance | null;
+  polarisation?: number | null;
+}
+/**
+ * Of a stone's surface at that angle.
+ */
+export interface Reflectance {
+  s: number;
+  p: number;
+  unpolarised: number;
+}
+/**
+ * All light of one pixel, in one sample, or of one ray.
+ */
+export interface Path {
+  pixel: [number, number, number, number] | null;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  origin: [number, number, number];
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  direction: [number, number, number];
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  value: [number, number, number];
+  cut: number;
+  chains: Chain[];
+  steps: Step[];
+  parts: Part[];
+  left_out: number;
+  poses: {
+    [k: string]: Pose;
+  };
+  polarised: boolean;
+}
+/**
+ * One place in the tree of a pixel's light: the chains that go there are together still.
+ */
+export interface Step {
+  number: number;
+  parent: number | null;
+  kind: "enters" | "meets" | "lands" | "sees" | "ends" | "chance";
+  passes: Pass[];
+  stone?: string | null;
+  facet?: number | null;
+  facet_name?: string | null;
+  tier?: number | null;
+  inside?: boolean;
+  elevation_degrees?: number | null;
+  parts?: Part[];
+}
+/**
+ * Of a stone, in the world.
+ */
+export interface Pose {
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  position: [number, number, number];
+  /**
+   * @minItems 4
+   * @maxItems 4
+   */
+  orientation: [number, number, number, number];
+  scale: number;
 }
 /**
  * A named scene.

@@ -31,6 +31,7 @@ WAITED_FOR = (
     protocol.Grade,
     protocol.DrawDiagram,
     protocol.Measure,
+    protocol.TracePath,
     protocol.PutMesh,
     protocol.PutSky,
 )

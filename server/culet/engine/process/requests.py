@@ -118,6 +118,8 @@ class Requests:
                 return {}, await self._stones.diagram(request)
             case protocol.Measure():
                 return await self._stones.measure(request), None
+            case protocol.TracePath():
+                return await self._stones.path(request), None
             case protocol.PutMesh():
                 return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
             case protocol.PutSky():

@@ -1,10 +1,10 @@
-"""What is asked about one stone: its grades, its proportions, its cutting diagram."""
+"""What is asked about one stone, or one ray: grades, proportions, a cutting diagram, the way of the light."""
 
 from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from typing import Any, TypeVar
@@ -24,18 +24,22 @@ from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
 from culet.grading.size import size_of
 from culet.grading.sums import LightSums
+from culet.paths.answer import Path
+from culet.paths.asked import Pixel, Ray, answered
+from culet.paths.recorder import PathRecorder
 from culet.rendering.device import open_device
 from culet.rendering.features import MOST_HALF_SPACES
+from culet.rendering.light.effort import Effort
 from culet.scene import Scene
 from culet.stage import Library, Stage
-from culet_protocol.engine import DrawDiagram, Grade, Measure
+from culet_protocol.engine import DrawDiagram, Grade, Measure, TracePath
 
 T = TypeVar("T")
 
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
-    ends with its piece. Diagrams one at a time in another thread."""
+    ends with its piece. Diagrams one at a time in another thread, and rays in a third."""
 
     def __init__(self, sessions: OpenSessions, library: Library, limits: Limits) -> None:
         """Sessions and uploads that requests name."""
@@ -44,7 +48,9 @@ class StoneRequests:
         self._seconds = limits.grade_seconds
         self._grading = ThreadPoolExecutor(1, "grades")
         self._drawing = ThreadPoolExecutor(1, "diagrams")
+        self._tracing = ThreadPoolExecutor(1, "paths")
         self._sums: LightSums | None = None
+        self._recorder: PathRecorder | None = None
 
     async def grade(self, request: Grade) -> dict[str, Any]:
         """A report, of what was reached within the time of one; InputError, NotFoundError."""
@@ -73,12 +79,26 @@ class StoneRequests:
         stage = await self._staged(request)
         return await _in(self._drawing, _measured, stage, request.stone)
 
+    async def path(self, request: TracePath) -> dict[str, Any]:
+        """All that becomes of a pixel's light, or of a ray's; InputError, NotFoundError. What a session shows is soon
+        another scene, so that its light map is made in one pass."""
+        asked = _asked(request)
+        stage = await self._staged(request)
+        effort = Effort.PATIENT if request.session is None else Effort.RESTING
+        path = await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort)
+        return asdict(path)
+
+    def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> Path:
+        if self._recorder is None:
+            self._recorder = PathRecorder(open_device())
+        return answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
+
     def _light_sums(self) -> LightSums:
         if self._sums is None:
             self._sums = LightSums(open_device())
         return self._sums
 
-    async def _staged(self, request: Grade | DrawDiagram | Measure) -> Stage:
+    async def _staged(self, request: Grade | DrawDiagram | Measure | TracePath) -> Stage:
         if (request.scene is None) == (request.session is None):
             raise InputError("expected either a scene or a session, got both or neither", "scene")
         if request.session is None:
@@ -91,6 +111,14 @@ class StoneRequests:
 
 async def _in(thread: ThreadPoolExecutor, work: Callable[..., T], *given: Any) -> T:  # noqa: ANN401 - of any work
     return await asyncio.get_running_loop().run_in_executor(thread, work, *given)
+
+
+def _asked(request: TracePath) -> Pixel | Ray:
+    if request.pixel is not None and request.ray is None:
+        return Pixel(*request.pixel)
+    if request.ray is not None and request.pixel is None:
+        return Ray(*request.ray)
+    raise InputError("pixel: expected either a pixel or a ray, got both or neither", "pixel")
 
 
 def _next(reports: Iterator[Report]) -> tuple[Report | None, float]:

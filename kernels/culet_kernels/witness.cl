@@ -1,0 +1,117 @@
+// Who writes events down where a single ray is followed, which takes a packet of one lane. Other programs have none of it.
+#ifndef CULET_WITNESS
+#define CULET_WITNESS
+#include "stones.cl"
+#include "task.cl"
+
+#if RECORDED
+// Appends an event; returns its number.
+static inline int append_event(world_t world, happening_t event) {
+  const int number = world.record->count++;
+  if (number >= world.record->most) return UNTOLD;
+  world.events[number] = event;
+  return number;
+}
+
+static inline happening_t event_of(int kind, int parent) {
+  happening_t event = {.kind = kind, .parent = parent, .stone = NOBODY, .chain = -1, .surface = -1};
+  return event;
+}
+
+static inline void set_place(happening_t *event, vec3L point, vec3L direction, vec3L normal) {
+  event->point[0] = point.x, event->point[1] = point.y, event->point[2] = point.z;
+  event->direction[0] = direction.x, event->direction[1] = direction.y, event->direction[2] = direction.z;
+  event->normal[0] = normal.x, event->normal[1] = normal.y, event->normal[2] = normal.z;
+}
+
+// What happens to a packet's ray, at a place of the frame.
+static inline happening_t event_of_packet(world_t world, task_t task, const packetL *packet, int kind) {
+  happening_t event = event_of(kind, packet->event);
+  event.chain = (int)(task.chains - world.chains) + (packet->tag >> PIXEL_BITS & (GROUPS - 1));
+  event.stone = STONES == MANY ? packet->stone : 0;
+  event.weight[0] = event.weight[1] = packet->weight[0];
+  event.polarisation[0] = packet->polarisation.q;
+  event.polarisation[1] = packet->polarisation.u;
+  event.polarisation[2] = packet->polarisation.v;
+  return event;
+}
+
+// Light that meets a stone from outside.
+static inline int tell_entry(world_t world, task_t task, const packetL *packet, vec3L point, vec3L normal, real kept,
+                             int glare) {
+  happening_t event = event_of_packet(world, task, packet, ENTERS);
+  set_place(&event, point, packet->direction, normal);
+  event.kept = kept;
+  event.surface = glare; // whether what is reflected is followed
+  return append_event(world, event);
+}
+
+// Light that meets a stone's surface from inside, after a way there.
+static inline int tell_meeting(world_t world, task_t task, const packetL *packet, int number, real weight, real length,
+                               vec3L normal) {
+  __constant const stone_t *stone = world.stones + number;
+  happening_t event = event_of_packet(world, task, packet, MEETS);
+  event.stone = number;
+  event.weight[0] = weight;
+  event.length = length * stone->radius;
+  event.kept = 1;
+  set_place(&event, from_own(stone, outward(stone, packet->origin)), outward(stone, packet->direction),
+            outward(stone, normal));
+  return append_event(world, event);
+}
+
+static inline void tell_kept(world_t world, int number, real kept) {
+  if (number >= 0) world.events[number].kept = kept;
+}
+
+// Weight that is dropped, and what is shown in its place.
+static inline void tell_end(world_t world, task_t task, const packetL *packet, __constant const stone_t *host,
+                            radianceL seen) {
+  happening_t event = event_of_packet(world, task, packet, ENDS);
+  event.inside = host != 0;
+  event.cut = over_channels(task, packet);
+  const vec3L origin = host ? from_own(host, outward(host, packet->origin)) : packet->origin;
+  const vec3L direction = host ? outward(host, packet->direction) : packet->direction;
+  set_place(&event, origin, direction, direction);
+  for (int k = 0; k < CHANNELS; k++) {
+    const real light = packet->weight[min(k, WEIGHTS - 1)] * seen.channel[k];
+    event.light[task.first_channel + k] = SPECTRAL ? OF_CHAIN(task, packet->tag, share[k]) * light : light;
+  }
+  append_event(world, event);
+}
+
+// A faint chain that goes on with more weight.
+static inline int tell_chance(world_t world, task_t task, const packetL *packet, int inside, real factor) {
+  happening_t event = event_of_packet(world, task, packet, CHANCE);
+  event.inside = inside;
+  event.kept = factor;
+  event.weight[0] /= fmax(factor, (real)1e-30);
+  return append_event(world, event);
+}
+
+// What was written down of a ray outside as if its weight were 1, from this number on, is a packet's. Its radiance is by the
+// task's channels.
+static inline void weigh_events(world_t world, int first, task_t task, const packetL *packet) {
+  for (int number = first; number < min(world.record->count, world.record->most); number++) {
+    __global happening_t *event = world.events + number;
+    real light[3] = {0, 0, 0};
+    for (int k = 0; k < CHANNELS; k++) {
+      const real own = packet->weight[min(k, WEIGHTS - 1)] * event->light[k];
+      light[task.first_channel + k] = SPECTRAL ? OF_CHAIN(task, packet->tag, share[k]) * own : own;
+    }
+    for (int k = 0; k < 3; k++) event->light[k] = light[k];
+    event->cut *= over_channels(task, packet);
+    event->weight[0] *= packet->weight[0];
+    event->weight[1] *= packet->weight[0];
+    event->chain = event_of_packet(world, task, packet, SEES).chain;
+  }
+}
+
+// Weight and light of what was written down from this number on, times a factor.
+static inline void scale_events(world_t world, int first, real factor) {
+  for (int number = first; number < min(world.record->count, world.record->most); number++)
+    for (int k = 0; k < 3; k++) world.events[number].light[k] *= factor;
+}
+#endif
+
+#endif

@@ -1,0 +1,1 @@
+"""One ray, made visible: what becomes of the light of a pixel, event by event."""

@@ -1,0 +1,192 @@
+"""Follows the light of one pixel by the renderer's own chains, and keeps what each of them met."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+from numpy.typing import NDArray
+
+from culet.errors import SceneError
+from culet.rendering import kernel_cache
+from culet.rendering.build import Variant, build
+from culet.rendering.chains import GROUPS, first_sample, is_spectral, wavelengths_of
+from culet.rendering.compiling import compiling
+from culet.rendering.device import Device, Real
+from culet.rendering.features import ESTIMATOR, Features, features_of
+from culet.rendering.inputs import Inputs
+from culet.rendering.layout import buffers, constants, struct
+from culet.rendering.light.effort import Effort
+from culet.rendering.light.lighting import Lighting
+from culet.rendering.making import alone
+from culet.rendering.placed_stone import PlacedStone
+from culet.rendering.projection import Projection, project
+from culet.rendering.renderer import jitter
+from culet.stage import Stage
+
+EVENTS = 4096
+"""That are kept of a pixel, at most. A brilliant's light has some 140, of sampled wavelengths up to 1000."""
+STEPS = 2**17
+"""Of a launch: some tens of milliseconds."""
+LAUNCHES = 64
+"""At most, after which a pixel's light is given up: some seconds."""
+LIGHT_SECONDS = 0.05
+"""s of a launch that makes a light map."""
+KINDS = constants("record.cl")
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """What the kernel wrote down of a pixel, with what it takes to read it."""
+
+    stage: Stage
+    """As it was seen."""
+    events: NDArray[np.void]
+    """(N,) `happening_t` of record.cl, in the order in which they happened; no event comes before its parent."""
+    value: NDArray[np.float64]
+    """(3,) the pixel's radiance in one sample, linear."""
+    cut: float
+    """Weight that was dropped, mean of the channels."""
+    left_out: int
+    """Events for which there was no room."""
+    stones: tuple[PlacedStone, ...]
+    """By their numbers in the events."""
+    parameters: NDArray[np.void]
+    """What the kernel knew of the scene, `parameters_t`."""
+    projection: Projection
+    wavelengths: tuple[float, ...] | None
+    """nm, of each chain; None: of the three channels."""
+    chains: NDArray[np.void]
+    """(S N,) `chain_t`: N rows for each set of stones."""
+    polarised: bool
+    """Whether chains carry the polarisation of light."""
+    pixel: tuple[int, int, int, int]
+    """Its column and row, of a picture of that width and height."""
+
+
+class PathRecorder:
+    """Of one device. One thread at a time may ask."""
+
+    def __init__(self, device: Device, real: Real = np.float32) -> None:
+        """Programs are built when they are first needed."""
+        self._device, self._real = device, real
+        self._pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(device.queue))
+        self._lighting = Lighting(device, self._pool)
+        self._programs: dict[Features, Any] = {}
+
+    def record(
+        self,
+        stage: Stage,
+        width: int,
+        height: int,
+        column: int,
+        row: int,
+        *,
+        wavelengths: Sequence[float] = (),
+        effort: Effort = Effort.PATIENT,
+    ) -> Record:
+        """The first sample of a pixel of a picture of that size, or of `wavelengths` (nm) in place of the scene's own.
+
+        SceneError for the classic estimator, which follows no chains, and for light that has no end.
+        """
+        needed = features_of(stage)
+        if needed.estimator != ESTIMATOR["chain"]:
+            raise SceneError(
+                f"optics.estimator: expected chain, whose light is followed event by event, got "
+                f"{stage.scene.optics.estimator}",
+                "optics.estimator",
+            )
+        stage = first_sample(stage)
+        spectral = bool(wavelengths) or is_spectral(stage.scene)
+        features = replace(needed.general, spectral=int(spectral), few_mirrors=needed.few_mirrors)
+        try:
+            return self._record(stage, features, (width, height), (column, row), wavelengths, effort)
+        finally:
+            self._lighting.forget()
+            self._pool.free_held()
+
+    def _record(
+        self,
+        stage: Stage,
+        features: Features,
+        size: tuple[int, int],
+        pixel: tuple[int, int],
+        wavelengths: Sequence[float],
+        effort: Effort,
+    ) -> Record:
+        light = self._lighting.of(stage) if features_of(stage).light_map != 0 else None
+        if light is not None:
+            for _ in light.pieces(stage.scene.optics.caustics_cutoff, effort, LIGHT_SECONDS, first=True):
+                pass
+        bound = None if light is None else light.bound
+        inputs = Inputs(self._device, stage, *size, features, self._real, bound, wavelengths)
+        given = inputs.of_sample(0)
+        x, y = jitter(0, stage.scene.sampling.filter)
+        kernel, kept_bytes = self._program(features)
+        queue, flags = self._device.queue, cl.mem_flags
+        head = np.zeros((), struct("record_t", self._real, "record.cl"))
+        head["most"] = EVENTS
+        happening = struct("happening_t", self._real, "record.cl")
+        record = cl.Buffer(self._device.context, flags.READ_WRITE | flags.COPY_HOST_PTR, hostbuf=head)
+        events, kept = self._allocate(EVENTS * happening.itemsize), self._allocate(kept_bytes)
+        for launch in range(LAUNCHES):
+            kernel(
+                queue, (1,), (1,), *(given[name] for name in buffers()), record, events, *map(np.int32, pixel),
+                np.float64(x), np.float64(y), kept, np.int32(launch == 0), np.int32(STEPS),
+            )  # fmt: skip
+            cl.enqueue_copy(queue, head, record)
+            if head["done"]:
+                break
+        else:
+            raise SceneError(
+                f"expected light that comes to its end within {LAUNCHES * STEPS} steps, got more: a higher "
+                f"optics.cutoff or fewer max_bounces make it end",
+                "optics.cutoff",
+            )
+        count = int(head["count"])
+        found = np.zeros(min(count, EVENTS), happening)
+        if len(found):
+            cl.enqueue_copy(queue, found, events)
+        return Record(
+            stage=stage,
+            events=found,
+            value=head["radiance"].astype(float),
+            cut=float(head["cut"]) / 3,
+            left_out=max(0, count - EVENTS),
+            stones=inputs.shown,
+            parameters=inputs.parameters,
+            projection=project(stage.scene, inputs.shown, *size),
+            wavelengths=_wavelengths(stage, features, wavelengths),
+            chains=inputs.chains,
+            polarised=bool(features.polarised),
+            pixel=(*pixel, *size),
+        )
+
+    def _allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
+        return self._pool.allocate(size)
+
+    def _program(self, features: Features) -> tuple[Any, int]:
+        """The kernel, and the bytes that it keeps between launches."""
+        found = self._programs.get(features)
+        if found is None:
+            options = [*Variant(lanes=1, real=self._real).options, *features.options]
+            with compiling(), alone(kernel_cache.folder(), f"path.cl {options}"):
+                program = build(self._device, "path.cl", options)
+                size = np.zeros(1, np.int32)
+                target = cl.Buffer(self._device.context, cl.mem_flags.READ_WRITE, size.nbytes)
+                cl.Kernel(program, "path_bytes")(self._device.queue, (1,), (1,), target)
+                cl.enqueue_copy(self._device.queue, size, target)
+            found = self._programs[features] = cl.Kernel(program, "path"), int(size[0])
+        return found
+
+
+def _wavelengths(stage: Stage, features: Features, given: Sequence[float]) -> tuple[float, ...] | None:
+    """Of each chain's row."""
+    if not features.spectral:
+        return None
+    if given:
+        return tuple(float(wavelength) for wavelength in given for _ in range(GROUPS))
+    return tuple(wavelengths_of(stage.scene, 0).tolist())
