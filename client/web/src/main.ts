@@ -24,6 +24,7 @@ import { afterPainting, Screen } from "./picture/screen";
 import { ShownPicture } from "./picture/shown-picture";
 import { Whereabouts } from "./picture/whereabouts";
 import { exposeVisit } from "./probe";
+import { RayMode } from "./ray/ray-mode";
 import { SceneStrip } from "./scenes/scene-strip";
 import { Findings } from "./session/findings";
 import { OpenedFiles } from "./session/recovery";
@@ -72,6 +73,7 @@ const visit = new Visit(
       signs.arrived();
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
       chosen.shown(frame.step, arrival.time);
+      ray.shown();
       if (!seen) return;
       meter.take(frame, arrival);
       clips.take(frame, arrival.time);
@@ -147,6 +149,12 @@ const turntable = new Turntable(
     if (visit.state.steers) visit.viewer?.stream.send(turn);
   },
 );
+const ray = new RayMode({
+  visit,
+  canvas,
+  complaints,
+  changed: (on) => element("main", HTMLElement).classList.toggle("tracing", on),
+});
 const clips = new Clips({
   task: (text, button, end) => toasts.task(text, button, end),
   recording: (on) => panel.recording(on),
@@ -154,6 +162,7 @@ const clips = new Clips({
 const page = {
   showKeys: () => keyCard.toggle(),
   hideAll: () => bareness.toggle(),
+  traceRay: () => attempt(() => ray.toggle()),
   moved: () => turntable.rest(performance.now()),
   note: (text: string) => void toasts.note(text),
 };
@@ -255,7 +264,7 @@ if (!embedding.ui) bareness.stay();
 if (embedding.rotate !== 0) requestAnimationFrame(turnOn);
 listenToKeys(window, perform);
 listenToDrops(window, open, (text) => complaints.tell(text));
-steer({ canvas, screen, visit, chosen, performing, turntable, bareness, embedding });
+steer({ canvas, screen, visit, chosen, performing, turntable, bareness, embedding, ray });
 window.addEventListener("keydown", ({ key }) => {
   if (key === "Escape" && bareness.on) bareness.toggle();
 });

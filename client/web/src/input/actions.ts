@@ -21,7 +21,7 @@ export type Effect =
   | { kind: "copy"; what: "picture" | "link" }
   | { kind: "clip"; of: "last" | "next" }
   | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
-  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" };
+  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" };
 
 type Name = keyof Words["actions"];
 
@@ -108,6 +108,7 @@ export const ACTIONS: readonly Action[] = [
   letter("copy_link", "K", { kind: "copy", what: "link" }),
   letter("clip_last", "B", { kind: "clip", of: "last" }),
   letter("clip_next", "N", { kind: "clip", of: "next" }),
+  letter("ray", "T", { kind: "page", command: "traceRay" }),
   key("keys", "?", "F1", { kind: "page", command: "showKeys" }),
   letter("hide", "H", { kind: "page", command: "hideAll" }),
   letter("full", "E", { kind: "page", command: "fillScreen" }),

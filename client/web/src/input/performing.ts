@@ -14,6 +14,8 @@ import { type Move, movesOf } from "./moves";
 export interface PageCommands {
   showKeys: () => void;
   hideAll: () => void;
+  /** Turn the mode on or off in which a click draws a ray. */
+  traceRay: () => void;
   /** Something moves by hand. */
   moved: () => void;
   /** Tell the user something that passes. */
@@ -82,7 +84,7 @@ export class Performing {
     return of === "last" ? this.clips.last() : this.clips.record();
   }
 
-  private onPage(command: "showKeys" | "hideAll" | "fillScreen"): void {
+  private onPage(command: "showKeys" | "hideAll" | "fillScreen" | "traceRay"): void {
     if (command === "fillScreen") this.complaints.attempt(fillScreen);
     else this.page[command]();
   }

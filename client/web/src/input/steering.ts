@@ -3,6 +3,7 @@
 import type { ChosenStone } from "../picture/chosen-stone";
 import type { Embedding, Turntable } from "../picture/embedding";
 import type { Screen } from "../picture/screen";
+import type { RayMode } from "../ray/ray-mode";
 import type { Visit } from "../session/visit";
 import type { Bareness } from "../signs/bareness";
 import { idsOf } from "../stones/stones";
@@ -20,9 +21,20 @@ export interface Steered {
   turntable: Turntable;
   bareness: Bareness;
   embedding: Embedding;
+  ray: RayMode;
 }
 
-export function steer({ canvas, screen, visit, chosen, performing, turntable, bareness, embedding }: Steered): void {
+export function steer({
+  canvas,
+  screen,
+  visit,
+  chosen,
+  performing,
+  turntable,
+  bareness,
+  embedding,
+  ray,
+}: Steered): void {
   const pick = (x: number, y: number, told?: (id: string | null) => void) => {
     const at = placeOf(x, y, screen.area);
     chosen.pick(at.x, at.y, told);
@@ -41,6 +53,7 @@ export function steer({ canvas, screen, visit, chosen, performing, turntable, ba
       turntable.toggle();
       if (!embedding.ui) return;
       if (bareness.on) bareness.toggle();
+      else if (ray.on) ray.ask(placeOf(x, y, screen.area));
       else if (idsOf(visit.scene).length > 1) pick(x, y);
     },
     hand,

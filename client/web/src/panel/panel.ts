@@ -104,6 +104,7 @@ export class Panel {
     this.grades = new GradePanel(grades, actions.grades);
     this.fall = new FallPanel(fall, actions.patch, actions.clamped);
     this.addFiles(files);
+    this.addButton(stone, actionNamed("ray"));
     this.addButton(page, actionNamed("keys"));
     this.addButton(page, actionNamed("hide"));
     this.addButton(page, actionNamed("full")).show(document.fullscreenEnabled);

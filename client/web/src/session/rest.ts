@@ -13,6 +13,7 @@ import type {
   Material,
   Materials,
   MeshAnswer,
+  Path,
   Preset,
   Presets,
   Proportions,
@@ -167,6 +168,20 @@ export async function grades(session: string, stone: string, tilt: boolean, sign
 /** The proportions of the only stone of a scene. */
 export async function proportions(scene: JsonObject): Promise<Proportions> {
   return (await (await request("api/design/proportions", post({ scene }))).json()) as Proportions;
+}
+
+/** All that becomes of the light of a pixel of what a session shows. */
+export async function path(session: string, pixel: Pixel, signal: AbortSignal): Promise<Path> {
+  const query = new URLSearchParams(Object.entries(pixel).map(([name, value]) => [name, String(value)]));
+  return (await request(`api/sessions/${session}/path?${query}`, { signal })).json();
+}
+
+/** Of a picture of that size, from its upper left corner. */
+export interface Pixel {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
 }
 
 /** Address of the cutting diagram of a session's stone. */
