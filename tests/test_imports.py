@@ -131,16 +131,21 @@ def declared(requirements: list[str]) -> set[str]:
     return {re.sub(r"[-_.]+", "-", re.split(r"[^\w.-]", each, maxsplit=1)[0]).lower() for each in requirements}
 
 
+OF_VIDEO = {"culet.engine.painting.video", "culet_client.film", "culet_client.video"}
+"""Nothing else needs PyAV, and these do without until they are asked for video."""
+
+
 def test_whatever_is_imported_is_declared() -> None:
     """Another package may need it today, and not tomorrow."""
     project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
     always = declared(project["dependencies"])
     for_studies = always | declared(project["optional-dependencies"]["study"] + ["mitsuba"])
+    for_video = always | declared(project["optional-dependencies"]["video"])
     own = {*PACKAGES, *sys.stdlib_module_names}
     distributions = importlib.metadata.packages_distributions()
     missing = set()
     for module, file in [item for package in PACKAGES for item in sources(package).items()]:
-        allowed = for_studies if room(module) == "culet.study" else always
+        allowed = for_studies if room(module) == "culet.study" else for_video if module in OF_VIDEO else always
         for name in {of.partition(".")[0] for of, _ in imported(file.read_text(encoding="utf-8"))} - own:
             if not declared(distributions.get(name, [name])) & allowed:
                 missing.add((name, module))

@@ -18,12 +18,15 @@ from culet_client.image import Image
 from culet_client.rest import Rest
 from culet_client.stream import ControlStream
 from culet_client.subscription import FrameSubscription
+from culet_client.video import VideoDecoder, asked_of, decoders
 from culet_protocol.engine import CloseSession, Control, Demand, OpenSession
 from culet_protocol.frame import Frame
-from culet_protocol.messages import FASTEST_RATE, Message, Problem, Resize, SessionEvent
-from culet_protocol.watch import watch_id
+from culet_protocol.messages import FASTEST_RATE, Decoders, Hello, Message, Problem, Resize, SessionEvent
+from culet_protocol.watch import VIDEO, watch_id
 
 ZEROMQ = ("tcp", "ipc")
+MOST_FAILURES = 2
+"""Of decoding, after which pictures are JPEG."""
 ONLY_LOOKS = "by a watch id one may look, and not steer: connect by the session's own id"
 
 
@@ -81,6 +84,7 @@ def connect(
     control: str | None = None,
     token: str | None = None,
     size: tuple[int, int] | None = None,
+    video: bool = True,
     timeout_seconds: float = 10,
 ) -> Connection:
     """Watch a session, and steer it.
@@ -100,6 +104,8 @@ def connect(
             culet prints it; without either the variable CULET_TOKEN counts.
         size: width and height that pictures should have, pixels, at most; those that were on their way already may be
             larger.
+        video: by WebSocket, take what moves as video where the server makes some and PyAV is installed here: half the
+            bytes. Else each picture is a JPEG; over ZeroMQ it always is.
         timeout_seconds: for whatever is waited for, unless `image` is told otherwise.
 
     Raises:
@@ -120,7 +126,7 @@ def connect(
     if session is None and watch is None:
         session, watch = query.get("session", [None])[0], query.get("watch", [None])[0]
     token = token or entrance.get("token", [None])[0] or os.environ.get("CULET_TOKEN") or None
-    return _OverWebSocket(url, session, watch, scene, preset, token, size, timeout_seconds)
+    return _OverWebSocket(url, session, watch, scene, preset, token, size, video, timeout_seconds)
 
 
 class _OverWebSocket(Connection):
@@ -133,10 +139,14 @@ class _OverWebSocket(Connection):
         preset: str | None,
         token: str | None,
         size: tuple[int, int] | None,
+        video: bool,
         timeout_seconds: float,
     ) -> None:
         self.notices = []
         self._timeout = timeout_seconds
+        self._video = video
+        self._decoder = VideoDecoder()
+        self._failures = 0
         rest = Rest(url, timeout_seconds, token)
         with ExitStack() as opened:
             self.session = session
@@ -158,10 +168,26 @@ class _OverWebSocket(Connection):
         while True:
             message = self._stream.receive(self._timeout if timeout_seconds is None else timeout_seconds)
             if isinstance(message, Frame):
-                return Image.of(message)
+                if (image := self._decoded(message)) is not None:
+                    return image
+                continue
+            if isinstance(message, Hello) and self._video and (asked := asked_of(message)) is not None:
+                self._stream.send(asked)
             if isinstance(message, Problem):
                 raise RefusedError(message.message, message.field)
             self.notices.append(message)
+
+    def _decoded(self, frame: Frame) -> Image | None:
+        """None of video that needs a frame which is missing."""
+        if frame.codec not in VIDEO:
+            return Image.of(frame)
+        try:
+            pixels = self._decoder.decode(frame)
+        except ClientError:
+            self._failures += 1
+            self._stream.send(Decoders(codecs=decoders() if self._failures < MOST_FAILURES else ()))
+            return None
+        return None if pixels is None else Image.checked(frame, pixels)
 
     def close(self) -> None:
         self._opened.close()

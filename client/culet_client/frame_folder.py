@@ -31,6 +31,8 @@ class FrameFolder:
 
     def write(self, frame: Frame) -> Path:
         """Write the next file; ClientError if that is impossible."""
+        if frame.codec not in EXTENSION:
+            raise ClientError(f"frame {frame.sequence} is video, which makes no files of single pictures")
         self.count += 1
         path = self.folder / f"frame-{self.count:06}.{EXTENSION[frame.codec]}"
         part = path.with_name(f".{path.name}.{os.getpid()}.part")

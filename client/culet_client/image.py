@@ -26,7 +26,11 @@ class Image:
     @classmethod
     def of(cls, frame: Frame) -> Self:
         """Decode a frame; ClientError for a picture that is damaged, or of another size than its header says."""
-        pixels = _decoded(frame)
+        return cls.checked(frame, _decoded(frame))
+
+    @classmethod
+    def checked(cls, frame: Frame, pixels: NDArray[np.uint8]) -> Self:
+        """Of a frame that was decoded; ClientError if it has another size than its header says."""
         if pixels.shape != (frame.height, frame.width, 3):
             raise ClientError(
                 f"frame {frame.sequence}: expected {frame.width} x {frame.height} pixels, got {pixels.shape} of array"
@@ -54,5 +58,7 @@ def _decoded(frame: Frame) -> NDArray[np.uint8]:
                     return np.asarray(image.convert("RGB"))
             except (OSError, SyntaxError) as error:
                 raise ClientError(f"frame {frame.sequence} is no PNG: {error}") from error
+        case Codec.H264 | Codec.VP9:
+            raise ClientError(f"frame {frame.sequence} is video, which is decoded frame after frame")
         case _ as unknown:
             assert_never(unknown)

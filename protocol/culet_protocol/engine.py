@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from culet_protocol.messages import Condition, Message, Question, Revision, SessionEvent
+from culet_protocol.messages import Condition, Message, Question, Revision, SessionEvent, VideoCodec
 
 REQUEST_NUMBER = struct.Struct("<Q")
 Format = Literal["tga", "png", "jpeg", "webp", "exr"]
@@ -93,6 +93,16 @@ class Demand(Message):
     height: Annotated[int, Field(ge=16, le=8192)]
     bytes_per_frame: Annotated[int, Field(ge=1)] | None = None
     bytes_at_rest: Annotated[int, Field(ge=1)] | None = None
+
+
+class HoldVideo(Message):
+    """Encode no more video of a session's frames, since who watches has not taken all of it yet; or go on. A hold that
+    is not renewed ends after some seconds."""
+
+    type: Literal["hold_video"] = "hold_video"
+    session: SessionId
+    codec: VideoCodec
+    held: bool
 
 
 class Render(Message):
@@ -235,6 +245,7 @@ Request = (
     | Control
     | Ask
     | Demand
+    | HoldVideo
     | Render
     | Grade
     | DrawDiagram
@@ -296,10 +307,12 @@ class SessionProblem(Message):
 
 
 class Heartbeat(Message):
-    """Told unasked, once a second: the engine lives. `instance` differs for every process."""
+    """Told unasked, once a second: the engine lives. `instance` differs for every process; `encodes` is the video that
+    it makes of what moves, for who subscribes to its topic."""
 
     type: Literal["heartbeat"] = "heartbeat"
     instance: str
+    encodes: tuple[VideoCodec, ...] = ()
 
 
 EngineMessage = Annotated[

@@ -30,6 +30,10 @@ JPEG = base64.b64decode(
 """16 x 8 pixels, the left half red, the right half blue."""
 
 
+DELTA = bytes.fromhex("00000001419a26216fd62e2d3c1afb9e712fe62496f820ee9ac2cc227aad5f49e6b8")
+"""The first bytes of a frame of video that needs the one before it."""
+
+
 def _png(width: int, height: int, rgb: bytes) -> bytes:
     """A PNG with stored (uncompressed) data: the same bytes whatever the version of zlib."""
 
@@ -74,6 +78,7 @@ def frames() -> dict[str, tuple[bytes, dict[str, Any]]]:
     valid = {
         "jpeg": MOVING,
         "png": STILL,
+        "h264": replace(MOVING, codec=Codec.H264, payload=DELTA, sequence=9, depends_on=8),
         "empty_payload": replace(MOVING, payload=b"", sequence=8, flags=Flags.NONE, error=math.nan),
     }
     size, marked = HEADER_SIZE, MOVING.pack()
@@ -130,11 +135,18 @@ CONTROL_EVENTS: tuple[messages.Message, ...] = (
     messages.Resize(width=1280, height=720),
     messages.Visibility(visible=False),
     messages.Ack(sequence=7),
+    messages.Decoders(codecs=("h264", "vp9")),
     messages.Ping(time=1234.5),
 )
 
 NOTICES: tuple[messages.Message, ...] = (
-    messages.Hello(protocol=VERSION, session=bytes(range(16)).hex(), watch=watch_id(bytes(range(16)).hex()), viewer=1),
+    messages.Hello(
+        protocol=VERSION,
+        session=bytes(range(16)).hex(),
+        watch=watch_id(bytes(range(16)).hex()),
+        viewer=1,
+        encodes=("h264",),
+    ),
     messages.State(
         revision=7,
         scene={"version": 2, "floor": {"kind": "mirror"}},
@@ -176,6 +188,7 @@ REFUSED_CONTROL = {
     "unknown target": '{"type": "orbit", "target": "light_3", "yaw": 0, "pitch": 0}',
     "a stone's id in capitals": '{"type": "toggle_fall", "stone": "Ruby"}',
     "a pick without a number": '{"type": "pick", "x": 0, "y": 0}',
+    "an unknown codec": '{"type": "decoders", "codecs": ["mpeg2"]}',
     "negative sequence": '{"type": "ack", "sequence": -1}',
 }
 

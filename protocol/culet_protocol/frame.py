@@ -25,6 +25,10 @@ class Codec(IntEnum):
 
     JPEG = 1
     PNG = 2
+    H264 = 3
+    """One access unit in Annex B, High 4:4:4 Predictive; a key frame has its parameter sets with it."""
+    VP9 = 4
+    """One frame of profile 1, 4:4:4."""
 
 
 class Flags(IntFlag):
@@ -75,7 +79,7 @@ FIELDS = (
     HeaderField("watch", "16s", "watch id of the session, in hexadecimal digits; the ZeroMQ topic"),
     HeaderField("magic", "4s", "CULT"),
     HeaderField("version", "B", "version of this header"),
-    HeaderField("codec", "B", "1 JPEG, 2 PNG"),
+    HeaderField("codec", "B", "1 JPEG, 2 PNG, 3 H.264, 4 VP9"),
     HeaderField(
         "flags",
         "H",

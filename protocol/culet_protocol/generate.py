@@ -39,7 +39,8 @@ def typescript_type(schema: Schema) -> str:
         return " | ".join(typescript_type(option) for option in schema["anyOf"])
     kind = schema.get("type", "")
     if kind == "array" and "items" in schema:
-        return f"{typescript_type(schema['items'])}[]"
+        item = typescript_type(schema["items"])
+        return f"({item})[]" if "|" in item else f"{item}[]"
     try:
         return TYPES[kind]
     except KeyError:

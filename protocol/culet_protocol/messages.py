@@ -22,6 +22,8 @@ Exactness = Annotated[float, Field(ge=0, le=1)]
 Revision = Annotated[int, Field(ge=0, le=2**53 - 1)]
 """Counts the states of a session that viewers could be told."""
 StoneMotion = Literal["paused", "falling", "asleep"]
+VideoCodec = Literal["h264", "vp9"]
+"""H.264 High 4:4:4 Predictive, and VP9 profile 1 with 4:4:4: colour at full resolution, as dispersion needs it."""
 BALANCED: Exactness = 0.5
 """What a new session has."""
 FASTEST_RATE, EXACTEST_RATE = 60.0, 15.0
@@ -253,6 +255,14 @@ class Ack(Message):
     sequence: Annotated[int, Field(ge=0, le=0xFFFFFFFF)]
 
 
+class Decoders(Message):
+    """Video that this viewer decodes, the best first; none: each frame is a picture of its own. Said again, it asks for
+    a key frame, as after a failure of the decoder."""
+
+    type: Literal["decoders"] = "decoders"
+    codecs: Annotated[tuple[VideoCodec, ...], Field(max_length=8)]
+
+
 class Ping(Message):
     """Asks for a Pong with the same time, to measure the way there and back."""
 
@@ -269,7 +279,7 @@ SessionEvent = (
 Question = Pick | Outline | Reach
 """What one viewer asks about the session's picture: the engine's answer is for that viewer alone."""
 
-ViewerEvent = Resize | Visibility | Ack | Ping
+ViewerEvent = Resize | Visibility | Ack | Decoders | Ping
 """What concerns one viewer only, and ends at the gateway."""
 
 ControlEvent = Annotated[SessionEvent | Question | ViewerEvent, Field(discriminator="type")]
@@ -286,6 +296,8 @@ class Hello(Message):
     viewer: int
     steers: bool = True
     """Whether what this viewer says may change the session. If not, `session` is the watch id too."""
+    encodes: tuple[VideoCodec, ...] = ()
+    """Video that the server makes of what moves, for viewers that decode it (`Decoders`)."""
 
 
 class Fall(Message):

@@ -8,9 +8,18 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+from typing import Final
+
+from culet_protocol.frame import Codec
+from culet_protocol.messages import VideoCodec
 
 TEXT = b"culet watch"
 WATCH_BYTES = 16
+
+VIDEO_OF_NAME: Final[dict[VideoCodec, Codec]] = {"h264": Codec.H264, "vp9": Codec.VP9}
+VIDEO_NAMES: Final = {codec: name for name, codec in VIDEO_OF_NAME.items()}
+VIDEO: Final = tuple(VIDEO_NAMES)
+"""Codecs of which a frame may need the one before it."""
 
 
 def watch_key(session: str) -> bytes:
@@ -21,3 +30,12 @@ def watch_key(session: str) -> bytes:
 def watch_id(session: str) -> str:
     """The watch id of a session, as 32 hexadecimal digits."""
     return watch_key(session).hex()
+
+
+def video_topic(watch: bytes, codec: Codec) -> bytes:
+    """The ZeroMQ topic of a session's frames as video, by its watch id: the last byte is another one.
+
+    Whoever subscribes gets a key frame first, or a still while nothing moves. A subscriber that has missed a frame
+    subscribes once more for the next key frame. The engine sends stills there too, and JPEG where it has no encoder.
+    """
+    return watch[:-1] + bytes([watch[-1] ^ codec])

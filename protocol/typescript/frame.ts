@@ -7,6 +7,8 @@ export const HEADER_SIZE = 113;
 export const Codec = {
   JPEG: 1,
   PNG: 2,
+  H264: 3,
+  VP9: 4,
 } as const;
 export type Codec = (typeof Codec)[keyof typeof Codec];
 
@@ -30,7 +32,7 @@ export type Flag = (typeof Flag)[keyof typeof Flag];
 export interface Frame {
   /** watch id of the session, in hexadecimal digits; the ZeroMQ topic */
   watch: string;
-  /** 1 JPEG, 2 PNG */
+  /** 1 JPEG, 2 PNG, 3 H.264, 4 VP9 */
   codec: Codec;
   /** bits: 0 moving, 1 final, 2 polarised, 3 frontier's error, 4-8 no stone seen, 9 slow, 10 key, 11 shadows only */
   flags: number;
@@ -91,7 +93,7 @@ function expect(right: boolean, expected: string, got: string | number): void {
   if (!right) throw new FrameError(`expected ${expected}, got ${got}`);
 }
 
-const CODECS = "codec 1 (JPEG) or 2 (PNG)";
+const CODECS = "codec 1 (JPEG) or 2 (PNG) or 3 (H264) or 4 (VP9)";
 
 function isCodec(value: number): value is Codec {
   return Object.values<number>(Codec).includes(value);

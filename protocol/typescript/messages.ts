@@ -258,6 +258,15 @@ export interface Ack {
   sequence: number;
 }
 
+/**
+ * Video that this viewer decodes, the best first; none: each frame is a picture of its own. Said again, it asks for
+ * a key frame, as after a failure of the decoder.
+ */
+export interface Decoders {
+  type: "decoders";
+  codecs: ("h264" | "vp9")[];
+}
+
 /** Asks for a Pong with the same time, to measure the way there and back. */
 export interface Ping {
   type: "ping";
@@ -290,6 +299,7 @@ export type ControlEvent =
   | Resize
   | Visibility
   | Ack
+  | Decoders
   | Ping;
 
 /** The first notice on a stream. */
@@ -300,6 +310,7 @@ export interface Hello {
   watch: string;
   viewer: number;
   steers?: boolean;
+  encodes?: ("h264" | "vp9")[];
 }
 
 /**
@@ -436,6 +447,7 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
     watch: ["string"],
     viewer: ["integer"],
     steers: ["boolean", "absent"],
+    encodes: ["array", "absent"],
   },
   state: {
     falling: ["boolean"],

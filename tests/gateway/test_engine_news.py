@@ -68,7 +68,7 @@ def watched(session: Session) -> tuple[HeldLink, SessionRecord, EngineNews, List
     record.learn(described(session))
     viewer = Listener()
     record.viewers.append(viewer)
-    return link, record, EngineNews(link, {session.name: record}, nobody_reopens), viewer
+    return link, record, EngineNews(link, {session.name: record}, nobody_reopens, lambda _: None), viewer
 
 
 async def turns() -> None:

@@ -12,7 +12,7 @@ def offer(viewer: Viewer, sequence: int) -> bytes:
     numbers = sequence, 1, 1, 1, 3, 1, 0, sequence, 0, 0, 0, 0, 0, 0, 0
     frame = Frame(bytes(16), Codec.JPEG, Flags.NONE, *numbers, b"picture")
     message = frame.pack()
-    viewer.offer(frame, message)
+    viewer.offer(frame, message, 0)
     return message
 
 

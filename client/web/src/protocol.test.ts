@@ -94,6 +94,7 @@ test("every control event has a TypeScript type", () => {
     { type: "resize", width: 1280, height: 720 },
     { type: "visibility", visible: false },
     { type: "ack", sequence: 7 },
+    { type: "decoders", codecs: ["h264", "vp9"] },
     { type: "ping", time: 1234.5 },
   ];
   expect(events).toEqual(messages().control_events);

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
+from urllib.parse import parse_qs, urlsplit
 
 import typer
 
@@ -38,3 +39,13 @@ def watched_by(session: str | None, watch: str | None) -> Iterator[str]:
         yield watch_id(session)
     except SilenceError as error:
         raise SilenceError(f"session {session}: {error}") from error
+
+
+@contextmanager
+def watched_at(address: str, session: str | None, watch: str | None) -> Iterator[str]:
+    """As `watched_by`, of a session that may also be named by the address of its page."""
+    query = parse_qs(urlsplit(address).query)
+    if session is None and watch is None:
+        session, watch = query.get("session", [None])[0], query.get("watch", [None])[0]
+    with watched_by(session, watch) as watched:
+        yield watched

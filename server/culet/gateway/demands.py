@@ -10,8 +10,10 @@ from collections.abc import Container
 from culet.errors import CuletError, NotFoundError
 from culet.gateway.link import EngineLink
 from culet.gateway.session_record import NO_DEMAND, SessionRecord, Wanted
-from culet_protocol.engine import Demand
+from culet_protocol.engine import Demand, HoldVideo
+from culet_protocol.frame import Codec
 from culet_protocol.sizes import LIVE_SIZE
+from culet_protocol.watch import VIDEO, VIDEO_NAMES
 
 log = logging.getLogger(__name__)
 
@@ -21,6 +23,10 @@ BYTES_CHANGE = 0.05
 """The same of the bytes that frames may have."""
 DEMAND_SECONDS = 0.25
 """Between two demands of a session: each size is another picture, begun anew."""
+KEY_SECONDS = 1.0
+"""Between two key frames of a session that are asked for."""
+PATIENCE_SECONDS = 0.25
+"""For which those who follow a session's video wait for one whose link is full."""
 UNTOLD = Wanted(-1.0, LIVE_SIZE, None, None)
 """A demand unlike any, for an engine that may not have heard the last one."""
 
@@ -32,6 +38,7 @@ class Demands:
         """`known` has the ids of the sessions that there are."""
         self._link = link
         self._sessions = known
+        self._telling: set[asyncio.Task[None]] = set()
 
     def update(self, session: SessionRecord) -> None:
         """Listen to the session's frames or not, and have the engine told what the viewers can take if it changed."""
@@ -39,6 +46,7 @@ class Demands:
             return
         if session.subscribed and session.wanted(time.monotonic()).frames_per_second <= 0:
             self.forget(session)
+        self._listen(session)
         if session.demanding is None or session.demanding.done():
             session.demanding = asyncio.create_task(self._tell_demand(session))
 
@@ -68,9 +76,53 @@ class Demands:
     def _listen(self, session: SessionRecord) -> None:
         """To the frames of a session whose viewers want some: the engine, which makes them for who listens, knows by
         now which."""
-        if session.demand.frames_per_second > 0 and not session.subscribed and session.id in self._sessions:
-            self._link.subscribe(session.topic)
-            session.subscribed = True
+        if session.demand.frames_per_second <= 0 or session.id not in self._sessions:
+            return
+        wanted = session.codecs_wanted(time.monotonic()) or session.subscribed
+        for codec in wanted - session.subscribed:
+            self._link.subscribe(session.topics[codec])
+        for codec in session.subscribed - wanted:
+            self._link.unsubscribe(session.topics[codec])
+        session.subscribed = wanted
+
+    def heed_video(self, session: SessionRecord) -> None:
+        """Frames came, or were taken: see to it that all who follow the session's video can go on doing so."""
+        if not session.subscribed.intersection(VIDEO) and all(viewer.feed.codec is None for viewer in session.viewers):
+            return
+        now = time.monotonic()
+        following = [viewer for viewer in session.viewers if viewer.feed.in_step]
+        since = {viewer: viewer.behind(now) for viewer in following}
+        behind = [viewer for viewer, at in since.items() if at is not None]
+        if len(behind) < len(following):
+            for viewer in behind:
+                if now - (since[viewer] or now) > PATIENCE_SECONDS:
+                    viewer.feed.bar(now)
+        waited_for = {viewer.feed.codec for viewer in behind if viewer.feed.in_step}
+        self._hold(session, session.subscribed.intersection(waited_for))
+        self._listen(session)
+        lacking = {viewer.feed.codec for viewer in session.viewers if viewer.feed.lacks_key and viewer.watches(now)}
+        if now - session.key_asked_at >= KEY_SECONDS:
+            for codec in session.subscribed.intersection(lacking):
+                session.key_asked_at = now
+                self._link.subscribe(session.topics[codec])  # once more, by which the engine knows
+                self._link.unsubscribe(session.topics[codec])
+                for viewer in session.viewers:
+                    viewer.feed.lacks_key = False
+
+    def _hold(self, session: SessionRecord, codecs: frozenset[Codec]) -> None:
+        """Have the engine hold video of those codecs, and no other."""
+        for codec in codecs ^ session.held:
+            told = HoldVideo(session=session.id, codec=VIDEO_NAMES[codec], held=codec in codecs)
+            task = asyncio.create_task(self._tell_hold(told))
+            self._telling.add(task)
+            task.add_done_callback(self._telling.discard)
+        session.held = codecs
+
+    async def _tell_hold(self, told: HoldVideo) -> None:
+        try:
+            await self._link.request(told)
+        except CuletError as error:
+            log.debug("video of a session could not be held: %s", error)
 
     def _new_demand(self, session: SessionRecord) -> Wanted | None:
         """What the engine should be told, if it is worth a message."""
@@ -79,7 +131,7 @@ class Demands:
         demand, told = session.wanted(time.monotonic()), session.demand
         close = (
             demand.size == told.size
-            and (demand.frames_per_second > 0) == session.subscribed
+            and (demand.frames_per_second > 0) == bool(session.subscribed)
             and _is_close(demand.frames_per_second, told.frames_per_second, RATE_CHANGE)
             and _is_close(demand.bytes_per_frame, told.bytes_per_frame, BYTES_CHANGE)
             and _is_close(demand.bytes_at_rest, told.bytes_at_rest, BYTES_CHANGE)
@@ -88,13 +140,13 @@ class Demands:
 
     def forget(self, session: SessionRecord) -> None:
         """Listen to the session's frames no more."""
-        if session.subscribed:
-            self._link.unsubscribe(session.topic)
-            session.subscribed = False
+        for codec in session.subscribed:
+            self._link.unsubscribe(session.topics[codec])
+        session.subscribed = frozenset()
 
     def begin_anew(self, session: SessionRecord) -> None:
         """Another engine has the session, and was told no demand."""
-        session.demand = NO_DEMAND
+        session.demand, session.held = NO_DEMAND, frozenset()
         self.update(session)
 
 

@@ -6,14 +6,16 @@ import asyncio
 import logging
 import time
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 
 from culet.errors import CuletError
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.session_record import SessionRecord
 from culet_protocol.engine import GetSession, ListSessions, SessionChange, SessionMotion, SessionProblem
-from culet_protocol.frame import Frame
+from culet_protocol.frame import Codec, Frame
 from culet_protocol.messages import Engine, Problem
+from culet_protocol.watch import VIDEO
 
 log = logging.getLogger(__name__)
 
@@ -29,8 +31,9 @@ class EngineNews(EngineEvents):
         link: EngineLink,
         records: dict[str, SessionRecord],
         reopen: Callable[[SessionRecord], Awaitable[None]],
+        offered: Callable[[SessionRecord], None],
     ) -> None:
-        """`reopen` gives a session to an engine that does not know it."""
+        """`reopen` gives a session to an engine that does not know it; `offered` is called when a frame came."""
         self.taken_over = asyncio.Event()
         """Set once this gateway knows the sessions that the engine had when it came."""
         self._link = link
@@ -39,20 +42,26 @@ class EngineNews(EngineEvents):
         """By session."""
         self._by_topic: dict[bytes, SessionRecord] = {}
         self._reopen = reopen
+        self._offered = offered
 
     def frame_came(self, frame: Frame, message: bytes) -> None:
         """The session's latest frame."""
         session = self._shown_by(frame.watch)
         if session is None:
             return
-        session.latest = (frame, message)
+        stream = next(codec for codec, topic in session.topics.items() if topic == frame.watch)
+        if stream is not Codec.JPEG:  # a viewer knows the session by its watch id alone
+            frame, message = replace(frame, watch=session.topic), session.topic + message[len(session.topic) :]
+        session.latest = None if frame.codec in VIDEO else (frame, message)
+        now = time.monotonic()
         for viewer in session.viewers:
-            viewer.offer(frame, message)
+            viewer.offer(frame, message, now, stream)
+        self._offered(session)
 
     def _shown_by(self, topic: bytes) -> SessionRecord | None:
         found = self._by_topic.get(topic)
         if found is None or self._records.get(found.id) is not found:  # sessions came, or went
-            self._by_topic = {record.topic: record for record in self._records.values()}
+            self._by_topic = {topic: record for record in self._records.values() for topic in record.topics.values()}
             found = self._by_topic.get(topic)
         return found
 

@@ -33,7 +33,7 @@ from culet_protocol.engine import (
     engine_message,
 )
 from culet_protocol.frame import Frame, FrameError
-from culet_protocol.messages import Message
+from culet_protocol.messages import Message, VideoCodec
 
 log = logging.getLogger(__name__)
 
@@ -85,6 +85,8 @@ class EngineLink:
         self.ready = asyncio.Event()
         """Set while heartbeats come."""
         self.instance: str | None = None
+        self.encodes: tuple[VideoCodec, ...] = ()
+        """Video that the engine makes."""
         self.instances = 0
         """Engine processes seen so far."""
         self.frames_received = 0
@@ -255,6 +257,7 @@ class EngineLink:
                 continue
             match message:
                 case Heartbeat():
+                    self.encodes = message.encodes
                     self._hear(message.instance)
                 case SessionChange():
                     self.events.session_changed(message)

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.viewer import Viewer
 from culet_protocol.engine import SessionChange
-from culet_protocol.frame import Frame
+from culet_protocol.frame import Codec, Frame
 from culet_protocol.messages import Condition, Notice, Snapshot, State, balance_rate
 from culet_protocol.parts import with_parts
 from culet_protocol.sizes import LIVE_SIZE
-from culet_protocol.watch import watch_key
+from culet_protocol.watch import VIDEO, video_topic, watch_key
 
 SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
@@ -47,6 +47,8 @@ class SessionRecord:
         """The client that opened it."""
         self.topic = watch_key(session)
         """Its watch id, by which frames come."""
+        self.topics = {Codec.JPEG: self.topic} | {codec: video_topic(self.topic, codec) for codec in VIDEO}
+        """By which frames come that are pictures of their own (JPEG), and video."""
         self.scene = scene
         self.revision: int | None = None
         """Of the scene, by the engine's count; None until the engine has said so."""
@@ -58,13 +60,19 @@ class SessionRecord:
         self.next_snapshot_at = -float("inf")
         self.viewers: list[Viewer] = []
         self.latest: tuple[Frame, bytes] | None = None
+        """The last frame that came, if it is a picture of its own."""
         self.used = time.monotonic()
         self.watched = False
         """Whether anybody ever watched it, or had a picture of it."""
         self.viewer_left = -float("inf")
         self.viewers_told = 0
         """How many of them the viewers were last told of."""
-        self.subscribed = False
+        self.subscribed: frozenset[Codec] = frozenset()
+        """Of whose topics frames are received."""
+        self.held: frozenset[Codec] = frozenset()
+        """Video that the engine was told to hold."""
+        self.key_asked_at = -float("inf")
+        """s, when a key frame was asked for last."""
         self.demand = NO_DEMAND
         """What the engine was last told."""
         self.demanding: asyncio.Task[None] | None = None
@@ -101,6 +109,11 @@ class SessionRecord:
     def state(self) -> State:
         """The notice for viewers, of which each is told what is new to it."""
         return State(revision=self.revision or 0, scene=self.scene, **self.condition.model_dump())
+
+    def codecs_wanted(self, now: float) -> frozenset[Codec]:
+        """Of frames that those who watch need; JPEG: pictures of their own."""
+        watching = [viewer.feed.codecs for viewer in self.viewers if viewer.watches(now)]
+        return frozenset().union(*watching)
 
     def tell(self, notice: Notice) -> None:
         """Tell every viewer."""

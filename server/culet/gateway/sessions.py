@@ -57,7 +57,7 @@ class Sessions:
         self._sessions: dict[str, SessionRecord] = {}
         self._demands = Demands(link, self._sessions)
         self._places = SessionPlaces(settings, self._sessions, self.close, self._watched_elsewhere)
-        self._news = link.events = EngineNews(link, self._sessions, self._give_again)
+        self._news = link.events = EngineNews(link, self._sessions, self._give_again, self._demands.heed_video)
         self._deleted: OrderedDict[str, None] = OrderedDict()
         self._viewer_numbers = itertools.count(1)
         self.drain = Drain()
@@ -253,12 +253,16 @@ class Sessions:
         if self.drain.begun.is_set():
             viewer.tell(Leaving(seconds=self.drain.left))
         if session.latest:
-            viewer.offer(*session.latest)
+            viewer.offer(*session.latest, time.monotonic())
         return viewer
 
     def update_demand(self, session: SessionRecord) -> None:
         """A viewer can take something else than before: the engine is told, if that changes what it should do."""
         self._demands.update(session)
+
+    def video_taken(self, session: SessionRecord) -> None:
+        """A viewer has taken a frame, or decodes something else than before."""
+        self._demands.heed_video(session)
 
     def leave(self, session: SessionRecord, viewer: Viewer) -> None:
         """A viewer is gone."""

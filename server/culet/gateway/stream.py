@@ -30,6 +30,7 @@ from culet_protocol import SUBPROTOCOL, VERSION
 from culet_protocol.close import CloseCode
 from culet_protocol.messages import (
     Ack,
+    Decoders,
     Hello,
     Ping,
     Pong,
@@ -40,6 +41,7 @@ from culet_protocol.messages import (
     Visibility,
     control_event,
 )
+from culet_protocol.watch import VIDEO_OF_NAME
 
 log = logging.getLogger(__name__)
 
@@ -92,7 +94,10 @@ async def stream(websocket: WebSocket, gateway: Gateway, session_id: str, *, onl
     try:
         watch = session.topic.hex()
         named = session.id if viewer.steers else watch
-        hello = Hello(protocol=VERSION, session=named, watch=watch, viewer=viewer.number, steers=viewer.steers)
+        encodes = gateway.link.encodes
+        hello = Hello(
+            protocol=VERSION, session=named, watch=watch, viewer=viewer.number, steers=viewer.steers, encodes=encodes
+        )
         await websocket.send_text(hello.model_dump_json())
         await _Stream(websocket, gateway, session, viewer, bucket).run()
     except (WebSocketDisconnect, RuntimeError):  # starlette raises either for a send after the viewer left
@@ -169,6 +174,7 @@ class _Stream:
                 if not await self._in_time(frame):
                     return
                 self._gateway.metrics.frame_sent(len(frame))
+                self._gateway.sessions.video_taken(self._session)
                 continue  # notices may have come, and another frame
             until = viewer.sleep_until()
             with contextlib.suppress(TimeoutError):
@@ -242,13 +248,17 @@ class _Stream:
         self._messages.spend(cost, now)
         self._client.spend(cost, now)
 
-    def _heed(self, event: Resize | Visibility | Ack | Ping) -> None:
+    def _heed(self, event: Resize | Visibility | Ack | Decoders | Ping) -> None:
         match event:
             case Ack(sequence=sequence):
                 stalled = self._viewer.credit.stalled(time.monotonic())
                 self._viewer.acknowledge(sequence, time.monotonic())
                 if stalled:
                     self._gateway.sessions.update_demand(self._session)
+            case Decoders(codecs=codecs):
+                known = [codec for codec in codecs if codec in self._gateway.link.encodes]
+                self._viewer.feed.follow(VIDEO_OF_NAME[known[0]] if known else None)
+                self._gateway.sessions.update_demand(self._session)
             case Ping(time=sent):
                 self._viewer.tell(Pong(time=sent))
             case Resize(width=width, height=height):

@@ -8,7 +8,8 @@ from typing import Literal, assert_never
 
 from culet.gateway.client_address import UNKNOWN
 from culet.gateway.credit import Credit
-from culet_protocol.frame import Frame
+from culet.gateway.frame_feed import FrameFeed
+from culet_protocol.frame import Codec, Frame
 from culet_protocol.messages import (
     Change,
     Engine,
@@ -65,8 +66,9 @@ class Viewer:
         """Set when there may be something to send."""
         self.standing = Standing.ATTENDING
         self._joined_at = now
-        self._latest: tuple[int, bytes] | None = None
-        self._sent: int | None = None
+        self.feed = FrameFeed()
+        """Frames that wait for it."""
+        self._behind_since: float | None = None
         self._notices: dict[object, Message] = {}
         """By what makes a later one replace an earlier one, in the order in which they are told."""
         self._numbers = 0
@@ -87,6 +89,8 @@ class Viewer:
         """It can, or cannot, be seen."""
         if visible and not self.visible:
             self.watching_since = now
+        if not visible:
+            self.feed.fall_out()
         self.visible = visible
         self.wake.set()
 
@@ -101,14 +105,15 @@ class Viewer:
         self.credit.acknowledge(sequence, now)
         self.wake.set()
 
-    def offer(self, frame: Frame, message: bytes) -> None:
-        """The session's latest frame; one that it was offered before and has not taken is forgotten."""
-        self._latest = (frame.sequence, message)
+    def offer(self, frame: Frame, message: bytes, now: float, stream: Codec = Codec.JPEG) -> None:
+        """The session's latest frame; a picture of its own that it was offered before and has not taken is forgotten.
+        `stream`: the codec by whose topic it came, JPEG being that of pictures of their own."""
+        self.feed.offer(frame, message, stream, now)
         self.wake.set()
 
     def restart(self) -> None:
         """Another engine may give a number of the one before to another frame. What is in flight stays so."""
-        self._latest = self._sent = None
+        self.feed.restart()
 
     def tell(self, notice: Notice) -> None:
         """Queue a notice. Of those that say how something is, only the latest waits; of equal ones, only one."""
@@ -151,14 +156,22 @@ class Viewer:
 
     def next_frame(self, now: float) -> bytes | None:
         """The latest frame if it is new to the viewer and there is credit for it; that is then used."""
-        if self._latest is None or not self.visible or self._latest[0] == self._sent:
+        waiting = self.feed.next
+        if waiting is None or not self.visible or not self.credit.available(len(waiting.message), now):
             return None
-        sequence, message = self._latest
-        if not self.credit.available(len(message), now):
-            return None
-        self._sent = sequence
+        sequence, message, _ = self.feed.take()
         self.credit.take(sequence, len(message), now)
         return message
+
+    def behind(self, now: float) -> float | None:
+        """s since when video waits for this viewer's link; None if none does."""
+        waiting = self.feed.next
+        video = waiting is not None and waiting.is_video and self.visible
+        if not video or waiting is None or self.credit.available(len(waiting.message), now):
+            self._behind_since = None
+        elif self._behind_since is None:
+            self._behind_since = now
+        return self._behind_since
 
     def rate(self, now: float) -> float:
         """Frames per second that it can take now."""

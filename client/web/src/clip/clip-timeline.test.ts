@@ -3,7 +3,7 @@ import type { ClipFrame } from "./clip-frames";
 import { clipSize, timeline } from "./clip-timeline";
 
 function frame(time: number, width = 640, height = 360): ClipFrame {
-  return { time, step: 0n, atRest: false, width, height, payload: new Uint8Array(), type: "image/jpeg" };
+  return { time, step: 0n, atRest: false, width, height, content: { payload: new Uint8Array(), type: "image/jpeg" } };
 }
 
 const times = (frames: ClipFrame[]) => frames.map(({ time }) => time);

@@ -18,8 +18,7 @@ test("of the pictures that are shown none is kept once another one comes, nor on
     atRest: true,
     width: 16,
     height: 16,
-    payload: new Uint8Array(1),
-    type: "image/png",
+    content: { payload: new Uint8Array(1), type: "image/png" },
   };
   const easel = new Easel({ width: 16, height: 16 });
   for (const step of [1n, 2n]) await easel.show({ ...frame, step });

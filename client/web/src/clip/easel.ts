@@ -1,13 +1,18 @@
 /** Where the pictures of a film are put, one after the other, all at the same size. */
 
 import { letterbox, type Size } from "../picture/picture-size";
-import type { ClipFrame } from "./clip-frames";
+import { bitmapOf } from "../video/bitmap";
+import { PacketDecoder } from "../video/packet-decoder";
+import type { ClipFrame, Packet } from "./clip-frames";
 
 export class Easel {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
   private shown: ClipFrame | null = null;
   private picture: ImageBitmap | null = null;
+  private readonly decoder = new PacketDecoder();
+  /** That was decoded last. */
+  private decoded: Packet | null = null;
 
   constructor({ width, height }: Size) {
     Object.assign(this.canvas, { width, height });
@@ -21,6 +26,8 @@ export class Easel {
     this.picture?.close();
     this.picture = null;
     this.shown = null;
+    this.decoder.close();
+    this.decoded = null;
   }
 
   /** `again`: also if it is shown already, since recorders see only what is painted. */
@@ -28,7 +35,7 @@ export class Easel {
     if (frame === this.shown && !again) return;
     if (frame !== this.shown) {
       this.picture?.close();
-      this.picture = await createImageBitmap(new Blob([frame.payload], { type: frame.type }));
+      this.picture = await this.pictureOf(frame);
       this.shown = frame;
     }
     if (!this.picture) return;
@@ -36,5 +43,21 @@ export class Easel {
     this.context.fillRect(0, 0, this.canvas.width, this.canvas.height);
     this.context.imageSmoothingQuality = "high";
     this.context.drawImage(this.picture, x, y, width, height);
+  }
+
+  private async pictureOf({ content }: ClipFrame): Promise<ImageBitmap> {
+    if ("payload" in content) return createImageBitmap(new Blob([content.payload], { type: content.type }));
+    const chain: Packet[] = [];
+    for (let packet: Packet | null = content; packet && packet !== this.decoded; packet = packet.before) {
+      chain.unshift(packet);
+    }
+    let picture: VideoFrame | null = null;
+    for (const packet of chain) {
+      picture?.close();
+      picture = await this.decoder.decode(packet);
+      this.decoded = packet;
+    }
+    if (!picture) throw new Error("expected pictures in their order");
+    return bitmapOf(picture);
   }
 }

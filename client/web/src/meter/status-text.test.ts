@@ -1,4 +1,4 @@
-import { Flag, parseFrame } from "@culet/protocol/frame";
+import { Codec, Flag, parseFrame } from "@culet/protocol/frame";
 import { expect, it, test } from "vitest";
 import { FrameRate } from "../session/frame-rate";
 import { bytes } from "../testing/fixtures";
@@ -9,7 +9,7 @@ const frame = parseFrame(bytes("jpeg.bin")); // 0.125 + 31.5 + 1.75 ms
 test("the status line says rate, times, size, samples and viewers", () => {
   expect(statusText({ framesPerSecond: 24, frame, roundTripMs: 3.25, viewers: 2, connected: true })).toBe(
     "24.0 frames/s \u00b7 server 33.4 ms (simulate 0.13, render 31.5, encode 1.75) \u00b7 round trip 3.25 ms" +
-      " \u00b7 frontier's error 0.063 \u00b7 caustics lack at most 13 % \u00b7 16\u00d78 \u00b7 1 sample \u00b7 2 viewers",
+      " \u00b7 frontier's error 0.063 \u00b7 caustics lack at most 13 % \u00b7 16\u00d78 JPEG \u00b7 1 sample \u00b7 2 viewers",
   );
 });
 
@@ -40,7 +40,7 @@ test("a picture at rest tells what a sample takes, not the sum over all of them"
   const refining = { ...frame, flags: 0, samples: 4, renderMs: 100, error: 0.063 };
   const status = { framesPerSecond: 1.5, roundTripMs: null, viewers: 1, connected: true };
   expect(statusText({ ...status, frame: refining })).toBe(
-    "refining \u00b7 render 25.0 ms a sample \u00b7 error 0.063 \u00b7 caustics lack at most 13 % \u00b7 16\u00d78 \u00b7 4 samples \u00b7 1 viewer",
+    "refining \u00b7 render 25.0 ms a sample \u00b7 error 0.063 \u00b7 caustics lack at most 13 % \u00b7 16\u00d78 JPEG \u00b7 4 samples \u00b7 1 viewer",
   );
   const finished = { ...refining, flags: Flag.FINAL };
   expect(statusText({ ...status, frame: finished })).toMatch(/^still picture \u00b7 render 25\.0 ms/);
@@ -117,4 +117,11 @@ it("counts frames over the last two seconds", () => {
   expect(rate.perSecond(4999)).toBe(25);
   expect(rate.perSecond(6000)).toBe(12); // the 24 frames after 4000 ms
   expect(rate.perSecond(9000)).toBe(0);
+});
+
+test("what is video is named", () => {
+  const status = { framesPerSecond: 24, roundTripMs: null, viewers: 1, connected: true };
+  expect(statusText({ ...status, frame: { ...frame, codec: Codec.H264 } })).toContain(
+    " \u00b7 16\u00d78 H.264 \u00b7 ",
+  );
 });

@@ -1,6 +1,6 @@
 /** The status line's words. */
 
-import { Flag, type Frame } from "@culet/protocol/frame";
+import { Codec, Flag, type Frame } from "@culet/protocol/frame";
 import { words } from "../words/words";
 import type { Bottleneck } from "./bottleneck";
 
@@ -59,6 +59,11 @@ export function briefText({ connected, framesPerSecond, frame, viewers }: Status
   return parts.join(" \u00b7 ");
 }
 
+function codecName({ codec }: Pick<Frame, "codec">): string {
+  const name = Object.keys(Codec).find((key): key is keyof typeof Codec => Codec[key as keyof typeof Codec] === codec);
+  return name ? words.status.codecs[name] : "";
+}
+
 export function statusText({ connected, framesPerSecond, frame, roundTripMs, viewers, bottleneck }: Status): string {
   const said = words.status;
   if (!connected) return said.offline;
@@ -86,7 +91,7 @@ export function statusText({ connected, framesPerSecond, frame, roundTripMs, vie
     if (!Number.isNaN(frame.shownError)) parts.push(shownErrorText(frame));
     else if (!Number.isNaN(frame.error)) parts.push(said.errorIs(errorName(frame), significant(frame.error)));
     if (frame.lightCut > 0 || frame.flags & Flag.SHADOWS_ONLY) parts.push(lightText(frame)); // NaN without a map
-    parts.push(said.size(frame.width, frame.height), said.samples(frame.samples));
+    parts.push(`${said.size(frame.width, frame.height)} ${codecName(frame)}`, said.samples(frame.samples));
   }
   parts.push(said.viewers(viewers));
   return parts.join(" \u00b7 ");

@@ -32,7 +32,7 @@ describe("order", () => {
 });
 
 describe("the player", () => {
-  const decoding: { finish: (picture: string) => void; fail: (reason: Error) => void; blob: Blob }[] = [];
+  const decoding: { finish: (picture: string | null) => void; fail: (reason: Error) => void; frame: Frame }[] = [];
   const log: string[] = [];
   let player: FramePlayer<string>;
 
@@ -40,18 +40,26 @@ describe("the player", () => {
     decoding.length = 0;
     log.length = 0;
     player = new FramePlayer<string>({
-      decode: (blob) => new Promise((finish, fail) => decoding.push({ finish, fail, blob })),
+      decode: (frame) => new Promise((finish, fail) => decoding.push({ finish, fail, frame })),
       show: (picture, { sequence }) => log.push(`show ${sequence} ${picture}`),
       acknowledge: ({ sequence }) => log.push(`ack ${sequence}`),
       fail: ({ sequence }, reason) => log.push(`fail ${sequence} ${reason}`),
     });
   });
 
-  it("decodes the payload as what it is, then shows, then acknowledges", async () => {
+  it("acknowledges a frame of which there is no picture, and shows nothing", async () => {
     const done = player.push(golden);
     await Promise.resolve();
-    expect(decoding[0]?.blob.type).toBe("image/jpeg");
-    expect(decoding[0]?.blob.size).toBe(golden.payload.length);
+    decoding[0]?.finish(null);
+    await done;
+    expect(log).toEqual(["ack 7"]);
+    expect(player.shown).toBe(0);
+  });
+
+  it("decodes a frame, then shows it, then acknowledges it", async () => {
+    const done = player.push(golden);
+    await Promise.resolve();
+    expect(decoding[0]?.frame).toBe(golden);
     expect(log).toEqual([]);
     decoding[0]?.finish("picture");
     await done;

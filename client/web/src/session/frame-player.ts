@@ -1,8 +1,6 @@
 /** Frames in, pictures out: decoded one after the other, never shown out of order, each acknowledged once. */
 
-import { Codec, type Frame } from "@culet/protocol/frame";
-
-const MIME = { [Codec.JPEG]: "image/jpeg", [Codec.PNG]: "image/png" } as const;
+import type { Frame } from "@culet/protocol/frame";
 
 export type Order = Pick<Frame, "sequence">;
 
@@ -12,7 +10,8 @@ export function isAfter(frame: Order, other: Order): boolean {
 }
 
 export interface Player<Picture> {
-  decode: (encoded: Blob) => Promise<Picture>;
+  /** Null: it has no picture, as after a frame that it needs and that is lost. */
+  decode: (frame: Frame) => Promise<Picture | null>;
   show: (picture: Picture, frame: Frame) => void;
   /** The frame is done with, shown or not: without this its place in the gateway's window would be lost. */
   acknowledge: (frame: Frame) => void;
@@ -50,9 +49,11 @@ export class FramePlayer<Picture> {
 
   private async play(frame: Frame): Promise<void> {
     try {
-      const picture = await this.player.decode(new Blob([frame.payload], { type: MIME[frame.codec] }));
-      this.player.show(picture, frame);
-      this.shown += 1;
+      const picture = await this.player.decode(frame);
+      if (picture !== null) {
+        this.player.show(picture, frame);
+        this.shown += 1;
+      }
     } catch (reason) {
       this.player.fail(frame, reason);
     }

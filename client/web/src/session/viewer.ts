@@ -5,6 +5,9 @@ import type { ControlEvent, JsonObject, Notice, Outlined, Picked, Reached } from
 import { BottleneckMeter } from "../meter/bottleneck";
 import type { Arrival } from "../meter/frame-history";
 import type { Size } from "../picture/picture-size";
+import type { VideoCodec } from "../video/codec-string";
+import { FrameDecoder } from "../video/frame-decoder";
+import { loadVideo } from "../video/load";
 import { words } from "../words/words";
 import type { Target } from "./events";
 import { FramePlayer } from "./frame-player";
@@ -39,7 +42,13 @@ export class Viewer {
   ended = false;
   state: ViewState = INITIAL;
   private readonly listener: ViewerListener;
+  /** Video that the server makes. */
+  private encodes: readonly VideoCodec[] = [];
   private decodeMs = 0;
+  private readonly decoder = new FrameDecoder({
+    tell: (codecs) => this.stream.send({ type: "decoders", codecs }),
+    load: loadVideo,
+  });
   /** The revision of the state when something was sent last. */
   private spoken: number | null = null;
 
@@ -47,7 +56,7 @@ export class Viewer {
   constructor(url: string, listener: ViewerListener, watch: string | null = null) {
     this.listener = listener;
     this.player = new FramePlayer<ImageBitmap>({
-      decode: (encoded) => this.decode(encoded),
+      decode: (frame) => this.decode(frame),
       show: (picture, frame) => this.show(picture, frame),
       acknowledge: (frame) => this.stream.send({ type: "ack", sequence: frame.sequence }),
       fail: (frame, reason) => listener.problem(words.connection.notDecoded(frame.sequence, String(reason))),
@@ -112,7 +121,11 @@ export class Viewer {
   }
 
   private heard(notice: Notice): void {
-    if (notice.type === "hello") this.watchId = notice.watch;
+    if (notice.type === "hello") {
+      this.watchId = notice.watch;
+      this.encodes = notice.encodes ?? [];
+      if (this.lastFrame) void this.decoder.offer(this.encodes);
+    }
     if (notice.type === "hello" || notice.type === "engine") this.player.forget();
     if (notice.type === "picked" || notice.type === "outlined" || notice.type === "reached")
       this.listener.answer(notice);
@@ -132,6 +145,7 @@ export class Viewer {
   }
 
   private show(picture: ImageBitmap, frame: Frame): void {
+    if (!this.lastFrame) void this.decoder.offer(this.encodes); // nothing is loaded before the first picture
     this.lastFrame = frame;
     const time = performance.now();
     this.rate.shown(time);
@@ -143,9 +157,9 @@ export class Viewer {
     });
   }
 
-  private async decode(encoded: Blob): Promise<ImageBitmap> {
+  private async decode(frame: Frame): Promise<ImageBitmap | null> {
     const started = performance.now();
-    const picture = await createImageBitmap(encoded);
+    const picture = await this.decoder.decode(frame);
     this.decodeMs = performance.now() - started;
     return picture;
   }

@@ -442,6 +442,7 @@ export const status = {
   samples: (count: number) => (count === 1 ? "1 sample" : `${count} samples`),
   viewers: (count: number) => (count === 1 ? "1 viewer" : `${count} viewers`),
   size: (width: number, height: number) => `${width}\u00d7${height}`,
+  codecs: { JPEG: "JPEG", PNG: "PNG", H264: "H.264", VP9: "VP9" },
   error: "error",
   frontiersError: "frontier's error",
   errorIs: (name: string, value: string) => `${name} ${value}`,

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+BEST_CRF = 20
+"""Constant rate factor of x264 at which a moving frame is as good as a JPEG of quality 85, in half of its bytes."""
 LEAST_PIXELS = 640 * 360
 """Of a frame, below which none is made smaller for a link, unless for SLOW_RATE."""
 SLOW_RATE = 15.0
@@ -103,6 +105,8 @@ class Encoding:
     """It is encoded anew if it has more."""
     thrifty: bool
     """The frame, or its quality, is less than it would be without the limits of a link."""
+    crf: int = BEST_CRF
+    """Constant rate factor of video."""
 
 
 class Thrift:

@@ -6,16 +6,22 @@ import asyncio
 import math
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TypeVar
 
 from culet.engine.governing.thrift import NO_LIMITS, Allowance, Thrift
 from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.video_track import VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
+from culet_protocol.frame import Codec
+from culet_protocol.watch import VIDEO, WATCH_BYTES, video_topic
+
+T = TypeVar("T")
 
 UNSENT_FRAMES = 2
 """That may wait to be encoded and sent before no other is begun."""
@@ -25,8 +31,12 @@ UNSENT_FRAMES = 2
 class Outgoing:
     """Of one session."""
 
+    codecs: frozenset[Codec] = frozenset({Codec.JPEG})
+    """Of what somebody subscribes to: frames that are pictures of their own (JPEG), and video."""
+    tracks: dict[Codec, VideoTrack] = field(default_factory=dict)
+    """Of video that somebody subscribes to."""
     message: bytes | None = None
-    """The frame sent last."""
+    """The frame sent last, by the session's watch id; None if it was only sent as video."""
     sent_at: float = 0.0
     """s, steady clock: when that was."""
     unsent: int = 0
@@ -35,6 +45,22 @@ class Outgoing:
     """Bytes that frames may have."""
     latest: asyncio.Task[None] | None = None
     """Encodes and sends the frame that was drawn last."""
+
+    def watch(self, codec: Codec, *, subscribed: bool) -> None:
+        """Somebody began, or the last one ceased, to receive frames in that codec. Whoever subscribes once more to
+        video lacks a key frame."""
+        if not subscribed:
+            self.codecs -= {codec}
+            self.tracks.pop(codec, None)
+            return
+        self.codecs |= {codec}
+        if codec in VIDEO:
+            self.tracks.setdefault(codec, VideoTrack(codec)).want_key()
+
+    def hold(self, codec: Codec, now: float, *, held: bool) -> None:
+        """Encode no more video of that codec for a while, or go on."""
+        if codec in self.tracks:
+            self.tracks[codec].hold(now, held=held)
 
     @property
     def full(self) -> bool:
@@ -72,7 +98,7 @@ class FrameSender:
         if outgoing.message is not None:
             outgoing.sent_at = self._now()
             self._tally.counters.frames_repeated += 1
-            self._send(outgoing.message)
+            self._send_to(outgoing.codecs, outgoing.message)
 
     def stop(self) -> None:
         """Encode nothing more."""
@@ -87,17 +113,31 @@ class FrameSender:
         begun_at: float,
         before: asyncio.Task[None] | None,
     ) -> None:
-        at_rest = outgoing.allowance.at_rest or math.inf
         drawn_at, started = self._now(), time.perf_counter()
+        codecs, video, tracks = outgoing.codecs, {}, list(outgoing.tracks.values()) if frame.planned else []
         try:
-            encoded = await asyncio.get_running_loop().run_in_executor(self._threads, frame.encoded, at_rest)
+            if tracks and before is not None:
+                await asyncio.wait([before])  # each frame of video is encoded after the one before it
+            for track in tracks:
+                codecs -= {track.codec} if track.works else set()
+                if track.works and not track.is_held(drawn_at):  # skipped before it is encoded, not after
+                    packet = await self._in_thread(track.encode, frame.rgb, frame.crf, drawn_at)
+                    if packet is None:
+                        codecs |= {track.codec}  # as JPEG
+                    else:
+                        video[track] = frame.coded(track.codec, packet, track.sequence)
+            picture = await self._in_thread(frame.encoded, outgoing.allowance.at_rest or math.inf) if codecs else None
             encode_seconds = time.perf_counter() - started
-            if frame.encoding is not None:
-                thrift.encoded((encoded.width, encoded.height), encoded.quality, len(encoded.data))
+            if picture is not None and frame.encoding is not None:
+                thrift.encoded((picture.width, picture.height), picture.quality, len(picture.data))
             if before is not None:
                 await asyncio.wait([before])  # so that frames leave in order
+            if picture is None and not video:
+                outgoing.message = None  # of something else than what is shown
+                return
             session.sequence += 1
-            message = frame.pack(session, encoded, encode_seconds)
+            message = None if picture is None else frame.pack(session, picture, encode_seconds)
+            packed = {track: frame.pack(session, coded, encode_seconds) for track, coded in video.items()}
         except Exception as error:  # one session's failure must not end the others'
             self._tell_problem(session, as_culet_error(error, what="encoding"))
             return
@@ -109,4 +149,17 @@ class FrameSender:
         self._tally.durations.frame.add(max(0.0, now - begun_at))
         outgoing.message, outgoing.sent_at = message, now
         self._tally.counters.frames_sent += 1
-        self._send(message)
+        if message is not None:
+            self._send_to(codecs, message)
+        for track, sent in packed.items():
+            track.sequence = session.sequence
+            self._send_to({track.codec}, sent)
+
+    def _send_to(self, codecs: Collection[Codec], message: bytes) -> None:
+        """A message by the session's watch id to who subscribes to frames in those codecs."""
+        for codec in codecs:
+            watch, rest = message[:WATCH_BYTES], message[WATCH_BYTES:]
+            self._send(video_topic(watch, codec) + rest if codec in VIDEO else message)
+
+    async def _in_thread(self, call: Callable[..., T], *arguments: object) -> T:
+        return await asyncio.get_running_loop().run_in_executor(self._threads, call, *arguments)

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Plan
-from culet.engine.governing.thrift import Encoding
+from culet.engine.governing.thrift import BEST_CRF, Encoding
 from culet.engine.painting import jpeg
-from culet.engine.painting.jpeg import Encoded
+from culet.engine.painting.coded import Coded
 from culet.engine.painting.renderer import Picture
+from culet.engine.painting.video_track import TrackedPacket
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
 from culet.rendering.chains import bands_seen
@@ -59,6 +60,8 @@ class LiveFrame:
     """Floor and walls show nothing of what goes through stones."""
     encoding: Encoding | None
     """Of a moving one for a link with limits."""
+    planned: bool
+    """As the governor, or a pinned balance, has what moves: others like it follow soon."""
 
     @classmethod
     def developed(
@@ -101,21 +104,35 @@ class LiveFrame:
             light_error=picture.light_error(),
             shadows_only=picture.shows_shadows_only(),
             encoding=None if plan is None else plan.encoding,
+            planned=plan is not None,
         )
 
-    def encoded(self, at_rest: float) -> Encoded:
+    def encoded(self, at_rest: float) -> Coded:
         """Its picture as it is sent; one that does not move has so many bytes at most. Takes milliseconds."""
         if self.encoding is not None:
-            return jpeg.encode_within(self.rgb, self.encoding.quality, self.encoding.most_bytes)
+            picture = jpeg.encode_within(self.rgb, self.encoding.quality, self.encoding.most_bytes)
+            return Coded.of_jpeg(picture, thrifty=self.encoding.thrifty or picture.quality < self.encoding.quality)
         quality = jpeg.MOVING_QUALITY if self.shown.moving else jpeg.RESTING_QUALITY
-        return jpeg.encode_within(self.rgb, quality, math.inf if self.shown.moving else at_rest)
+        picture = jpeg.encode_within(self.rgb, quality, math.inf if self.shown.moving else at_rest)
+        return Coded.of_jpeg(picture, thrifty=not self.shown.moving and picture.quality < jpeg.RESTING_QUALITY)
 
-    def pack(self, session: Session, encoded: Encoded, encode_seconds: float) -> bytes:
-        """The message to send."""
+    @property
+    def crf(self) -> int:
+        """Constant rate factor of it as video."""
+        return BEST_CRF if self.encoding is None else self.encoding.crf
+
+    def coded(self, codec: Codec, packet: TrackedPacket, before: int) -> Coded:
+        """Its picture as video; the packet needs the frame of that number before it, unless it is a key frame."""
+        thrifty = packet.crf > BEST_CRF or (self.encoding is not None and self.encoding.thrifty)
+        depends_on = 0 if packet.is_key else before
+        return Coded(codec, packet.data, packet.width, packet.height, packet.crf, thrifty, depends_on)
+
+    def pack(self, session: Session, encoded: Coded, encode_seconds: float) -> bytes:
+        """The message to send, by the session's watch id."""
         frontier = math.isnan(self.error) and not math.isnan(self.expected_error)
         return Frame(
             watch=session.key,
-            codec=Codec.JPEG,
+            codec=encoded.codec,
             flags=self._flags(frontier, encoded) | self._unseen(),
             sequence=session.sequence,
             width=encoded.width,
@@ -137,16 +154,12 @@ class LiveFrame:
             shown_error=self.shown_error,
             rest_error=self.rest_error,
             payload=encoded.data,
+            depends_on=encoded.depends_on,
         ).pack()
 
     def _with_light(self, error: float) -> float:
         """An expected error that knows nothing of the light map, and the map's."""
         return error if math.isnan(self.light_error) else math.hypot(error, self.light_error)
-
-    def _thrifty(self, encoded: Encoded) -> bool:
-        if self.encoding is not None:
-            return self.encoding.thrifty or encoded.quality < self.encoding.quality
-        return not self.shown.moving and encoded.quality < jpeg.RESTING_QUALITY
 
     def _unseen(self) -> Flags:
         """Where the nearest stone is, if no stone is in the picture."""
@@ -154,15 +167,15 @@ class LiveFrame:
         scene = self.shown.scene
         return whereabouts(scene.camera, [Ball(stone.position, stone.scale) for stone in scene.stones], width / height)
 
-    def _flags(self, frontier: bool, encoded: Encoded) -> Flags:
+    def _flags(self, frontier: bool, encoded: Coded) -> Flags:
         flags = {
             Flags.MOVING: self.shown.moving,
             Flags.FINAL: self.final,
             Flags.POLARISED: self.optics.polarised,
             Flags.FRONTIER: frontier,
             Flags.SLOW: self.slow,
-            Flags.KEY: True,  # as every JPEG
+            Flags.KEY: encoded.depends_on == 0,
             Flags.SHADOWS_ONLY: self.shadows_only,
-            Flags.THRIFTY: self._thrifty(encoded),
+            Flags.THRIFTY: encoded.thrifty,
         }
         return Flags(sum(flag for flag, is_set in flags.items() if is_set))

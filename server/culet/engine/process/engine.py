@@ -12,6 +12,7 @@ import zmq.asyncio
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.renderer import Picture, Renderer
 from culet.engine.painting.still import StillQueue
+from culet.engine.painting.video import video_codecs
 from culet.engine.process.limits import Limits
 from culet.engine.process.machine import budget
 from culet.engine.process.memory import Memory
@@ -22,6 +23,7 @@ from culet.engine.process.sockets import Peers, bind_control, bind_frames
 from culet.engine.process.watchdog import Watchdog
 from culet.errors import CuletError, InputError
 from culet_protocol import engine as protocol
+from culet_protocol.watch import VIDEO_NAMES
 
 log = logging.getLogger(__name__)
 
@@ -72,6 +74,7 @@ class Engine:
             still_seconds=limits.still_seconds,
             rest=limits.rest,
         )
+        self._encodes = tuple(VIDEO_NAMES[codec] for codec in video_codecs())
         self._watchdog = Watchdog(render_thread)
         self._orphan_seconds = limits.orphan_seconds
         memory = Memory(budget(limits.memory))
@@ -184,7 +187,7 @@ class Engine:
             await asyncio.sleep(HEARTBEAT_SECONDS)
 
     def _heartbeat(self) -> bytes:
-        return encoded(protocol.Heartbeat(instance=self._requests.instance))
+        return encoded(protocol.Heartbeat(instance=self._requests.instance, encodes=self._encodes))
 
     def _tell(self, state: protocol.SessionChange | protocol.SessionMotion) -> None:
         self._spawn(self._peers.tell(encoded(state)))

@@ -19,6 +19,8 @@ from culet.scene import Environment, Scene
 from culet.simulation.overlaps import overlaps
 from culet.stage import Library, Stage
 from culet_protocol.engine import OpenSession
+from culet_protocol.frame import Codec
+from culet_protocol.watch import VIDEO, video_topic
 
 SUBSCRIPTIONS = 4096
 """Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
@@ -26,6 +28,7 @@ SESSION_BYTES = 2**20
 """Of a session: its scene, its simulation with the stone's hull, and its stone if that is a cut."""
 SHOWN_BYTES = 2**14
 """Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
+TOPICS = (Codec.JPEG, *VIDEO)
 HISTORY_SHARE = 1 / 8
 """Of the memory that all histories together may take."""
 
@@ -87,7 +90,12 @@ class OpenSessions:
         self._make_room()
         if request.client is not None:
             self._clients[request.session] = request.client
-        self._painter.pictures[request.session] = LivePicture(session, watched=session.key in self._subscriptions)
+        live = self._painter.pictures[request.session] = LivePicture(session)
+        live.outgoing.codecs = frozenset()
+        for codec in TOPICS:
+            if topic(live, codec) in self._subscriptions:
+                live.outgoing.watch(codec, subscribed=True)
+        live.watched = bool(live.outgoing.codecs)
         self._painter.wake()
         return self.get(request.session)
 
@@ -112,10 +120,12 @@ class OpenSessions:
             self._subscriptions.add(key)
         elif not subscribed:
             self._subscriptions.discard(key)
-        live = next((live for live in self if live.session.key == key), None)
-        if live is None:
+        found = next(((live, codec) for live in self for codec in TOPICS if topic(live, codec) == key), None)
+        if found is None:
             return
-        live.watched = subscribed
+        live, codec = found
+        live.outgoing.watch(codec, subscribed=subscribed)
+        live.watched = bool(live.outgoing.codecs)
         self._touched[live.session.name] = time.monotonic()
         if subscribed:
             self._painter.show_again(live)
@@ -149,6 +159,11 @@ class OpenSessions:
         if snapshot is None:
             return Session(name, stage, sky=sky, history=self._history)
         return Session.restored(name, stage, snapshot, sky=sky, history=self._history)
+
+
+def topic(live: LivePicture, codec: Codec) -> bytes:
+    """By which frames of a session come in a codec, JPEG meaning pictures of their own."""
+    return video_topic(live.session.key, codec) if codec in VIDEO else live.session.key
 
 
 def history_length(limits: Limits, budget: int) -> int:

@@ -27,6 +27,7 @@ from culet.errors import InputError
 from culet.optics.sky_files.picture import SkyPicture
 from culet.stage import Library
 from culet_protocol import engine as protocol
+from culet_protocol.watch import VIDEO_OF_NAME
 
 LONG_EVENTS = frozenset(
     {
@@ -110,6 +111,10 @@ class Requests:
                 return await self._ask(request), None
             case protocol.Demand():
                 return self._demand(request), None
+            case protocol.HoldVideo():
+                outgoing = self.sessions.get(request.session).outgoing
+                outgoing.hold(VIDEO_OF_NAME[request.codec], time.monotonic(), held=request.held)
+                return {}, None
             case protocol.Render():
                 return await self._stills.render(request)
             case protocol.Grade():
