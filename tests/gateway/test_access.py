@@ -60,6 +60,10 @@ def settings(**given: object) -> GatewaySettings:
         ("GET", "/api/skies", NOTHING),
         ("POST", "/api/skies", Right.UPLOAD),
         ("POST", "/api/meshes", Right.UPLOAD),
+        ("POST", "/api/sessions/abc/meshes", Right.UPLOAD),
+        ("POST", "/api/sessions/abc/skies", Right.UPLOAD),
+        ("PUT", "/api/sessions/abc", Right.STEER),
+        ("POST", "/api/drain", Right.ADMINISTER),
         ("POST", "/api/sessions", Right.STEER),
         ("GET", "/api/sessions", Right.STEER),
         ("DELETE", "/api/sessions/abc", NOTHING),  # whoever knows the id

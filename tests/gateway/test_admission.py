@@ -139,9 +139,10 @@ TAKEN = {
     "/openapi.json": "GET, HEAD, OPTIONS",
     "/api/render": "OPTIONS, POST",
     "/api/sessions": "OPTIONS, POST",
-    "/api/sessions/x": "DELETE, GET, HEAD, OPTIONS, PATCH",
+    "/api/sessions/x": "DELETE, GET, HEAD, OPTIONS, PATCH, PUT",
     "/api/sessions/x/events": "OPTIONS, POST",
     "/api/meshes": "OPTIONS, POST",
+    "/api/sessions/x/skies": "OPTIONS, POST",
     "/nowhere": "GET, HEAD, OPTIONS",
 }
 

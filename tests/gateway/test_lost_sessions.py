@@ -8,7 +8,7 @@ import pytest
 
 from culet_protocol.frame import Flags
 from culet_protocol.messages import Orbit, ToggleFall
-from gateway.running import Gateway
+from gateway.running import TETRAHEDRON, Gateway
 
 UNKNOWN = "c0" * 16
 LIVELY: dict[str, Any] = {
@@ -46,9 +46,35 @@ async def test_a_lost_session_is_made_again_as_a_viewer_saw_it_last(gateway: Gat
     assert frame.sequence > last.sequence, "no number is used again"
     assert frame.step > last.step
 
-    second = await gateway.http.post("/api/sessions", json=lost | {"scene": {}})
-    assert second.json()["scene"] == state["scene"], "of several viewers the first one makes it"
+    for second in (
+        await gateway.http.post("/api/sessions", json=lost | {"scene": {}}),
+        await gateway.http.put(f"/api/sessions/{session}", json={"scene": {}}),
+    ):
+        assert second.json()["scene"] == state["scene"], "of several viewers the first one makes it"
+    assert second.status_code == 200, "it was there"
     await gateway.http.delete(f"/api/sessions/{session}")
+
+
+async def test_a_lost_session_is_made_again_where_its_path_leads_with_the_files_that_were_given_there_before(
+    gateway: Gateway,
+) -> None:
+    """Of several servers behind a proxy those who ask by the session's path come to the same one."""
+    path = f"/api/sessions/{UNKNOWN}"
+    mesh = await gateway.http.post(f"{path}/meshes", files={"file": ("stone.obj", TETRAHEDRON)})
+    assert mesh.status_code == 201, mesh.text
+    made = await gateway.http.put(path, json={"scene": {"stones": [{"mesh": mesh.json()["id"]}]}})
+    assert made.status_code == 201, made.text
+    assert made.url.join(made.headers["Location"]).path == path
+    assert made.headers["Culet-Watch"] == made.json()["watch"]
+    assert (await gateway.http.post(f"{path}/skies", files={"file": ("sky.txt", b"")})).status_code == 422
+    watched = await gateway.http.post(f"/api/sessions/{made.json()['watch']}/meshes", files={"file": ("a.obj", b"")})
+    assert watched.status_code == 403, "a watch id lets watch"
+    await gateway.http.delete(path)
+    gone = await gateway.http.post(f"{path}/meshes", files={"file": ("stone.obj", TETRAHEDRON)})
+    assert gone.status_code == 404, "a session that was deleted is not about to be made again"
+    assert (await gateway.http.put(path, json={"scene": {}})).status_code == 404
+    assert (await gateway.http.put("/api/sessions/x", json={"scene": {}})).status_code == 422
+    assert (await gateway.http.post("/api/sessions/x/meshes", files={"file": ("a.obj", b"")})).status_code == 404
 
 
 async def test_a_session_that_was_deleted_stays_so(gateway: Gateway) -> None:

@@ -120,6 +120,7 @@ const findings = new Findings(
 const opening = new Opening(
   {
     state: () => visit.state,
+    session: () => visit.session,
     send: (event) => visit.send(event),
     aspect,
     forget: () => {

@@ -18,6 +18,7 @@ from culet.gateway.origins import own_origin
 from culet.gateway.problems import problem
 from culet.gateway.server_token import Token
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.upload_paths import UPLOADS
 
 LOGIN_PATH = "/api/login"
 CHALLENGE = 'Bearer realm="culet"'
@@ -46,7 +47,6 @@ _NAMED = re.compile(r"/api/(sessions/[^/]+(/.*)?|stream)")
 """Where a session is named, by an id that is a secret."""
 _LISTS = re.compile(r"/api/(presets|materials|cuts|skies|integrators)(/.*)?")
 """What there is to choose from."""
-_UPLOADS = frozenset({"/api/meshes", "/api/skies"})
 _ADMINISTRATION = frozenset({"/api/drain"})
 _HEALTH = frozenset({"/healthz", "/readyz"})
 
@@ -59,10 +59,12 @@ def needed(method: str, path: str, settings: GatewaySettings) -> Right:
         return NOTHING if settings.open_metrics else Right.ADMINISTER
     if path in _ADMINISTRATION:
         return Right.ADMINISTER
+    if UPLOADS.fullmatch(path) and method == "POST":
+        return Right.UPLOAD
+    if method == "PUT" and path.startswith("/api/sessions/"):
+        return Right.STEER  # a session is made: knowing its name is not enough
     if not path.startswith("/api/") or _NAMED.fullmatch(path):
         return NOTHING
-    if path in _UPLOADS and method == "POST":
-        return Right.UPLOAD
     return NOTHING if method in ("GET", "HEAD") and _LISTS.fullmatch(path) else Right.STEER
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.exceptions import HTTPException
@@ -16,6 +15,7 @@ from culet.gateway.holdings import Holdings
 from culet.gateway.origins import Hosts, is_address, may_enter
 from culet.gateway.problems import RETRY_AFTER_SECONDS, problem, problem_of
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.upload_paths import UPLOADS
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 _PICTURES = re.compile(r"/api/(render|turntable|sessions/[^/]+/frame)\.\w+")
@@ -55,11 +55,11 @@ class Admission:
     limit, 429 where a client has too much under way, 400 for a body of two lengths.
     """
 
-    def __init__(self, app: ASGIApp, *, settings: GatewaySettings, body_limits: Mapping[str, int]) -> None:
-        """`body_limits` are those of paths that take files, and not the settings' `max_body_bytes`."""
+    def __init__(self, app: ASGIApp, *, settings: GatewaySettings, largest_form: int) -> None:
+        """`largest_form` is the limit for paths that take files, in place of the settings' `max_body_bytes`."""
         self._app = app
         self._settings = settings
-        self._body_limits = body_limits
+        self._largest_form = largest_form
         own = () if is_address(settings.host) else (settings.host,)
         self._hosts = Hosts([*settings.allow_host, *own])
         self._bodies = Bodies(settings.max_bodies_bytes, settings.max_client_bodies_bytes)
@@ -107,7 +107,7 @@ class Admission:
         if declared.isdecimal():
             limit = self._limit(path)
             if int(declared) > limit:
-                field = "file" if path in self._body_limits else None
+                field = "file" if UPLOADS.fullmatch(path) else None
                 return problem_of(TooLargeError(f"{_too_large(limit)}, got {declared}", field))
             if not self._bodies.room_for(client, int(declared)):
                 return problem_of(BusyError(self._no_room()))
@@ -129,7 +129,7 @@ class Admission:
             size = len(message.get("body", b""))
             if came + size > limit:
                 detail = f"{_too_large(limit)}, got more"
-                if scope["path"] in self._body_limits:
+                if UPLOADS.fullmatch(scope["path"]):
                     raise TooLargeError(detail, "file")
                 raise HTTPException(TooLargeError.status, detail)  # FastAPI makes 400 of others, reading JSON
             if not self._bodies.room_for(client, size):
@@ -144,7 +144,7 @@ class Admission:
             self._bodies.give_back(client, came)
 
     def _limit(self, path: str) -> int:
-        return self._body_limits.get(path, self._settings.max_body_bytes)
+        return self._largest_form if UPLOADS.fullmatch(path) else int(self._settings.max_body_bytes)
 
     def _no_room(self) -> str:
         return f"{self._bodies.bytes} bytes of bodies are under way; try again later"

@@ -26,7 +26,7 @@ STREAM_COST = 10
 
 def cost_of(method: str, path: str) -> int:
     """Of an HTTP request."""
-    if path == "/api/sessions" and method == "POST":
+    if (path == "/api/sessions" and method == "POST") or (path.startswith("/api/sessions/") and method == "PUT"):
         return SESSION_COST
     return REQUEST_COST if path.startswith("/api/") or path in ("/metrics", "/docs", "/openapi.json") else FILE_COST
 

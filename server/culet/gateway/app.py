@@ -36,6 +36,7 @@ from culet.gateway.methods import Methods
 from culet.gateway.metrics import Metrics
 from culet.gateway.openapi import Application
 from culet.gateway.page_files import PageFiles
+from culet.gateway.paths import InFolder
 from culet.gateway.quality import QUALITY_HEADERS
 from culet.gateway.security_headers import SecurityHeaders
 from culet.gateway.sessions import Sessions
@@ -72,6 +73,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
         summary="Dispersive gemstones, traced exactly and streamed to thin clients.",
         description="Errors are problem documents (RFC 9457) that name the field. Frames of a session and control "
         "events travel by the WebSocket `/api/sessions/{id}/stream`: see the documentation's page of the protocol.",
+        servers=[{"url": "."}],  # beside the document: a proxy may have both in a folder
         openapi_url=None,  # FastAPI would make the document on the loop, which takes longer than a frame
         docs_url=None,  # its pages load their scripts from the network
         redoc_url=None,
@@ -103,19 +105,21 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     # The last one is the first that a request meets.
     app.add_middleware(Methods, routes=[*app.routes, *(route for part in PARTS for route in part.router.routes)])
     app.add_middleware(Access, settings=settings)
-    app.add_middleware(Admission, settings=settings, body_limits=upload_routes.body_limits(settings))
+    app.add_middleware(Admission, settings=settings, largest_form=upload_routes.largest_form(settings))
     app.add_middleware(Allowance, clients=app.state.gateway.clients)
     if settings.allow_origin:
         app.add_middleware(
             CORSMiddleware,
             allow_origins=settings.allow_origin,
-            allow_methods=("GET", "HEAD", "POST", "PATCH", "DELETE"),
+            allow_methods=("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE"),
             allow_headers=("Authorization",),  # the server's token
             expose_headers=("Location", "Retry-After", "Content-Disposition", "ETag", *QUALITY_HEADERS),
             allow_private_network=True,
         )
     app.add_middleware(SecurityHeaders, settings=settings)
     app.add_middleware(AccessLog, metrics=app.state.gateway.metrics)
+    if settings.root_path:
+        app.add_middleware(InFolder, folder=settings.root_path)
     return app
 
 

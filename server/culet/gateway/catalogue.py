@@ -169,7 +169,7 @@ async def presets() -> Presets:
                 title=preset.title,
                 summary=preset.summary,
                 group=preset.group,
-                thumbnail=f"/api/presets/{preset.name}/thumbnail.webp",
+                thumbnail=f"presets/{preset.name}/thumbnail.webp",
                 scene=preset.scene,
             )
             for preset in PRESETS.values()

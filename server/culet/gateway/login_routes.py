@@ -8,6 +8,7 @@ from culet.gateway.access import ALL, LOGIN_PATH, cookie_name
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.server_token import Token
+from culet.gateway.state import Gateway
 
 router = APIRouter(tags=["login"])
 
@@ -27,13 +28,19 @@ async def login(request: Request, gateway: ThisGateway) -> Response:
             httponly=True,
             samesite="strict",
             secure=request.url.scheme == "https",
+            path=_folder(gateway),
         )
     return response
 
 
 @router.delete(LOGIN_PATH, status_code=204, responses=answers(401, 429))
-async def logout(request: Request) -> Response:
+async def logout(request: Request, gateway: ThisGateway) -> Response:
     """Forget the cookie."""
     response = Response(status_code=204)
-    response.delete_cookie(cookie_name(request.scope), httponly=True, samesite="strict")
+    response.delete_cookie(cookie_name(request.scope), path=_folder(gateway), httponly=True, samesite="strict")
     return response
+
+
+def _folder(gateway: Gateway) -> str:
+    """Of the site that a browser tells the cookie to: the others in it may be other people's servers."""
+    return f"{gateway.settings.root_path}/"

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Self
 
-from fastapi import APIRouter, Body, Query, Request, Response, WebSocket
+from fastapi import APIRouter, Body, Path, Query, Request, Response, WebSocket
 from pydantic import Field, model_validator
 
 from culet.gateway import stream as streaming
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
 from culet.gateway.parts import ThisGateway
+from culet.gateway.paths import reference
 from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers, check_numbers, finite
 from culet.gateway.quality import quality_headers
@@ -85,7 +86,10 @@ class SessionAnswer(Model):
         Field(description="What was found in uploaded meshes, and which stones overlap, a sentence each."),
     ]
     viewers: int
-    stream: Annotated[str, Field(description="Path of the WebSocket; see the protocol's specification.")]
+    stream: Annotated[
+        str,
+        Field(description="Where the WebSocket is, relative to what was asked; see the protocol."),
+    ]
 
 
 Step = Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")]
@@ -117,17 +121,59 @@ async def create_session(
     else:
         finite(request.snapshot)
         session = await gateway.sessions.reopen(request.id, shown, request.snapshot, client)
-    response.headers["Location"] = f"/api/sessions/{session.id}"
-    return _answer(session, session.id)
+    _name(http, response, session)
+    return _answer(http, session, session.id)
+
+
+class LostSession(Model):
+    """A session as its viewers were told of it last."""
+
+    scene: Scene
+    snapshot: (
+        Annotated[dict[str, Any], Field(description="The last one that a viewer of the lost session was told.")] | None
+    ) = None
+
+    model_config = Model.model_config | {"json_schema_extra": {"examples": [{"scene": {}}]}}
+
+
+@router.put(
+    "/api/sessions/{session_id}",
+    responses={201: {"model": SessionAnswer, "description": "It was made again"}, **answers(401, 403, 404, 413, 422)},
+)
+async def make_session_again(
+    http: Request,
+    session_id: Annotated[str, Path(pattern="^[0-9a-f]{32}$")],
+    lost: LostSession,
+    gateway: ThisGateway,
+    response: Response,
+) -> SessionAnswer:
+    """Make a session again that the server has lost, as its viewers saw it last; one that is there stays as it is.
+
+    As `POST /api/sessions` with its `id`; a proxy before several servers finds by this path the one that is to have it.
+    """
+    finite(lost.snapshot)
+    before = session_id in gateway.sessions
+    scene = lost.scene.model_dump(mode="json")
+    session = await gateway.sessions.reopen(session_id, scene, lost.snapshot, client_of(http.scope))
+    if not before:
+        response.status_code = 201
+    _name(http, response, session)
+    return _answer(http, session, session_id)
+
+
+def _name(http: Request, response: Response, session: SessionRecord) -> None:
+    """Say in the head where the session is, for proxies that learn by it which server has it."""
+    response.headers["Location"] = reference(http.url.path, f"/api/sessions/{session.id}")
+    response.headers["Culet-Watch"] = session.topic.hex()
 
 
 @router.get("/api/sessions/{session_id}", responses=answers(404, 429, 503))
-async def get_session(session_id: str, gateway: ThisGateway) -> SessionAnswer:
+async def get_session(http: Request, session_id: str, gateway: ThisGateway) -> SessionAnswer:
     """A session as it is now."""
     await gateway.sessions.settle(session_id)
     session = gateway.sessions.get(session_id)
     await gateway.sessions.describe(session)
-    return _answer(session, session_id)
+    return _answer(http, session, session_id)
 
 
 @router.get("/api/sessions/{session_id}/scene", responses=answers(404, 422, 429, 503))
@@ -144,6 +190,7 @@ async def get_scene(
 
 @router.patch("/api/sessions/{session_id}", responses=answers(403, 404, 413, 422, 429, 503))
 async def patch_session(
+    http: Request,
     session_id: str,
     patch: Annotated[dict[str, Any], Body(examples=[{"floor": {"kind": "matte"}}])],
     gateway: ThisGateway,
@@ -160,11 +207,12 @@ async def patch_session(
     async with session.room:
         await gateway.sessions.apply(session, PatchScene(patch=patch))
     await gateway.sessions.describe(session)
-    return _answer(session, session_id)
+    return _answer(http, session, session_id)
 
 
 @router.post("/api/sessions/{session_id}/events", responses=answers(403, 404, 413, 422, 429, 503))
 async def post_event(
+    http: Request,
     session_id: str,
     event: Annotated[SessionEvent, Body(discriminator="type", examples=[{"type": "toggle_fall"}])],
     gateway: ThisGateway,
@@ -175,7 +223,7 @@ async def post_event(
     async with session.room:
         await gateway.sessions.apply(session, event)
     await gateway.sessions.describe(session)
-    return _answer(session, session_id)
+    return _answer(http, session, session_id)
 
 
 @router.delete("/api/sessions/{session_id}", status_code=204, responses=answers(403, 404, 429, 503))
@@ -253,7 +301,7 @@ async def _frame(
     return PictureResponse(data, media_type=MEDIA_TYPES[file_format], headers=headers)
 
 
-def _answer(session: SessionRecord, name: str) -> SessionAnswer:
+def _answer(http: Request, session: SessionRecord, name: str) -> SessionAnswer:
     """As whoever calls the session by that name, its id or its watch id, may know it."""
     return SessionAnswer(
         id=name,
@@ -262,5 +310,5 @@ def _answer(session: SessionRecord, name: str) -> SessionAnswer:
         **session.condition.model_dump(),
         findings=session.findings,
         viewers=len(session.viewers),
-        stream=f"/api/sessions/{name}/stream",
+        stream=reference(http.url.path, f"/api/sessions/{name}/stream"),
     )

@@ -72,6 +72,9 @@ class Sessions:
     def __len__(self) -> int:
         return len(self._sessions)
 
+    def __contains__(self, session: str) -> bool:
+        return session in self._sessions
+
     def __iter__(self) -> Iterator[SessionRecord]:
         return iter(self._sessions.values())
 
@@ -86,6 +89,14 @@ class Sessions:
         if found.id != session:
             raise ForbiddenError("this link lets watch the session; whoever has its other link changes it")
         return found
+
+    def takes_files(self, session: str) -> None:
+        """Whether files may be given for the session of that id, which thereby counts as used: also for one that is
+        lost, and about to be made again. ForbiddenError for a watch id, NotFoundError for what there cannot be."""
+        if session in self._deleted or SESSION_ID.fullmatch(session) is None:
+            raise NotFoundError(f"no session {session[:64]!r}")
+        if session in self._sessions or self._watched_by(session) is not None:
+            self.steered(session)
 
     def _watched_by(self, watch: str) -> SessionRecord | None:
         """The session of that watch id."""

@@ -13,6 +13,7 @@ from pydantic import ByteSize, Field, field_validator
 from culet.errors import InputError
 from culet.gateway.client_address import read_proxies
 from culet.gateway.origins import Hosts, read_origin
+from culet.gateway.paths import FOLDER
 from culet.gateway.server_token import PATTERN, is_own_machine, made_token
 from culet.settings import MEBIBYTE, Settings, Words, option, variable
 
@@ -41,6 +42,12 @@ class GatewaySettings(Settings):
     no_token: bool = Field(default=False, description="Make no token: whoever reaches the server may do everything.")
     open_health: bool = Field(default=True, description="Answer /healthz and /readyz without the token.")
     open_metrics: bool = Field(default=False, description="Answer /metrics without the token.")
+    root_path: str = Field(
+        "",
+        description="Folder of a proxy's site that this server is shown in, such as /gems. Requests may come with it "
+        "or without. Page and answers refer to each other relatively, so it is needed only where a proxy leaves it in "
+        "what it passes on, and by cookies, which are then for that folder alone.",
+    )
     web: Path = Field(BUILT_CLIENT, description="Folder of the built web client, served at /.")
     allow_host: Words = Field(
         (),
@@ -148,6 +155,14 @@ class GatewaySettings(Settings):
     def _token(cls, given: str | None) -> str | None:
         if given is not None and PATTERN.fullmatch(given) is None:
             raise ValueError("expected 16 to 200 letters, digits, - and _")
+        return given
+
+    @field_validator("root_path")
+    @classmethod
+    def _folder(cls, given: str) -> str:
+        given = given.rstrip("/")
+        if FOLDER.fullmatch(given) is None or ".." in given.split("/"):
+            raise ValueError("expected a folder such as /gems, of letters, digits, ., _, ~ and -")
         return given
 
     @field_validator("allow_host")

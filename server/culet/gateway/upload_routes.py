@@ -1,4 +1,5 @@
-"""POST /api/meshes and POST /api/skies: what scenes may then name by the id of the answer."""
+"""POST /api/sessions/{id}/meshes and .../skies: what the session's scenes may then name by the id of the answer. And
+POST /api/meshes and /api/skies, for scenes of any session of this server, and of stills."""
 
 from __future__ import annotations
 
@@ -10,13 +11,13 @@ from culet.gateway.form import ENVELOPE_BYTES, read_form
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.settings import GatewaySettings
+from culet.gateway.state import Gateway
+from culet.gateway.upload_paths import MESHES_PATH, SESSION_MESHES_PATH, SESSION_SKIES_PATH, SKIES_PATH
 from culet.gateway.uploads import MESH, SKY, Kind
 from culet.scene.fields import Model
 from culet_protocol.engine import DescribedMesh, DescribedSky
 
 router = APIRouter(tags=["uploads"])
-
-MESHES_PATH, SKIES_PATH = "/api/meshes", "/api/skies"
 
 _FORM: dict[str, Any] = {
     "requestBody": {
@@ -34,9 +35,9 @@ _FORM: dict[str, Any] = {
 }
 
 
-def body_limits(settings: GatewaySettings) -> dict[str, int]:
-    """The largest body of each path here, in bytes."""
-    return dict.fromkeys((MESHES_PATH, SKIES_PATH), settings.max_upload_bytes + ENVELOPE_BYTES)
+def largest_form(settings: GatewaySettings) -> int:
+    """Bytes of the largest body that these paths take."""
+    return settings.max_upload_bytes + ENVELOPE_BYTES
 
 
 class MeshAnswer(Model):
@@ -67,6 +68,32 @@ async def upload_sky(request: Request, gateway: ThisGateway) -> SkyAnswer:
     it says otherwise). The answer says what was found in it."""
     name, described = await _taken(SKY, request, gateway)
     return SkyAnswer(id=name, description=DescribedSky.model_validate(described))
+
+
+@router.post(
+    SESSION_MESHES_PATH, status_code=201, responses=answers(401, 403, 404, 413, 422, 429, 503), openapi_extra=_FORM
+)
+async def upload_mesh_of_session(session_id: str, request: Request, gateway: ThisGateway) -> MeshAnswer:
+    """As `/api/meshes`, to the server that has the session: of several behind one proxy only that knows the mesh."""
+    await _take_for(session_id, gateway)
+    name, described = await _taken(MESH, request, gateway)
+    return MeshAnswer(id=name, description=DescribedMesh.model_validate(described))
+
+
+@router.post(
+    SESSION_SKIES_PATH, status_code=201, responses=answers(401, 403, 404, 413, 422, 429, 503), openapi_extra=_FORM
+)
+async def upload_sky_of_session(session_id: str, request: Request, gateway: ThisGateway) -> SkyAnswer:
+    """As `/api/skies`, to the server that has the session: of several behind one proxy only that knows the sky."""
+    await _take_for(session_id, gateway)
+    name, described = await _taken(SKY, request, gateway)
+    return SkyAnswer(id=name, description=DescribedSky.model_validate(described))
+
+
+async def _take_for(session_id: str, gateway: Gateway) -> None:
+    """Raises as `Sessions.takes_files`, once it is known what sessions there are."""
+    await gateway.sessions.settle(session_id)
+    gateway.sessions.takes_files(session_id)
 
 
 async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> tuple[str, dict[str, Any]]:

@@ -14,6 +14,7 @@ from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import urljoin
 
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
@@ -58,8 +59,8 @@ class Service:
         try:
             async with AsyncExitStack() as stack:
                 crowds = [
-                    [await stack.enter_async_context(_connected(self._url + each["stream"])) for _ in range(viewers)]
-                    for each in opened
+                    [await stack.enter_async_context(_connected(stream)) for _ in range(viewers)]
+                    for stream in (urljoin(f"{self._url}/api/sessions", each["stream"]) for each in opened)
                 ]
                 return await self._measured(crowds, seconds)
         finally:

@@ -15,6 +15,8 @@ import { parseScene } from "./files";
 
 export interface OpeningWorld {
   state: () => ViewState;
+  /** The id of the session; null while there is none. */
+  session: () => string | null;
   send: (event: SessionEvent) => void;
   /** Of what the picture covers: width by height. */
   aspect: () => number;
@@ -65,11 +67,14 @@ export class Opening {
   }
 
   /** Upload a file, with words about it for as long as that takes, and keep it; a refusal names the file. */
-  private async read(file: File, upload: (file: File) => Promise<Upload>): Promise<Upload> {
+  private async read(file: File, upload: (session: string, file: File) => Promise<Upload>): Promise<Upload> {
+    const session = this.world.session();
+    if (session === null) throw new Error(words.connection.noSessionYet);
+    const give = (again: File) => upload(session, again);
     const clear = this.toasts.note(words.files.reading(file.name));
     try {
-      const known = await upload(file);
-      this.files.keep(known.id, file, upload);
+      const known = await give(file);
+      this.files.keep(known.id, file, give);
       return known;
     } catch (error) {
       throw new Error(words.files.of(file.name, reasonOf(error)));

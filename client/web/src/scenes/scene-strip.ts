@@ -64,7 +64,7 @@ export class SceneStrip {
     button.type = "button";
     button.title = preset.summary;
     const picture = document.createElement("img");
-    picture.src = preset.thumbnail.replace(/^\//, ""); // beside the page: a proxy may have both in a folder
+    picture.src = `api/${preset.thumbnail}`; // as it is beside the list of presets
     picture.alt = "";
     picture.width = 84;
     picture.height = 63;

@@ -407,7 +407,7 @@ export interface SessionAnswer {
   findings: string[];
   viewers: number;
   /**
-   * Path of the WebSocket; see the protocol's specification.
+   * Where the WebSocket is, relative to what was asked; see the protocol.
    */
   stream: string;
 }

@@ -14,6 +14,8 @@ import {
 
 afterEach(() => vi.unstubAllGlobals());
 
+const SESSION = "ab".repeat(16);
+
 /** What fetch was called with, and what it answers. */
 function answering(status: number, body: unknown) {
   const calls: { path: string; init: RequestInit | undefined }[] = [];
@@ -72,7 +74,7 @@ it("says that the server cannot be reached", async () => {
 it("uploads a mesh as a form with one file", async () => {
   const findings = ["2 duplicate vertices merged."];
   const calls = answering(201, { id: "m", description: { facets: 6, convex: true, findings } });
-  const mesh = await uploadMesh(new File(["OFF"], "cube.off"));
+  const mesh = await uploadMesh(SESSION, new File(["OFF"], "cube.off"));
   expect(mesh).toEqual({ id: "m", findings });
   const form = calls[0]?.init?.body as FormData;
   expect((form.get("file") as File).name).toBe("cube.off");
@@ -80,15 +82,15 @@ it("uploads a mesh as a form with one file", async () => {
 
 it("says at least the shape of an upload in which nothing was found", async () => {
   answering(201, { id: "m", description: { facets: 6, convex: false, findings: [] } });
-  expect((await uploadMesh(new File(["OFF"], "cube.off"))).findings).toEqual(["6 facets, not convex."]);
+  expect((await uploadMesh(SESSION, new File(["OFF"], "cube.off"))).findings).toEqual(["6 facets, not convex."]);
   const calls = answering(201, { id: "s", description: { width: 16, height: 8, findings: [] } });
-  expect(await uploadSky(new File(["#?"], "sky.hdr"))).toEqual({ id: "s", findings: ["16 \u00d7 8 pixels."] });
-  expect(calls[0]?.path).toBe("api/skies");
+  expect(await uploadSky(SESSION, new File(["#?"], "sky.hdr"))).toEqual({ id: "s", findings: ["16 \u00d7 8 pixels."] });
+  expect(calls[0]?.path).toBe(`api/sessions/${SESSION}/skies`);
 });
 
 it("refuses an upload's answer without an id", async () => {
   answering(201, { description: { facets: 6 } });
-  await expect(uploadMesh(new File(["OFF"], "cube.off"))).rejects.toThrow("expected the id of an upload");
+  await expect(uploadMesh(SESSION, new File(["OFF"], "cube.off"))).rejects.toThrow("expected the id of an upload");
 });
 
 it("lists what a scene can name", async () => {

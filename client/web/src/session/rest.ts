@@ -109,7 +109,7 @@ export interface Lost {
 
 /** Have a session that was lost made again, if no other viewer was faster. */
 export async function reopenSession({ id, scene, snapshot }: Lost): Promise<void> {
-  await request("api/sessions", post(snapshot ? { id, scene, snapshot } : { id, scene }));
+  await request(`api/sessions/${id}`, { ...post(snapshot ? { scene, snapshot } : { scene }), method: "PUT" });
 }
 
 /** Change a session's scene by a merge patch. */
@@ -189,20 +189,21 @@ export function diagramAddress(session: string, stone: string): string {
   return `api/sessions/${session}/diagram.svg?${new URLSearchParams({ stone })}`;
 }
 
-async function upload<Answer>(path: string, file: File): Promise<Partial<Answer>> {
+/** To the server that has the session, or is to have it. */
+async function upload<Answer>(session: string, kind: "meshes" | "skies", file: File): Promise<Partial<Answer>> {
   const body = new FormData();
   body.append("file", file);
-  return (await (await request(path, { method: "POST", body })).json()) as Partial<Answer>;
+  return (await (await request(`api/sessions/${session}/${kind}`, { method: "POST", body })).json()) as Partial<Answer>;
 }
 
-export async function uploadMesh(file: File): Promise<Upload> {
+export async function uploadMesh(session: string, file: File): Promise<Upload> {
   const shape = ({ facets, convex }: Partial<DescribedMesh>) => words.files.facets(String(facets), Boolean(convex));
-  return parseUpload(await upload<MeshAnswer>("api/meshes", file), shape);
+  return parseUpload(await upload<MeshAnswer>(session, "meshes", file), shape);
 }
 
-export async function uploadSky(file: File): Promise<Upload> {
+export async function uploadSky(session: string, file: File): Promise<Upload> {
   const shape = ({ width, height }: Partial<DescribedSky>) => words.files.pixels(String(width), String(height));
-  return parseUpload(await upload<SkyAnswer>("api/skies", file), shape);
+  return parseUpload(await upload<SkyAnswer>(session, "skies", file), shape);
 }
 
 /** The gateway's answer to an upload, and what to say of one in which nothing was found. */

@@ -1,0 +1,38 @@
+"""The page in a folder of a proxy's site."""
+
+from __future__ import annotations
+
+import httpx
+
+from e2e.conftest import ViewOf
+from e2e.folder_proxy import FolderProxy
+from e2e.server import Server
+
+
+def test_in_a_folder_that_the_proxy_takes_off_the_page_shows_moves_and_documents(
+    view_of: ViewOf, server: Server
+) -> None:
+    with FolderProxy(server.url, "/user/ada/proxy/8000") as proxy:
+        view = view_of()
+        view.page.goto(f"{proxy.url}/?preset=matte")
+        view.until("() => window.culet && culet.framesShown > 0")
+        assert view.page.url.startswith(f"{proxy.url}/?session=")
+        view.page.keyboard.press("p")
+        view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.05")
+        view.until("() => document.querySelector('#scenes img')")
+        thumbnail = str(view.page.evaluate("document.querySelector('#scenes img').src"))
+        assert httpx.get(thumbnail).headers["content-type"] == "image/webp"
+        with httpx.Client(base_url=f"{proxy.url}/") as http:
+            made = http.post("api/sessions", json={"preset": "matte"})
+            session = made.url.join(made.headers["location"])
+            assert http.get(session).json()["id"] == made.json()["id"]
+            assert made.url.join(made.json()["stream"]).path == f"{session.path}/stream"
+            assert session.join(http.get(session).json()["stream"]).path == f"{session.path}/stream"
+            assert http.delete(session).status_code == 204
+            assert http.get("docs", follow_redirects=True).url.path.endswith("/8000/docs/")
+            document = http.get("openapi.json")
+            assert document.url.join(document.json()["servers"][0]["url"]).path == "/user/ada/proxy/8000/"
+        view.page.goto("about:blank")
+        assert [address for address in view.foreign if f"{proxy.url}/".partition("//")[2] not in address] == []
+        view.foreign.clear()  # the proxy's site is another one than the server's
+    server.until_equal("viewers", 0)
