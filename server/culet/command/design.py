@@ -1,4 +1,5 @@
-"""`culet design`: what is in cutters' files, and one of them as another. What a command needs is imported by it."""
+"""`culet design`: cutters' files shown, converted and drawn, and a search for a better cut. Commands import what they
+need."""
 
 from __future__ import annotations
 
@@ -7,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from culet.command.terminal import errors_in_one_line, report_console
+from culet.command.subject import Head, Index, Material, RulesName, rules_named, subject, with_material
+from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.errors import MeshError
 from culet.places import check_place, write_whole
 from culet.sources import naming
@@ -96,6 +98,54 @@ def diagram(
             solid = Solid(design)
         write_whole(out, diagram_of(solid).encode("utf-8", "replace"), "out")
         typer.echo(f"{out}: {len(solid.cut.used)} facets in {len(design.tiers)} tiers")
+
+
+@app.command()
+def optimise(
+    file: DesignFile,
+    weight: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="GRADE=NUMBER",
+            help="What is searched for: a weighted sum of grades, as iso=1 and fire=0.5; iso=1 and fire=1 without one.",
+        ),
+    ] = None,
+    crown: Annotated[str, typer.Option(metavar="FROM:TO", help="Tangent ratios of the crown.")] = "0.8:1.25",
+    pavilion: Annotated[str, typer.Option(metavar="FROM:TO", help="Tangent ratios of the pavilion.")] = "0.9:1.1",
+    evaluations: Annotated[int, typer.Option(min=10, max=100_000, help="Designs to grade, at most.")] = 200,
+    material: Material = None,
+    index: Index = None,
+    head: Head = None,
+    rules: RulesName = "culet",
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE.csv", help="The front as a table.")] = None,
+) -> None:
+    """Search crown and pavilion for brightness and fire, all meets kept.
+
+    Prints the front: designs that no other beats in both, since there is no single best one. Each is cut by
+    culet design convert with its ratios.
+    """
+    from culet.batch.search import Search
+    from culet.command.search import front_csv, print_front, range_of, weights_of
+    from culet.grading.optics import optics_of
+    from culet.grading.sums import LightSums
+    from culet.rendering.device import open_device
+
+    with errors_in_one_line():
+        if out is not None:
+            check_place(out, "out", ["csv"])
+        weights = weights_of(weight or ["iso=1", "fire=1"])
+        ends = range_of("crown", crown), range_of("pavilion", pavilion)
+        judged = rules_named(rules, head)
+        stage = with_material(subject(str(file), None), material, index)
+        stone, shape = stage.scene.stones[0], stage.shapes[0]
+        optics = optics_of(stone, stage.scene.millimetres)
+        with progress_bar("searching") as advance:
+            search = Search(LightSums(open_device()), shape, optics, judged, weights, evaluations, advance)
+            search.run(*ends)
+        print_front(report_console(), search, weights)
+        if out is not None:
+            write_whole(out, front_csv(search, weights), "out")
+            typer.echo(f"{out}: {len(search.front())} designs of {len(search.candidates)} that were graded")
 
 
 def _recut(crown: float, pavilion: float, girdle: float | None, table: float | None) -> Recut:

@@ -1,0 +1,59 @@
+"""The search of tangent ratios: it finds better designs than it was given, within its means, and the front of all."""
+
+from __future__ import annotations
+
+import pytest
+
+from culet.batch.search import BRIGHTNESS, FIRE, Candidate, Search
+from culet.geometry.cuts.cut import shape_of_cut
+from culet.geometry.shape import Shape
+from culet.grading.grades import grade
+from culet.grading.number import Number
+from culet.grading.optics import StoneOptics, optics_of
+from culet.grading.rules import Rules
+from culet.grading.sums import LightSums
+from culet.rendering.device import open_device
+from culet.scene.cuts import SingleCut
+from culet.scene.stone import StoneSettings
+
+DIAMOND = optics_of(StoneSettings(), 3.25)
+
+
+def search(shape: Shape, evaluations: int, optics: StoneOptics = DIAMOND) -> Search:
+    return Search(LightSums(open_device()), shape, optics, Rules(), {"iso": 1, "fire": 1}, evaluations)
+
+
+def test_a_flat_pavilion_is_found_to_be_too_flat() -> None:
+    """At 36 degrees diamond leaks: Tolkowsky's 40.75 is a ratio of 1.186."""
+    flat = shape_of_cut(SingleCut(pavilion_degrees=36))
+    found = search(flat, 16)
+    found.run((0.8, 1.25), (0.9, 1.3))
+    given, best = found.candidates[0], found.best()
+    assert len(found.candidates) <= 17
+    assert best.total > given.total + 10
+    assert 1.1 < best.pavilion_ratio < 1.3
+    front = found.front()
+    values = [(each.grades[BRIGHTNESS].value, each.grades[FIRE].value) for each in front]
+    assert values == sorted(values, key=lambda pair: (-pair[0], pair[1])), "brighter is less fiery"
+    for each in found.candidates:
+        bright, fiery = each.grades[BRIGHTNESS].value, each.grades[FIRE].value
+        assert any(a >= bright and b >= fiery for a, b in values)
+
+
+def test_a_design_has_in_the_search_the_grades_that_it_has_alone() -> None:
+    shape = shape_of_cut(SingleCut())
+    found = search(shape, 3)
+    found.run((0.99, 1.01), (0.99, 1.01))
+    alone = next(grade(LightSums(open_device()), shape, DIAMOND, Rules()))
+    assert found.candidates[0].grades["iso"] == alone.iso
+    assert found.candidates[0].total == pytest.approx(alone.iso.value + alone.fire.value)
+
+
+def test_the_front_has_each_design_once_and_none_that_another_beats() -> None:
+    found = search(shape_of_cut(SingleCut()), 10)
+    for iso, fire in ((80, 40), (85, 30), (79, 39), (70, 60), (85, 29), (80, 40)):
+        numbers = {"iso": Number(iso, 0.1), "fire": Number(fire, 0.1)}
+        found.candidates.append(Candidate(1, 1, numbers, iso + fire))
+    assert [(each.grades["iso"].value, each.grades["fire"].value) for each in found.front()] == [
+        (85, 30), (80, 40), (70, 60),
+    ]  # fmt: skip
