@@ -1,6 +1,7 @@
 /** The page: its rooms, and what they tell each other. */
 
 import { Clips } from "./clip/clips";
+import { Comparison } from "./compare/comparison";
 import { listenToDrops } from "./files/file-drop";
 import { chooseFile, MESH_TYPES, SCENE_TYPES, SKY_TYPES } from "./files/files";
 import { Opening } from "./files/opening";
@@ -164,9 +165,11 @@ const page = {
   showKeys: () => keyCard.toggle(),
   hideAll: () => bareness.toggle(),
   traceRay: () => attempt(() => ray.toggle()),
+  changeDesigns,
   moved: () => turntable.rest(performance.now()),
   note: (text: string) => void toasts.note(text),
 };
+const comparison = new Comparison();
 const performing = new Performing({ visit, stones, saving, clips, page, complaints });
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
@@ -179,6 +182,8 @@ const panel = new Panel(element("panel", HTMLElement), {
   openSky: () => chooseFile(SKY_TYPES, open.sky),
   patch: (patch) => visit.send({ type: "patch_scene", patch }),
   newSession: () => visit.startAnew(),
+  keepDesign,
+  otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
   measure: (scene) => rest.proportions(scene),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
@@ -206,6 +211,19 @@ const meter = new Meter(
 function perform(action: Action): void {
   if (!embedding.ui && action.effect.kind !== "move" && !VIEWING.has(action.name)) return;
   performing.perform(action);
+}
+
+/** Keep the design of the chosen stone, or of the first. */
+function keepDesign(): void {
+  if (comparison.keep(visit.scene, visit.state.stone)) toasts.note(words.compare.kept);
+  else complaints.tell(words.compare.noStone);
+}
+
+/** Show the design that is kept, and keep the one that is shown; the first time keep it. */
+function changeDesigns(): void {
+  const patch = comparison.change(visit.scene);
+  if (patch) visit.send({ type: "patch_scene", patch });
+  else keepDesign();
 }
 
 /** A number was typed that is beyond what a slider can be at. */

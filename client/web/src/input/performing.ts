@@ -16,6 +16,8 @@ export interface PageCommands {
   hideAll: () => void;
   /** Turn the mode on or off in which a click draws a ray. */
   traceRay: () => void;
+  /** Show the other of two designs that are compared; keep the first one. */
+  changeDesigns: () => void;
   /** Something moves by hand. */
   moved: () => void;
   /** Tell the user something that passes. */
@@ -84,7 +86,7 @@ export class Performing {
     return of === "last" ? this.clips.last() : this.clips.record();
   }
 
-  private onPage(command: "showKeys" | "hideAll" | "fillScreen" | "traceRay"): void {
+  private onPage(command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" | "changeDesigns"): void {
     if (command === "fillScreen") this.complaints.attempt(fillScreen);
     else this.page[command]();
   }

@@ -20,6 +20,7 @@ export interface CutActions {
   clamped: Clamped;
   openDiagram: (stone: string) => void;
   measure: Measure;
+  keepDesign: () => void;
 }
 
 type Values = Record<string, number>;
@@ -58,7 +59,7 @@ export class CutPanel {
   private readonly anew: RecutSliders;
   private scene: ViewState["scene"] = null;
 
-  constructor(section: Section, { patch: send, clamped, openDiagram, measure }: CutActions) {
+  constructor(section: Section, { patch: send, clamped, openDiagram, measure, keepDesign }: CutActions) {
     this.section = section.show(false);
     this.send = send;
     this.clamped = clamped;
@@ -72,6 +73,7 @@ export class CutPanel {
     section.onFold((open) => this.anew.update(this.scene, open));
     const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene) }));
     this.usual = section.add(new Command(words.cut.usual, reset));
+    section.add(new Command(words.compare.keep, keepDesign));
     section.add(new Command(words.grades.diagram, () => openDiagram(text(stoneOf(this.scene).id, ""))));
   }
 

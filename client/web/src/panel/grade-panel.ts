@@ -14,6 +14,9 @@ import type { TiltPlot } from "./tilt-plot";
 /** The server's answer for a stone; `signal` gives up on it. */
 export type Ask = (stone: string, tilt: boolean, signal: AbortSignal) => Promise<JsonObject>;
 
+/** Answers that are remembered: two are compared. */
+const MOST_KNOWN = 8;
+
 export class GradePanel {
   private readonly section: Section;
   /** The stone's size, or why it is not graded. */
@@ -23,9 +26,14 @@ export class GradePanel {
   private readonly tilt: Command;
   private readonly grading: Grading;
   private scene: ViewState["scene"] = null;
+  /** The scene as the design would have it that this one is compared with. */
+  private readonly otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
+  /** The last answers, by what they depend on. */
+  private readonly known = new Map<string, JsonObject>();
   private curves: TiltPlot | null = null;
 
-  constructor(section: Section, ask: Ask) {
+  constructor(section: Section, ask: Ask, otherwise: (scene: ViewState["scene"]) => ViewState["scene"]) {
+    this.otherwise = otherwise;
     this.section = section.show(false);
     this.grading = new Grading({
       ask: (tilt, signal) => ask(text(stoneOf(this.scene).id, ""), tilt, signal),
@@ -54,12 +62,22 @@ export class GradePanel {
   }
 
   private async show(answer: JsonObject, signal: AbortSignal): Promise<void> {
-    const { size, lines, tilt } = reportOf(answer);
+    this.remember(answer);
+    const other = this.known.get(gradedBy(this.otherwise(this.scene)));
+    const { size, lines, tilt } = reportOf(answer, other ?? null);
     const plots = tilt && (await import("./tilt-plot"));
     if (signal.aborted) return;
     this.clear(size);
     this.table.tBodies[0]?.append(...lines.map(rowOf));
     if (plots) this.curves = plots.plotTilt(this.plot, tilt, this.section.body.clientWidth - 16);
+  }
+
+  private remember(answer: JsonObject): void {
+    const stone = gradedBy(this.scene);
+    this.known.delete(stone);
+    this.known.set(stone, answer);
+    const [oldest] = this.known.keys();
+    if (this.known.size > MOST_KNOWN && oldest !== undefined) this.known.delete(oldest);
   }
 
   private fail(why: string): void {
@@ -77,7 +95,7 @@ export class GradePanel {
   }
 }
 
-function rowOf({ name, value, error, hint }: GradeLine): HTMLTableRowElement {
+function rowOf({ name, value, error, difference, hint }: GradeLine): HTMLTableRowElement {
   const row = document.createElement("tr");
   const head = document.createElement("th");
   head.scope = "row";
@@ -85,6 +103,7 @@ function rowOf({ name, value, error, hint }: GradeLine): HTMLTableRowElement {
   row.append(head);
   row.insertCell().textContent = value;
   row.insertCell().textContent = error;
-  row.dataset.hint = row.ariaDescription = hint;
+  if (difference !== null) row.insertCell().textContent = difference;
+  row.dataset.hint = row.ariaDescription = difference === null ? hint : words.grades.differenceHint(hint);
   return row;
 }

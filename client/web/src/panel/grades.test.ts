@@ -29,6 +29,15 @@ describe("a report", () => {
     expect(lines.at(-1)?.value).toBe("0.278");
   });
 
+  it("tells how far each grade is from another design's", () => {
+    const other = { ...ANSWER, grades: { ...ANSWER.grades, iso: number(80.5), fire: number(50) } };
+    const lines = reportOf(ANSWER, other).lines;
+    expect(lines[0]?.difference).toBe("\u22121.4");
+    expect(lines[4]?.difference).toBe("+5.0");
+    expect(lines.at(-1)?.difference).toBe("+0.000");
+    expect(reportOf(ANSWER).lines[0]?.difference).toBeNull();
+  });
+
   it("tells millimetres and carats", () => {
     expect(reportOf(ANSWER).size).toBe("9.10 \u00d7 6.50 \u00d7 4.00 mm, 1.53 ct");
   });

@@ -10,6 +10,8 @@ export interface GradeLine {
   name: string;
   value: string;
   error: string;
+  /** To that of a design that is compared; null without one. */
+  difference: string | null;
   hint: string;
 }
 
@@ -31,19 +33,23 @@ type GradeName = keyof typeof words.grades.lines;
 const SHARES: readonly GradeName[] = ["leak", "red", "green", "blue"];
 const OWN: readonly GradeName[] = ["iso", "cos", "sc2", "contrast", "fire", "window", "extinction"];
 
-/** What the answer of a request for grades says. */
-export function reportOf(answer: JsonObject): Report {
+/** What the answer of a request for grades says, and how far it is from that for another design. */
+export function reportOf(answer: JsonObject, other: JsonObject | null = null): Report {
   const grades = part(answer, "grades");
   const shares = part(grades, "shares");
+  const others = part(other, "grades");
+  const otherShares = part(others, "shares");
+  const than = (said: unknown) => (other ? object(said) : null);
   const lines = [
-    ...OWN.map((name) => line(name, object(grades[name]), 1)),
-    ...SHARES.map((name) => line(name, object(shares[name]), 1)),
+    ...OWN.map((name) => line(name, object(grades[name]), than(others[name]), 1)),
+    ...SHARES.map((name) => line(name, object(shares[name]), than(otherShares[name]), 1)),
   ];
-  if (answer.weighted_light_return) lines.push(line("weightedLightReturn", object(answer.weighted_light_return), 3));
+  const { weighted_light_return: light } = answer;
+  if (light) lines.push(line("weightedLightReturn", object(light), than(other?.weighted_light_return), 3));
   return { size: sizeOf(part(answer, "size")), lines, tilt: tiltOf(part(answer, "tilt")) };
 }
 
-function line(name: GradeName, said: JsonObject, decimals: number): GradeLine {
+function line(name: GradeName, said: JsonObject, other: JsonObject | null, decimals: number): GradeLine {
   const [label, meaning] = words.grades.lines[name];
   const value = number(said.value, Number.NaN).toFixed(decimals);
   const error = number(said.error, Number.NaN).toFixed(decimals + 1);
@@ -52,8 +58,13 @@ function line(name: GradeName, said: JsonObject, decimals: number): GradeLine {
     name: label,
     value: decimals === 1 ? `${value} %` : value,
     error: `\u00b1 ${error}`,
+    difference: other && signed(number(said.value, Number.NaN) - number(other.value, Number.NaN), decimals),
     hint: words.grades.sure(meaning, error, bound),
   };
+}
+
+function signed(value: number, decimals: number): string {
+  return Number.isFinite(value) ? `${value < 0 ? "\u2212" : "+"}${Math.abs(value).toFixed(decimals)}` : "";
 }
 
 function sizeOf(size: JsonObject): string {
@@ -85,8 +96,8 @@ export function tiltText([degrees, ...curves]: TiltColumns): string {
 
 /** What of the scene grades depend on: the same text means the same grades. */
 export function gradedBy(scene: JsonObject | null): string {
-  const { id, cut, mesh, material, scale, density, mass } = stoneOf(scene);
+  const { id, cut, mesh, recut, material, scale, density, mass } = stoneOf(scene);
   return id === undefined
     ? ""
-    : JSON.stringify([text(id, ""), cut, mesh, material, scale, density, mass, scene?.millimetres]);
+    : JSON.stringify([text(id, ""), cut, mesh, recut ?? null, material, scale, density, mass, scene?.millimetres]);
 }

@@ -40,6 +40,10 @@ export interface PanelActions {
   newSession: () => void;
   /** Ask for a stone's grades. */
   grades: Ask;
+  /** Keep the chosen stone's design, to compare others with. */
+  keepDesign: () => void;
+  /** The scene as the design would have it that this one is compared with; null without one. */
+  otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
   /** Ask for a stone's proportions. */
   measure: Measure;
   /** Show a stone's cutting diagram. */
@@ -101,7 +105,7 @@ export class Panel {
     this.target = this.addMoves(move);
     this.tilt = new TiltControl(move, actions.patch, actions.clamped);
     this.cut = new CutPanel(cut, actions);
-    this.grades = new GradePanel(grades, actions.grades);
+    this.grades = new GradePanel(grades, actions.grades, actions.otherwise);
     this.fall = new FallPanel(fall, actions.patch, actions.clamped);
     this.addFiles(files);
     this.addButton(stone, actionNamed("ray"));

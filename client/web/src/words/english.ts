@@ -58,6 +58,7 @@ export const actions = {
   clip_last: "Save a clip of the last 10 s",
   clip_next: "Record a clip of the next 10 s",
   ray: "Draw one ray: click a point of the stone",
+  compare: "Keep the design, or change it with the one that is kept",
   keys: "All keys",
   hide: "Hide all but the picture",
   full: "Fill the screen",
@@ -324,6 +325,13 @@ export const cut = {
   },
 };
 
+/** Two designs that are changed over. */
+export const compare = {
+  keep: "Keep this design to compare",
+  kept: "This design is kept. Choose or change another one; A changes the two over, and the grades tell how they differ.",
+  noStone: "There is no stone whose design could be kept.",
+};
+
 /** The stone's grades: docs/reference/grading.md defines each. */
 export const grades = {
   title: "Grades",
@@ -335,6 +343,7 @@ export const grades = {
   /** Of the tilt curves: which of its own axes the stone turns about. */
   axes: ["ISO, about x", "ISO, about z"],
   size: (millimetres: string, carats: string) => `${millimetres} mm, ${carats} ct`,
+  differenceHint: (hint: string) => `${hint}. Last: less that of the kept design`,
   sure: (meaning: string, error: string, bound: string) =>
     `${meaning}. Standard error ${error}, cut off at most ${bound}`,
   /** Name, and what it is. */

@@ -1,0 +1,59 @@
+import type { JsonObject } from "@culet/protocol/messages";
+import { describe, expect, it } from "vitest";
+import { Comparison } from "./comparison";
+
+const stone = (more: JsonObject): JsonObject => ({
+  id: "a",
+  cut: "brilliant",
+  mesh: null,
+  recut: null,
+  material: "diamond",
+  position: [0, 0, 0],
+  orientation: [1, 0, 0, 0],
+  ...more,
+});
+const scene = (more: JsonObject = {}): JsonObject => ({ stones: [{ id: "b" }, stone(more)] });
+const FLAT = { cut: { name: "brilliant", pavilion_degrees: 39 }, position: [0, 0.1, 0] };
+
+describe("a comparison", () => {
+  it("changes two designs over, each where it lay, and back", () => {
+    const comparison = new Comparison();
+    expect(comparison.keep(scene(), "a")).toBe(true);
+    const first = comparison.change(scene({ ...FLAT, position: [0, 0, 0] }));
+    expect(first).toEqual({
+      stones: {
+        a: {
+          cut: "brilliant",
+          mesh: null,
+          recut: null,
+          material: "diamond",
+          position: [0, 0, 0],
+          orientation: [1, 0, 0, 0],
+        },
+      },
+    });
+    expect(comparison.change(scene())).toMatchObject({ stones: { a: { cut: FLAT.cut } } });
+  });
+
+  it("leaves a stone where it was moved to", () => {
+    const comparison = new Comparison();
+    comparison.keep(scene(), "a");
+    const patch = comparison.change(scene({ ...FLAT, position: [3, 0, 0] }));
+    expect(patch).toEqual({ stones: { a: { cut: "brilliant", mesh: null, recut: null, material: "diamond" } } });
+  });
+
+  it("tells how the stone would be otherwise, if it would be at all", () => {
+    const comparison = new Comparison();
+    expect(comparison.otherwise(scene())).toBeNull();
+    comparison.keep(scene(), "a");
+    expect(comparison.otherwise(scene())).toBeNull();
+    expect(comparison.otherwise(scene(FLAT))).toMatchObject({ stones: [{ id: "a", cut: "brilliant" }] });
+  });
+
+  it("ends with its stone, and does not begin without one", () => {
+    const comparison = new Comparison();
+    expect(comparison.keep({ stones: [] }, null)).toBe(false);
+    comparison.keep(scene(), "a");
+    expect(comparison.change({ stones: [{ id: "b" }] })).toBeNull();
+  });
+});
