@@ -212,6 +212,34 @@ def motion(
 
 
 @app.command()
+def video(
+    scene: SceneFile = None,
+    preset: Preset = None,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 1280,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 720,
+    frames: Annotated[int, typer.Option(min=2, max=600, help="Of the fall, 30 a second.")] = 60,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON of all figures.")] = None,
+) -> None:
+    """Encode a fall as JPEG and as video: bytes, time, PSNR, FLIP, and the fire's colour that is kept. Needs PyAV."""
+    import json
+
+    from culet.rendering.renderer import Renderer
+    from culet.study.video_study import described, measure, table
+
+    with errors_in_one_line():
+        stage = read_stage(scene, preset, None, None)
+        with opened(out) as file:
+            with progress_bar("encoding") as advance:
+                found = measure(Renderer(), stage.scene, (width, height), frames, advance)
+            if file is not None:
+                file.truncate(0)
+                file.write(json.dumps(found.document(), indent=2) + "\n")
+        report_console().print(table(found))
+        for line in described(found):
+            typer.echo(line)
+
+
+@app.command()
 def growth(out: Out = Path("report/growth"), quick: Quick = False, fresh: Fresh = False) -> None:
     """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers.
 

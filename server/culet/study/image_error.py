@@ -34,6 +34,12 @@ def mean_ciede2000(shown: NDArray[Any], reference: NDArray[Any]) -> float:
     return float(np.mean(_deltae(_lab(reference), _lab(shown))))
 
 
+def chroma(shown: NDArray[Any]) -> NDArray[np.float64]:
+    """(height, width) CIELAB chroma of an sRGB picture, in 8 bits or from 0 to 1."""
+    lab = np.asarray(_lab(shown), np.float64)
+    return np.hypot(lab[..., 1], lab[..., 2])
+
+
 def structural_similarity(shown: NDArray[np.uint8], reference: NDArray[np.uint8]) -> float:
     """Mean SSIM of two 8-bit pictures, 1 for equal ones (Wang et al., 2004: Gaussian weights of 1.5 pixels)."""
     options = {"gaussian_weights": True, "sigma": 1.5, "use_sample_covariance": False, "data_range": 255}

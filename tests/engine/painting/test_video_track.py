@@ -64,11 +64,11 @@ def test_sizes_that_flicker_are_brought_to_one_until_it_is_worth_another_key_fra
     track = VideoTrack(Codec.H264, Telling)
     encode(track, 0)
     for now in (0.1, 0.2, CHANGE_SECONDS - 0.1):
-        packet = encode(track, now, 320, 180)
+        packet = encode(track, now, 480, 270)
         assert (packet.width, packet.height, packet.is_key) == (640, 360, False)
-    packet = encode(track, CHANGE_SECONDS, 320, 180)
-    assert (packet.width, packet.height, packet.is_key) == (320, 180, True)
-    assert not encode(track, 9, 330, 186).is_key, "nearly the same size is not worth one"
+    packet = encode(track, CHANGE_SECONDS, 480, 270)
+    assert (packet.width, packet.height, packet.is_key) == (480, 270, True)
+    assert not encode(track, 9, 496, 279).is_key, "nearly the same size is not worth one"
 
 
 def test_pictures_of_another_shape_are_not_squeezed_into_the_one_before() -> None:
@@ -81,8 +81,15 @@ def test_pictures_of_another_shape_are_not_squeezed_into_the_one_before() -> Non
 def test_another_quality_waits_for_its_time() -> None:
     track = VideoTrack(Codec.H264, Telling)
     encode(track, 0)
-    assert encode(track, 0.5, crf=32).crf == CRF
-    assert encode(track, CHANGE_SECONDS, crf=32).crf == 32
+    assert encode(track, CHANGE_SECONDS - 0.1, crf=CRF + 3).crf == CRF
+    assert encode(track, CHANGE_SECONDS, crf=CRF + 3).crf == CRF + 3
+
+
+def test_a_link_that_carries_much_less_is_heeded_sooner() -> None:
+    track = VideoTrack(Codec.H264, Telling)
+    encode(track, 0)
+    assert encode(track, KEY_SECONDS, crf=32).crf == 32
+    assert encode(track, 2 * KEY_SECONDS, 320, 180, crf=32).width == 320
 
 
 def test_a_hold_ends_when_it_is_told_to_or_by_itself() -> None:

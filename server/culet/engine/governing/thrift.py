@@ -1,7 +1,8 @@
 """How large a moving frame may be, and how well encoded, so that a viewer's link carries it in time.
 
 Beside the governor, which has time in mind: both choose the best that there is room for. What frames of each size and
-JPEG quality have in bytes, and what they miss, `python -m culet.study.bytes_ladder` has measured on the default scene.
+JPEG quality have in bytes, and what they miss, `python -m culet.study.bytes_ladder` has measured on the default scene,
+and `python -m culet.study.video_ladder` the same of video by its rate factor.
 Another scene's frames have other bytes: how many times the measured ones, the last frames tell.
 """
 
@@ -42,7 +43,7 @@ class ByteLadder:
     scales: Grid
     """(scales,), falling."""
     qualities: tuple[int, ...]
-    """Of JPEG, falling."""
+    """Of JPEG, falling; or rate factors of video, rising: the best first."""
     bytes: Grid
     """(scales, qualities)"""
     errors: Grid
@@ -59,7 +60,7 @@ class ByteLadder:
         mixed: Grid = np.exp((1 - weight) * rising[upper - 1] + weight * rising[upper])
         return mixed
 
-    @lru_cache(maxsize=64)  # noqa: B019 - there is one ladder
+    @lru_cache(maxsize=64)  # noqa: B019 - there are two ladders
     def expected_of_scales(self, pixels: int) -> Grid:
         """(scales, qualities) bytes of a frame, for a viewer that asked for so many pixels."""
         return np.stack([self.expected(pixels * float(scale) ** 2) for scale in self.scales])
@@ -107,6 +108,8 @@ class Encoding:
     """The frame, or its quality, is less than it would be without the limits of a link."""
     crf: int = BEST_CRF
     """Constant rate factor of video."""
+    reduced: bool = False
+    """The frame is smaller than it would be without the limits of a link."""
 
 
 class Thrift:
@@ -137,7 +140,7 @@ class Thrift:
         for most in (room.bytes, room.slow_bytes):
             for quality, count in zip(self._ladder.qualities, expected, strict=True):
                 if count <= most:
-                    return Encoding(quality, GROWN * most, thrifty=quality < best)
+                    return Encoding(quality, GROWN * most, thrifty=quality != best)
         return Encoding(least, math.inf, thrifty=True)  # what is smaller yet shows nothing: fewer come
 
     def encoded(self, size: tuple[int, int], quality: int, count: int) -> None:
@@ -160,8 +163,18 @@ class Thrift:
 
 @cache
 def read_byte_ladder() -> ByteLadder:
-    """As measured."""
-    document = json.loads(files(__package__).joinpath("bytes_ladder.json").read_text(encoding="utf-8"))
+    """Of JPEG, as measured."""
+    return _read("bytes_ladder.json")
+
+
+@cache
+def read_video_ladder() -> ByteLadder:
+    """Of H.264, as measured; its qualities are rate factors."""
+    return _read("video_ladder.json")
+
+
+def _read(name: str) -> ByteLadder:
+    document = json.loads(files(__package__).joinpath(name).read_text(encoding="utf-8"))
     measured = document["measured"]
     return ByteLadder(
         np.array(document["scales"]),

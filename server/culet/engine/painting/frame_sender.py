@@ -11,7 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from culet.engine.governing.thrift import NO_LIMITS, Allowance, Thrift
+from culet.engine.governing.thrift import NO_LIMITS, Allowance
+from culet.engine.painting.coded import Coded
 from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.live_frame import LiveFrame
@@ -63,6 +64,11 @@ class Outgoing:
             self.tracks[codec].hold(now, held=held)
 
     @property
+    def is_video(self) -> bool:
+        """Whether what moves goes out as video alone."""
+        return Codec.JPEG not in self.codecs and any(track.works for track in self.tracks.values())
+
+    @property
     def full(self) -> bool:
         """Whether so many frames wait that no other should be begun."""
         return self.unsent >= UNSENT_FRAMES
@@ -87,10 +93,13 @@ class FrameSender:
         self._now = clock
         self._threads = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2), "encode")
 
-    def publish(self, session: Session, outgoing: Outgoing, thrift: Thrift, frame: LiveFrame, begun_at: float) -> None:
-        """Encode and send a frame that was begun at that time of the clock; this does not wait for either."""
+    def publish(
+        self, session: Session, outgoing: Outgoing, learn: Callable[[Coded], None], frame: LiveFrame, begun_at: float
+    ) -> None:
+        """Encode and send a frame that was begun at that time of the clock; this does not wait for either. `learn` is
+        told what a frame for a link with limits has become."""
         outgoing.unsent += 1
-        work = self._encode_and_send(session, outgoing, thrift, frame, begun_at, before=outgoing.latest)
+        work = self._encode_and_send(session, outgoing, learn, frame, begun_at, before=outgoing.latest)
         outgoing.latest = asyncio.create_task(work)
 
     def repeat(self, outgoing: Outgoing) -> None:
@@ -108,13 +117,14 @@ class FrameSender:
         self,
         session: Session,
         outgoing: Outgoing,
-        thrift: Thrift,
+        learn: Callable[[Coded], None],
         frame: LiveFrame,
         begun_at: float,
         before: asyncio.Task[None] | None,
     ) -> None:
         drawn_at, started = self._now(), time.perf_counter()
-        codecs, video, tracks = outgoing.codecs, {}, list(outgoing.tracks.values()) if frame.planned else []
+        codecs, tracks = outgoing.codecs, list(outgoing.tracks.values()) if frame.planned else []
+        video: dict[VideoTrack, Coded] = {}
         try:
             if tracks and before is not None:
                 await asyncio.wait([before])  # each frame of video is encoded after the one before it
@@ -128,8 +138,9 @@ class FrameSender:
                         video[track] = frame.coded(track.codec, packet, track.sequence)
             picture = await self._in_thread(frame.encoded, outgoing.allowance.at_rest or math.inf) if codecs else None
             encode_seconds = time.perf_counter() - started
-            if picture is not None and frame.encoding is not None:
-                thrift.encoded((picture.width, picture.height), picture.quality, len(picture.data))
+            if frame.encoding is not None:
+                for coded in [*video.values(), *([] if picture is None else [picture])]:
+                    learn(coded)
             if before is not None:
                 await asyncio.wait([before])  # so that frames leave in order
             if picture is None and not video:
@@ -139,6 +150,8 @@ class FrameSender:
             message = None if picture is None else frame.pack(session, picture, encode_seconds)
             packed = {track: frame.pack(session, coded, encode_seconds) for track, coded in video.items()}
         except Exception as error:  # one session's failure must not end the others'
+            for track in video:
+                track.close()  # what comes next must not need what was not sent
             self._tell_problem(session, as_culet_error(error, what="encoding"))
             return
         finally:

@@ -123,7 +123,7 @@ class LiveFrame:
 
     def coded(self, codec: Codec, packet: TrackedPacket, before: int) -> Coded:
         """Its picture as video; the packet needs the frame of that number before it, unless it is a key frame."""
-        thrifty = packet.crf > BEST_CRF or (self.encoding is not None and self.encoding.thrifty)
+        thrifty = packet.crf > BEST_CRF or (self.encoding is not None and self.encoding.reduced)
         depends_on = 0 if packet.is_key else before
         return Coded(codec, packet.data, packet.width, packet.height, packet.crf, thrifty, depends_on)
 

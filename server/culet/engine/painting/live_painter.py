@@ -112,7 +112,12 @@ class LivePainter:
     ) -> FrameWork:
         """Choose how to draw what is shown."""
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
-        plan = live.quality.plan(shown.scene, wanted, live.balance, live.outgoing.allowance) if live.governed else None
+        outgoing = live.outgoing
+        plan = (
+            live.quality.plan(shown.scene, wanted, live.balance, outgoing.allowance, video=outgoing.is_video)
+            if live.governed
+            else None
+        )
         kind = Kind.FULL if plan is None else Kind.PLANNED
         work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated)
         if self._share_of(live) >= 1:
@@ -166,7 +171,7 @@ class LivePainter:
             governor.rendered(work.plan, seconds, work.spent - seconds, *asked)
         elif work.kind is Kind.FULL:
             governor.rested(work.shown.scene, work.wanted, seconds, *asked)
-        self._sender.publish(live.session, live.outgoing, live.quality.thrift, work.frame, work.begun_at)
+        self._sender.publish(live.session, live.outgoing, live.quality.encoded, work.frame, work.begun_at)
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:
         try:

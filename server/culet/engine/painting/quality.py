@@ -6,10 +6,12 @@ from dataclasses import replace
 from typing import assert_never
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
-from culet.engine.governing.thrift import Allowance, Thrift, read_byte_ladder
+from culet.engine.governing.thrift import Allowance, Thrift, read_byte_ladder, read_video_ladder
+from culet.engine.painting.coded import Coded
 from culet.engine.painting.frame_work import FrameWork, Kind
 from culet.scene import Scene
 from culet.scene.optics import Optics
+from culet_protocol.frame import Codec
 from culet_protocol.messages import Balance, balance_rate
 
 DEAREST_SECONDS = 2.0
@@ -32,6 +34,7 @@ class Quality:
         """Nothing is known yet."""
         self.governor = Governor(LADDER)
         self.thrift = Thrift(read_byte_ladder())
+        self.video_thrift = Thrift(read_video_ladder())
         self.full_seconds = 0.0
         """s of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
         self.gave_up = False
@@ -47,16 +50,27 @@ class Quality:
             return chosen.model_copy(update={"pinned": False})
         return chosen
 
-    def plan(self, scene: Scene, size: tuple[int, int], balance: Balance, allowance: Allowance) -> Plan:
-        """For the next moving frame: as good as there is time for, and as large as the link has room for."""
+    def plan(
+        self, scene: Scene, size: tuple[int, int], balance: Balance, allowance: Allowance, *, video: bool = False
+    ) -> Plan:
+        """For the next moving frame: as good as there is time for, and as large as the link has room for; `video` has
+        more pixels in as many bytes."""
         room = allowance.room(balance_rate(balance.exactness), 1 / max(self._planned_seconds, 1e-3))
         if room is None or balance.pinned:
             return self.governor.plan(scene, size, balance)
-        scale = self.thrift.scale(size, room)
+        scale = (self.video_thrift if video else self.thrift).scale(size, room)
         reduced = max(16, round(size[0] * scale)), max(16, round(size[1] * scale))
         plan = self.governor.plan(scene, reduced, balance, scale)
-        encoding = self.thrift.encoding(plan.size, room)
-        return replace(plan, encoding=replace(encoding, thrifty=encoding.thrifty or plan.size == reduced != size))
+        smaller = plan.size == reduced != size
+        encoding, crf = self.thrift.encoding(plan.size, room), self.video_thrift.encoding(plan.size, room).quality
+        return replace(plan, encoding=replace(encoding, thrifty=encoding.thrifty or smaller, crf=crf, reduced=smaller))
+
+    def encoded(self, coded: Coded) -> None:
+        """What a moving frame for a link with limits has become. Key frames are few, and so do not count."""
+        if coded.codec is Codec.JPEG:
+            self.thrift.encoded((coded.width, coded.height), coded.quality, len(coded.data))
+        elif coded.depends_on:
+            self.video_thrift.encoded((coded.width, coded.height), coded.quality, len(coded.data))
 
     def is_too_dear(self, work: FrameWork, *, pinned: bool) -> bool:
         """Whether planned work takes so long that another plan is better."""

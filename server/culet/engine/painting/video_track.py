@@ -19,6 +19,8 @@ KEY_SECONDS = 1.0
 CHANGE_SECONDS = 2.0
 """Between two changes of size or quality: each needs a key frame, and what takes time to render, or is seen of a link,
 changes oftener. Until then pictures are brought to the size of those before."""
+URGENT_CRF, URGENT_SCALE = 6, 0.7
+"""A frame that is to have so much less, by its rate factor or its width, must not wait for that: half of the bytes."""
 ALIKE = 1.08
 """Widths that differ by no more than so many times are not worth a key frame."""
 SHAPE = 0.02
@@ -98,7 +100,8 @@ class VideoTrack:
         if abs(width / height - encoder.width / encoder.height) > SHAPE * width / height:
             return True
         alike = 1 / ALIKE < width / encoder.width < ALIKE and crf == encoder.crf
-        return not alike and now - self._began_at >= CHANGE_SECONDS
+        urgent = width < URGENT_SCALE * encoder.width or crf >= encoder.crf + URGENT_CRF
+        return not alike and now - self._began_at >= (KEY_SECONDS if urgent else CHANGE_SECONDS)
 
     def close(self) -> None:
         """Give back the encoder's memory; the next frame is a key frame."""

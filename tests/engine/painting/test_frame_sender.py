@@ -1,0 +1,166 @@
+"""What of a frame goes out, by which topic; the encoder of video here only says what it was given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import AsyncIterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from culet.engine.painting.coded import Coded
+from culet.engine.painting.counters import Tally
+from culet.engine.painting.frame_sender import FrameSender, Outgoing
+from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.video import Packet, VideoEncoder, VideoError
+from culet.engine.painting.video_track import MOST_FAILURES, VideoTrack
+from culet.engine.session.session import Session
+from culet.errors import CuletError
+from culet.scene import Scene
+from culet.stage import Stage
+from culet_protocol.frame import Codec, Flags, Frame
+from culet_protocol.watch import video_topic, watch_key
+
+NAME = "0" * 32
+WATCH = watch_key(NAME)
+VIDEO_TOPIC = video_topic(WATCH, Codec.H264)
+
+
+class Telling(VideoEncoder):
+    fails = False
+
+    def __init__(self, codec: Codec, width: int, height: int, crf: int) -> None:
+        self.codec, self.width, self.height, self.crf = codec, width, height, crf
+        self.count = 0
+
+    def encode(self, rgb: NDArray[np.uint8], now: float, *, key: bool = False) -> Packet:
+        if Telling.fails:
+            raise VideoError("the encoder was killed")
+        self.count += 1
+        return Packet(b"packet %d" % self.count, self.count == 1 or key)
+
+    def close(self) -> None:
+        pass
+
+
+class Desk:
+    """A sender, and what it has sent."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.sent: list[Frame] = []
+        self.learnt: list[Coded] = []
+        self.session = Session(NAME, Stage.of(Scene()))
+        self.outgoing = Outgoing()
+        self.sender = FrameSender(self._take, self._fail, lambda: None, Tally(), lambda: self.now)
+        shown = self.session.shown
+        self.frame = LiveFrame(
+            rgb=np.zeros((18, 32, 3), np.uint8), shown=shown, optics=shown.scene.optics, bands=3, samples=1,
+            simulate_seconds=0, render_seconds=0, develop_seconds=0, cut=0, error=math.nan, shown_error=math.nan,
+            rest_error=math.nan, expected_error=0.1, final=False, slow=False, light_cut=0, light_error=0,
+            shadows_only=False, encoding=None, planned=True,
+        )  # fmt: skip
+
+    def _take(self, message: bytes) -> None:
+        self.sent.append(Frame.unpack(message))
+
+    def _fail(self, _: Session, error: CuletError) -> None:
+        raise error
+
+    def watch(self, *codecs: Codec) -> None:
+        self.outgoing.codecs = frozenset()
+        for codec in codecs:
+            self.outgoing.watch(codec, subscribed=True)
+        if Codec.H264 in codecs:
+            self.outgoing.tracks[Codec.H264] = VideoTrack(Codec.H264, Telling)
+
+    async def publish(self, *, planned: bool = True) -> list[tuple[bytes, Codec, int]]:
+        """Topic, codec and number of what a frame led to."""
+        before = len(self.sent)
+        self.sender.publish(self.session, self.outgoing, self.learnt.append, replace(self.frame, planned=planned), 0)
+        assert self.outgoing.latest is not None
+        await self.outgoing.latest
+        return [(frame.watch, frame.codec, frame.sequence) for frame in self.sent[before:]]
+
+
+@pytest.fixture
+async def desk() -> AsyncIterator[Desk]:
+    Telling.fails = False
+    desk = Desk()
+    yield desk
+    desk.sender.stop()
+
+
+async def test_nobody_wanting_video_none_is_made(desk: Desk) -> None:
+    assert await desk.publish() == [(WATCH, Codec.JPEG, 1)]
+
+
+async def test_frames_of_video_name_the_one_before_and_stills_between_them_need_none(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 1)]
+    assert await desk.publish(planned=False) == [(VIDEO_TOPIC, Codec.JPEG, 2)]
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 3)]
+    key, still, delta = desk.sent
+    assert [(frame.depends_on, Flags.KEY in frame.flags) for frame in (key, still, delta)] == [
+        (0, True), (0, True), (1, False),
+    ]  # fmt: skip
+    assert delta.payload == b"packet 2"
+
+
+async def test_who_wants_video_and_who_does_not_get_the_same_frame_under_one_number(desk: Desk) -> None:
+    desk.watch(Codec.JPEG, Codec.H264)
+    assert sorted(await desk.publish()) == sorted([(WATCH, Codec.JPEG, 1), (VIDEO_TOPIC, Codec.H264, 1)])
+
+
+async def test_video_that_is_held_is_skipped_before_it_is_encoded(desk: Desk) -> None:
+    desk.watch(Codec.JPEG, Codec.H264)
+    await desk.publish()
+    desk.outgoing.hold(Codec.H264, desk.now, held=True)
+    assert await desk.publish() == [(WATCH, Codec.JPEG, 2)]
+    desk.outgoing.hold(Codec.H264, desk.now, held=False)
+    await desk.publish()
+    (after,) = [frame for frame in desk.sent[3:] if frame.codec is Codec.H264]
+    assert (after.depends_on, after.payload) == (1, b"packet 2")
+
+
+async def test_while_all_is_held_the_picture_before_is_not_shown_again_as_the_latest(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    await desk.publish(planned=False)
+    assert desk.outgoing.message is not None
+    desk.outgoing.hold(Codec.H264, desk.now, held=True)
+    assert await desk.publish() == []
+    assert desk.outgoing.message is None
+
+
+async def test_a_still_is_repeated_to_all_who_watch_and_a_packet_to_nobody(desk: Desk) -> None:
+    desk.watch(Codec.JPEG, Codec.H264)
+    await desk.publish(planned=False)
+    desk.sender.repeat(desk.outgoing)
+    assert {frame.watch for frame in desk.sent[2:]} == {WATCH, VIDEO_TOPIC}
+    desk.watch(Codec.H264)
+    await desk.publish()
+    before = len(desk.sent)
+    desk.sender.repeat(desk.outgoing)
+    assert len(desk.sent) == before
+
+
+async def test_an_encoder_that_is_killed_twice_leaves_jpeg_to_all(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    await desk.publish()
+    Telling.fails = True
+    for number in range(MOST_FAILURES):
+        assert await desk.publish() == [(VIDEO_TOPIC, Codec.JPEG, 2 + number)], "at once, and as JPEG"
+    Telling.fails = False
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.JPEG, 2 + MOST_FAILURES)]
+
+
+async def test_after_one_failure_video_goes_on_with_a_key_frame(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    await desk.publish()
+    Telling.fails = True
+    await desk.publish()
+    Telling.fails = False
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 3)]
+    assert desk.sent[-1].depends_on == 0
