@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import signal
+from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Request
@@ -49,6 +50,18 @@ def test_the_first_picture_needs_less_than_60_kilobytes_of_script(view_of: ViewO
     scripts = [request for request in requests if request.resource_type == "script"]
     sizes = {script.url: script.sizes()["responseBodySize"] for script in scripts}
     assert 10_000 < sum(sizes.values()) < 60_000, sizes
+
+
+def test_a_page_asks_for_its_session_before_the_lists_of_what_there_is(view_of: ViewOf) -> None:
+    """Nothing that the first picture does not need stands in its way; the lists come by themselves afterwards."""
+    view = view_of()
+    asked: list[str] = []
+    view.page.on("request", lambda request: asked.append(urlsplit(request.url).path))
+    view.open()
+    view.page.locator("#scenes button").first.wait_for(state="attached")
+    interface = [path for path in asked if path.startswith("/api/")]
+    assert interface[0] == "/api/sessions"
+    assert {"/api/presets", "/api/materials", "/api/cuts", "/api/skies", "/api/integrators"} <= set(interface[1:])
 
 
 def test_a_page_opened_while_the_engine_is_away_opens_by_itself_once_it_is_back(

@@ -48,6 +48,10 @@ import { words } from "./words/words";
 /** What is left to do, beside moves, where a page shows nothing but the picture. */
 const VIEWING: ReadonlySet<Action["name"]> = new Set(["reset_camera", "look", "full"]);
 
+/** A first picture that takes longer, or never comes, keeps the lists of what there is waiting no more. */
+const PATIENCE_MS = 1500;
+const catalogues = { asked: false };
+
 fillPage(document);
 const canvas = element("picture", HTMLCanvasElement);
 const announcement = element("announcement", HTMLElement);
@@ -261,12 +265,17 @@ async function share(): Promise<void> {
 }
 
 function firstShown(): void {
-  if (embedding.ui) welcome.show();
+  if (embedding.ui) {
+    welcome.show();
+    loadCatalogues();
+  }
   if (window.parent !== window) window.parent.postMessage(SHOWN, "*");
 }
 
-/** What the panel and the scenes are filled with. */
+/** What the panel and the scenes are filled with: once, and not while the first picture is being made. */
 function loadCatalogues(): void {
+  if (catalogues.asked) return;
+  catalogues.asked = true;
   attempt(async () => strip.show(await rest.presets(), (preset) => opening.preset(preset)));
   attempt(async () => panel.choices.addMaterials(await rest.materials()));
   attempt(async () => panel.addCuts(await rest.cuts()));
@@ -292,5 +301,5 @@ window.addEventListener("hashchange", () => location.reload());
 showStatus(element("status", HTMLElement), visit);
 exposeVisit(visit, screen, delays, complaints.kept);
 panel.update(visit.state);
-attempt(() => visit.start()); // first: a browser sends only so many requests at a time
-if (embedding.ui) loadCatalogues();
+attempt(() => visit.start());
+if (embedding.ui) setTimeout(loadCatalogues, PATIENCE_MS);

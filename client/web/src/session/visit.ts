@@ -80,7 +80,9 @@ export class Visit {
     const wanted = wantedSession(location.search, location.hash);
     if (wanted.kind === "invalid") return this.signs.end(words.connection.noId(wanted.id));
     try {
-      await this.enter();
+      // At once if there is no token: what else the page asks for then stands behind this in the browser's queue.
+      const token = tokenIn(location.hash);
+      if (token !== null) await this.enter(token);
       this.watch(await this.sessionFor(wanted), wanted.kind === "watch");
       this.signs.clear();
     } catch (error) {
@@ -124,9 +126,7 @@ export class Visit {
   }
 
   /** With the token that the address has, which then is forgotten: whoever looks over a shoulder may not see it. */
-  private async enter(): Promise<void> {
-    const token = tokenIn(location.hash);
-    if (token === null) return;
+  private async enter(token: string): Promise<void> {
     await rest.signIn(token);
     history.replaceState(null, "", location.pathname + location.search);
   }
