@@ -160,10 +160,19 @@ def as_seen(renderer: Renderer, stage: Stage, plan: Plan, *, softened: bool) -> 
 
 def differences(shown: Shown, converged: Shown) -> tuple[float, float, float]:
     """FLIP, CIEDE2000 and RMSE, means over the picture."""
+    return flip(shown, converged), mean_ciede2000(shown, converged), rmse(shown, converged)
+
+
+def flip(shown: Shown, converged: Shown) -> float:
+    """Mean over the picture."""
     pair = [np.ascontiguousarray(each, np.float32) / 255 for each in (converged, shown)]
-    _, flip, _ = _flip(*pair, "LDR", applyMagma=False, parameters={"ppd": PIXELS_PER_DEGREE})
-    rmse = np.sqrt(np.mean(np.square(shown.astype(float) - converged)))
-    return float(flip), mean_ciede2000(shown, converged), float(rmse)
+    _, mean, _ = _flip(*pair, "LDR", applyMagma=False, parameters={"ppd": PIXELS_PER_DEGREE})
+    return float(mean)
+
+
+def rmse(shown: Shown, converged: Shown) -> float:
+    """0 to 255."""
+    return float(np.sqrt(np.mean(np.square(shown.astype(float) - converged))))
 
 
 def _converged(renderer: Renderer, stage: Stage, size: tuple[int, int], samples: int) -> Shown:
@@ -188,11 +197,11 @@ def _first_sample(renderer: Renderer, stage: Stage, size: tuple[int, int]) -> fl
 
 def _mean(way: Way, judged: Sequence[tuple[Plan, float, tuple[float, float, float]]]) -> Judged:
     plans = [plan for plan, _, _ in judged]
-    flip, ciede2000, rmse = np.mean([differences for _, _, differences in judged], axis=0)
+    seen, ciede2000, error = np.mean([differences for _, _, differences in judged], axis=0)
     width, height = np.mean([plan.size for plan in plans], axis=0).round()
     seconds = float(np.median([spent for _, spent, _ in judged]))
     cutoff = max(plan.scene.optics.cutoff for plan in plans)
-    return Judged(way, int(width), int(height), cutoff, seconds, float(flip), float(ciede2000), float(rmse))
+    return Judged(way, int(width), int(height), cutoff, seconds, float(seen), float(ciede2000), float(error))
 
 
 def table(fall: Fall) -> Table:
