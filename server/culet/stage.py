@@ -118,5 +118,6 @@ def _form(stone: StoneSettings) -> object:
     return stone.cut if stone.mesh is None else ("mesh", stone.mesh), stone.recut
 
 
-def _image(scene: Scene) -> str | None:
-    return scene.environment.image if isinstance(scene.environment, ImageEnvironment) else None
+def _image(scene: Scene) -> object:
+    sky = scene.environment
+    return (sky.image, sky.head_degrees) if isinstance(sky, ImageEnvironment) else None

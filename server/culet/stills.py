@@ -8,7 +8,7 @@ import os
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -105,6 +105,20 @@ class Picture:
         place = Path(path)
         files.write(place, lambda: self.rgb, lambda: self.linear)
         return place
+
+    def with_legend(self) -> Picture:
+        """The picture with a legend in a corner of `rgb`: what the colours of ASET or Ideal-Scope mean, and the tilt.
+
+        InputError if the scene has no legend, or the picture no room.
+        """
+        from culet.legend import drawn, legend_of
+
+        lines = legend_of(self.scene)
+        if not lines:
+            raise InputError(
+                "legend: expected an instrument's sky (aset, ideal-scope) or parallel rays, got neither", "legend"
+            )
+        return replace(self, rgb=drawn(self.rgb, lines))
 
     def encoded(self, format: str) -> bytes:  # noqa: A002 - as Pillow calls it
         """The same file in memory, its format an ending without the dot."""

@@ -20,6 +20,7 @@ import { element } from "./page";
 import { Panel } from "./panel/panel";
 import { ChosenStone } from "./picture/chosen-stone";
 import { type Embedding, embeddingOf, SHOWN, Turntable } from "./picture/embedding";
+import { Legend } from "./picture/legend";
 import { OutlineView } from "./picture/outline-view";
 import { afterPainting, Screen } from "./picture/screen";
 import { ShownPicture } from "./picture/shown-picture";
@@ -98,6 +99,7 @@ const visit = new Visit(
   embedding,
 );
 const outline = new OutlineView(element("outline", SVGSVGElement), canvas);
+const legend = new Legend(element("legend", HTMLElement));
 const chosen = new ChosenStone({
   ask: (question) => visit.viewer?.ask(question),
   chosen: (id) => visit.viewer?.choose(id),
@@ -251,6 +253,7 @@ function stateChanged(before: ViewState, after: ViewState): void {
   chosen.there(idsOf(after.scene));
   if (stonesOf(after.scene).length > 1 && after.scene?.stones !== before.scene?.stones) findings.changed();
   panel.update(visit.state);
+  legend.update(after.scene);
   fallButton.update(after);
   signs.lookLabel(worded(words.whereabouts.look, after.scene));
   meter.update(after);

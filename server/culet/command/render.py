@@ -11,6 +11,7 @@ from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar
+from culet.errors import InputError
 from culet.places import check_place
 from culet.scene.film import MOST_SAMPLES
 
@@ -48,6 +49,9 @@ def render(
             metavar="transparent|#rrggbb", help="Nothing behind the stones, with alpha, or that colour; twice the work."
         ),
     ] = None,
+    legend: Annotated[
+        bool, typer.Option("--legend", help="In a corner, what ASET's or the Ideal-Scope's colours mean, and the tilt.")
+    ] = False,
     preset: Preset = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
@@ -59,10 +63,14 @@ def render(
 
     with errors_in_one_line():
         check_place(out, "out", FORMATS)
+        if legend and out.suffix.lower() in (".exr", ".npy"):
+            raise InputError(f"legend: expected a picture for a screen, got {out.name!r} of radiance", "legend")
         stage = read_stage(scene, preset, mesh, sky, cut)
         if background is not None:
             stage = before(stage, background)
         with progress_bar(f"rendering {out.name}") as advance:
             picture = render_stage(stage, width, height, samples=samples, error=error, progress=advance)
+        if legend:
+            picture = picture.with_legend()
         picture.save(out)
         typer.echo(f"{out}: {width} x {height}, {picture.quality()}")

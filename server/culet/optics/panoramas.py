@@ -55,21 +55,26 @@ def ring_lights(height: int = STUDIO_HEIGHT) -> Panorama:
     return np.repeat((0.02 + 6 * rings)[..., None], 3, axis=-1).astype(np.float32)
 
 
-def aset(height: int = STUDIO_HEIGHT) -> Panorama:
-    """The Angular Spectrum Evaluation Tool's colours by elevation: green to 45 degrees, red to 75, blue above, which is
-    where the observer's head is in the way; nothing from below."""
+HEADS: Mapping[str, float] = {"aset": 15, "ideal-scope": 10}
+"""Degrees about the vertical that the observer's head fills: half the angle of its cone. ASET's 30 degrees in all are
+AGS's (Sasian et al., Optical Engineering 46, 2007), who show patterns of 40 too."""
+
+
+def aset(height: int = STUDIO_HEIGHT, head_degrees: float = HEADS["aset"]) -> Panorama:
+    """The Angular Spectrum Evaluation Tool's colours by elevation: green to 45 degrees, red above, and blue where the
+    observer's head is in the way; nothing from below."""
     elevation = np.degrees(np.arcsin(directions(height)[..., 1]))
-    bands = [(elevation > 0) & (elevation < 45), (elevation >= 45) & (elevation < 75), elevation >= 75]
+    head = 90 - head_degrees
+    bands = [(elevation > 0) & (elevation < 45), (elevation >= 45) & (elevation < head), elevation >= head]
     colours = np.array([(0, 1, 0), (1, 0, 0), (0, 0, 1)])
     return np.asarray(np.stack(bands, axis=-1).astype(float) @ colours, np.float32)
 
 
-def ideal_scope(height: int = STUDIO_HEIGHT) -> Panorama:
-    """The Ideal-Scope's: red around the observer's dark eye, which fills 10 degrees; white light from below, so that
-    what leaks is white."""
+def ideal_scope(height: int = STUDIO_HEIGHT, head_degrees: float = HEADS["ideal-scope"]) -> Panorama:
+    """The Ideal-Scope's: red around the observer's dark eye; white light from below, so that what leaks is white."""
     elevation = np.degrees(np.arcsin(directions(height)[..., 1]))
     colours = np.zeros((*elevation.shape, 3), np.float32)
-    colours[(elevation > 0) & (elevation < 80)] = (1, 0, 0)
+    colours[(elevation > 0) & (elevation < 90 - head_degrees)] = (1, 0, 0)
     colours[elevation <= 0] = 1
     return colours
 
@@ -104,17 +109,21 @@ def check_panorama(pixels: Panorama) -> None:
         _SOUND[key] = weakref.ref(pixels, lambda _: _SOUND.pop(key, None))
 
 
-@lru_cache(maxsize=4)
-def _studio(name: str) -> Panorama:
-    pixels = STUDIO[name]()
+@lru_cache(maxsize=8)
+def _studio(name: str, head_degrees: float | None = None) -> Panorama:
+    pixels = _instrument(name, head_degrees) if name in HEADS and head_degrees is not None else STUDIO[name]()
     pixels.flags.writeable = False  # so that what is derived from them is kept, too
     return pixels
+
+
+def _instrument(name: str, head_degrees: float) -> Panorama:
+    return aset(head_degrees=head_degrees) if name == "aset" else ideal_scope(head_degrees=head_degrees)
 
 
 def panorama_of(environment: ImageEnvironment, uploads: Mapping[str, Panorama]) -> Panorama:
     """The scene's panorama, or SceneError if there is none of that name."""
     if environment.image in STUDIO:
-        return _studio(environment.image)
+        return _studio(environment.image, environment.head_degrees)
     if environment.image not in uploads:
         raise SceneError(
             f"environment.image: expected {', '.join(STUDIO)} or the id of an upload, got {environment.image!r}",

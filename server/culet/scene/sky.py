@@ -61,6 +61,11 @@ class ImageEnvironment(Model):
         description="light-box, ring-lights, aset or ideal-scope, or the id of an uploaded .exr, .hdr or .png.",
     )
     scale: Annotated[float, Field(ge=0, le=1e6)] = Field(1, description="Factor on its radiance.")
+    head_degrees: Annotated[float, Field(ge=1, le=45)] | None = Field(
+        None,
+        description="Of aset and ideal-scope: half the angle of the cone that the observer's head fills. Without it "
+        "15, and 10; other pictures have no head.",
+    )
     turn_degrees: Annotated[float, Field(ge=-360, le=360)] = Field(0, description="About the vertical.")
 
 

@@ -1,7 +1,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import { expect, it, test } from "vitest";
 import { object } from "../json";
-import { tiltOf, tiltPatch } from "./tilt";
+import { directionOf, tiltOf, tiltPatch } from "./tilt";
 
 const FACE_UP = { camera: { position: [0, 12.5, 0], target: [0, 0, 0], up: [0, 0, -1] } };
 const ASIDE = { camera: { position: [3, 5, 0], target: [0, 1, 0], up: [0, 2, 0] } };
@@ -30,6 +30,15 @@ it("goes from face up to the lower edge of the picture, as if the stone's far si
   const { position, up } = cameraOf(tiltPatch(FACE_UP, 30));
   expectNear(position, [0, 12.5 * Math.cos(Math.PI / 6), 12.5 / 2]);
   expectNear(up, [0, 0, -1]);
+});
+
+it("goes to any side, which is told again", () => {
+  const { position, up } = cameraOf(tiltPatch(FACE_UP, 30, 90));
+  expectNear(position, [12.5 / 2, 12.5 * Math.cos(Math.PI / 6), 0]);
+  expectNear(up, [0, 0, -1]); // the picture stays upright
+  expect(directionOf({ camera: { position, target: [0, 0, 0], up } })).toBeCloseTo(90, 10);
+  expect(directionOf({ camera: { position: [-1, 2, 0], target: [0, 0, 0] } })).toBeCloseTo(270, 10);
+  expect(directionOf(FACE_UP)).toBeNull();
 });
 
 it("never has the camera's up along its line of sight, on the way there or back", () => {

@@ -18,17 +18,32 @@ export function tiltOf(scene: JsonObject | null): number {
 }
 
 /**
- * The camera at that tilt, as far off as it was, on the side on which it stood; from straight above, on the side of the
- * picture's lower edge. An up that would lie along the line of sight gives way to one that leaves the picture upright.
+ * The camera at that tilt, as far off as it was, toward a direction as of `directionOf`; without one, on the side on which
+ * it stood, from straight above on the side of the picture's lower edge. An up that would lie along the line of sight gives way to one that leaves the picture upright.
  */
-export function tiltPatch(scene: JsonObject | null, tilt: number): JsonObject {
+export function tiltPatch(scene: JsonObject | null, tilt: number, toward?: number): JsonObject {
   const { offset, up, target } = standOf(scene);
-  const level = levelOf(offset) ?? levelOf(scaled(up, -1)) ?? [0, 0, 1];
+  const level = toward === undefined ? sideOf(offset, up) : levelAt(toward);
   const angle = (tilt * Math.PI) / 180;
   const ray = plus(scaled(VERTICAL, Math.cos(angle)), scaled(level, Math.sin(angle)));
   const position = plus(target, scaled(ray, Math.hypot(...offset)));
   const upright = Math.abs(dot(ray, up)) < ALONG ? up : tilt < 45 ? scaled(level, -1) : VERTICAL;
   return { camera: { position: [...position], up: [...upright] } };
+}
+
+/** Degrees from +z toward +x of the side on which the camera stands; null straight above, where it stands on none. */
+export function directionOf(scene: JsonObject | null): number | null {
+  const level = levelOf(standOf(scene).offset);
+  return level && ((Math.atan2(level[0], level[2]) * 180) / Math.PI + 360) % 360;
+}
+
+function sideOf(offset: Vector, up: Vector): Vector {
+  return levelOf(offset) ?? levelOf(scaled(up, -1)) ?? [0, 0, 1];
+}
+
+function levelAt(degrees: number): Vector {
+  const angle = (degrees * Math.PI) / 180;
+  return [Math.sin(angle), 0, Math.cos(angle)];
 }
 
 function standOf(scene: JsonObject | null): { offset: Vector; up: Vector; target: Vector } {

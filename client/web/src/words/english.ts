@@ -176,6 +176,10 @@ export const panel = {
   walls: "Walls",
   moved: "What",
   tilt: "Tilt, \u00b0",
+  direction: "Tilted toward, \u00b0",
+  directionHint: "The side that the camera is tilted to: 0 is the picture's lower edge face up, 90 its right one",
+  head: "Observer's head, \u00b0",
+  headHint: "Half the angle of the cone that the head fills: ASET's has 15, or 20 close by; the Ideal-Scope's 10",
   tiltHint: "Of the camera: 0 looks straight down, which shows a stone face up; 90 looks from the side",
   saveWebp: "Save the picture (.webp)",
   saveTga: "Save the picture (.tga)",
@@ -186,6 +190,17 @@ export const panel = {
   openMesh: "Open a mesh or design\u2026",
   openSky: "Open a sky\u2026",
   newSession: "New session",
+};
+
+/** In a corner of the picture: what an instrument's colours mean, in degrees of elevation, and the tilt. */
+export const legend = {
+  above: (from: number, to: number) => `From above, ${from}\u00b0 to ${to}\u00b0`,
+  aside: (to: number) => `From aside, 0\u00b0 to ${to}\u00b0`,
+  head: (from: number) => `Your head, ${from}\u00b0 to 90\u00b0`,
+  back: (to: number) => `Comes back, 0\u00b0 to ${to}\u00b0`,
+  leak: "Leak",
+  faceUp: "Face up",
+  tilted: (degrees: number, toward: number) => `Tilted ${degrees.toFixed(1)}\u00b0 toward ${toward}\u00b0`,
 };
 
 /** The card with a session's links. */
