@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from culet.batch import sweep as sweeping
-from culet.batch.metrics import Effort, stone_mask
+from culet.batch.metrics import Effort, outline_mask
 from culet.batch.sweep import Sweep, journal_of, run
 from culet.batch.variation import variation
 from culet.errors import InputError
@@ -53,7 +53,7 @@ def test_the_radiance_of_a_stone_is_the_mean_over_its_outline(tmp_path: Path) ->
     assert list(run(asked, out))[-1] == (1, 1)
     (row,) = rows(out)
     picture = render_stage(DEFAULT, QUICK.width, QUICK.height, samples=QUICK.samples)
-    mask = stone_mask(DEFAULT, None, QUICK.width, QUICK.height)
+    mask = outline_mask(DEFAULT, None, QUICK.width, QUICK.height)
     assert float(row["radiance"]) == pytest.approx(float(picture.linear[mask].mean()), rel=1e-6)
     assert float(row["error"]) == pytest.approx(picture.missed.error, rel=1e-6)
     assert float(row["seconds"]) > 0
@@ -67,7 +67,7 @@ def test_the_outline_of_a_stone_is_where_the_picture_shows_it() -> None:
     })  # fmt: skip
     stage = Stage.of(scene)
     bright = render_stage(stage, 96, 54, samples=4).linear.mean(axis=2) > 0.5
-    mask = stone_mask(stage, None, 96, 54)
+    mask = outline_mask(stage, None, 96, 54)
     assert mask.sum() > 500
     assert np.mean(bright != mask) < 0.02  # the pixels that its edge passes
 

@@ -70,14 +70,14 @@ def measure(sums: LightSums | None, stage: Stage, names: Sequence[str], effort: 
             found |= {name: number.value, f"{name}_error": number.error}
     if set(names) & set(PICTURE):
         picture = render_stage(stage, effort.width, effort.height, samples=effort.samples)
-        mask = stone_mask(stage, effort.stone, effort.width, effort.height)
+        mask = outline_mask(stage, effort.stone, effort.width, effort.height)
         stone = picture.linear[mask][:, :3]
         found["radiance"] = float(stone.mean(dtype=np.float64)) if len(stone) else float("nan")
         found |= {"error": picture.missed.error, "seconds": picture.cost.seconds}
     return {column: found[column] for column in columns_of(names)}
 
 
-def stone_mask(stage: Stage, stone: str | None, width: int, height: int) -> NDArray[np.bool_]:
+def outline_mask(stage: Stage, stone: str | None, width: int, height: int) -> NDArray[np.bool_]:
     """(height, width): the pixels whose centres are within a stone's outline, whatever stands before it; of a stone
     that is not convex, its hull's."""
     outline = np.array(outline_of(stage.scene.camera, placed(stage)[place_of(stage, stone)]))
