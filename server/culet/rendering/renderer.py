@@ -39,6 +39,9 @@ TALLIES = constants("tile.cl")["TALLIES"]
 """Numbers for each tile."""
 ALMOST = 1 - 2**-20
 """The part of a sample that is done when its pixels are, but not what comes after."""
+PASSES_FOR_A_LOOK = 1.0
+"""Of a sample's time: what passes of light take, at least, before a sample shows them that the next pass makes vain. So
+the light of a picture at rest takes at most twice as long as if nothing were seen of it."""
 DEVELOP_BLOCK = 16
 """Pixels of a work-item that develops, as in film.cl."""
 DEVELOP_GROUP = 16
@@ -206,6 +209,8 @@ class Picture:
         """Spent by the last refinement."""
         self.light_seconds = 0.0
         """Spent by the last refinement on the light map."""
+        self._sample_seconds = 0.0
+        """Spent on the last sample."""
         self._renderer = renderer
         real = renderer.variant.real
         needed = features_of(stage)
@@ -284,19 +289,20 @@ class Picture:
         """Add samples until the target is reached, in launches of about so many seconds; yields the part that is done,
         as far as that can be told.
 
-        After each sample `pause` is asked whether to leave it at that for now. The picture that reaches the target is
-        the same to the last bit however often it was left, as long as its first two samples were not made otherwise.
+        After each sample `pause` is asked whether to leave it at that for now, and after each pass of the light map
+        whether to show that pass by a sample, before the next one. The picture that reaches the target is the same to
+        the last bit however often it was left, as long as its first two samples were not made otherwise.
         """
         self.compare_as_shown()
-        spent = spent_on_light = 0.0
+        self.seconds = self.light_seconds = 0.0
         while not self.reached(target):
+            for _ in self._lit(seconds, pause):
+                yield min(self.samples / self._needed(target), 1.0)
             before = self.samples
-            for part in self.refine_in_pieces(1, seconds):
+            for part in self._one_sample(seconds):
                 yield min((before + part) / self._needed(target), 1.0)
-            spent, spent_on_light = spent + self.seconds, spent_on_light + self.light_seconds
             if pause():
                 break
-        self.seconds, self.light_seconds = spent, spent_on_light
 
     def compare_as_shown(self) -> None:
         """From now on, tell the error of what is shown whenever samples have doubled."""
@@ -317,16 +323,23 @@ class Picture:
         expected = None if target.error is None else self._sums.shown.samples_for(target.error)
         return target.samples if expected is None else min(max(expected, target.least), target.samples)
 
-    def _lit(self, seconds: float) -> Iterator[None]:
+    def _lit(self, seconds: float, pause: Callable[[], bool] = lambda: False) -> Iterator[None]:
         """See to the light map before the next sample; yields between launches. If the map becomes another, so do all
-        samples."""
+        samples.
+
+        At rest the map as it is may be shown by a sample before its last pass, if `pause` says so after a pass.
+        """
         if self._light is None:
             return
         started, first = time.perf_counter(), self.samples == 0
+        spent, version, may_wait = self.light_seconds, self._light.version, self._effort is Effort.RESTING
         for _ in self._light.pieces(self.scene.optics.caustics_cutoff, self._effort, seconds, first=first):
             self.light_seconds += time.perf_counter() - started
             yield
             started = time.perf_counter()
+            paid = self.light_seconds - spent >= PASSES_FOR_A_LOOK * self._sample_seconds
+            if may_wait and self._light.version != version and paid and pause():
+                break  # the light goes on where it was, before the next sample
         self.light_seconds += time.perf_counter() - started
         if self._light.version != self._lit_by and self.samples > 0:
             self.begin_anew()
@@ -352,7 +365,7 @@ class Picture:
         progress = np.zeros(progress_size(device.units), np.uint32)
         of_items = progress[OF_ITEMS:].reshape(device.units, 2)
         buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * tracing.kernel.kept_bytes)
-        start = time.perf_counter()
+        start, before = time.perf_counter(), self.seconds
         cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
         while True:
             event = tracing.kernel.launch(
@@ -382,6 +395,7 @@ class Picture:
                 break
             yield part
             start = time.perf_counter()
+        self._sample_seconds = self.seconds - before
         if self._fireflies is not None:
             self._fireflies.collect(run, add=adds, sample=self.samples)
         for _ in self._sums.added():

@@ -94,6 +94,7 @@ def measure(
     are of what is left of it. Compiling does not count, the map of the light that stones throw does.
     """
     renderer = CuttingRenderer()
+    renderer.make_ready(stage)
     renderer.picture(stage, *WARM_UP, effort=None).refine(2)
     picture, taken = renderer.picture(stage, width, height, effort=Effort.RESTING), list[tuple[float, int, Image]]()
     estimates = []

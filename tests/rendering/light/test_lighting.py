@@ -24,6 +24,7 @@ from culet.rendering.light.panorama_light import is_summed
 from culet.rendering.light.ray import Ray
 from culet.rendering.light.sources import rays_of
 from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from shared.stages import staged
@@ -209,6 +210,34 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     assert (again.linear() == fresh.linear()).all(), "by a map that is there already"
     assert (after.linear() == fresh.linear()).all(), "by one that was made for a moving picture"
     assert (moving.linear() != fresh.linear()).any()
+
+
+def test_light_at_rest_is_shown_while_it_gets_better_and_ends_in_the_same_picture(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One sample after each pass, or all passes at once."""
+    monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", 5)
+    monkeypatch.setattr("culet.rendering.renderer.PASSES_FOR_A_LOOK", 0.0)
+    stage, target = Stage.of(scene_of(emitters=[SUN])), Target(3)
+    renderer.lighting.forget()
+    expected = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
+    for _ in expected.refine_until(target, math.inf):
+        pass
+    renderer.lighting.forget()
+    picture, looks = renderer.picture(stage, *SIZE, effort=Effort.RESTING), list[tuple[int, int]]()
+    while not picture.reached(target):
+        for _ in picture.refine_until(target, 1e-4, pause=lambda: True):
+            pass
+        found = renderer.lighting.of(stage)
+        assert found is not None
+        looks.append((found.passes, picture.samples))
+    assert looks == [(1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (5, 2), (5, 3)]
+    assert picture.linear().tobytes() == expected.linear().tobytes()
+    renderer.lighting.forget()
+    patient = renderer.picture(stage, *SIZE, effort=Effort.PATIENT)
+    for _ in patient.refine_until(target, 1e-4, pause=lambda: True):
+        pass
+    assert patient.light_error() == expected.light_error(), "a still waits for all its light"
 
 
 def test_a_pass_that_another_picture_has_begun_anew_adds_nothing(renderer: Renderer) -> None:
