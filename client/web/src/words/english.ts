@@ -179,7 +179,8 @@ export const panel = {
   direction: "Tilted toward, \u00b0",
   directionHint: "The side that the camera is tilted to: 0 is the picture's lower edge face up, 90 its right one",
   head: "Head, \u00b0",
-  headHint: "Half the angle of the cone that the observer's head fills: ASET's has 15, or 20 close by; the Ideal-Scope's 10",
+  headHint:
+    "Half the angle of the cone that the observer's head fills: ASET's has 15, or 20 close by; the Ideal-Scope's 10",
   tiltHint: "Of the camera: 0 looks straight down, which shows a stone face up; 90 looks from the side",
   saveWebp: "Save the picture (.webp)",
   saveTga: "Save the picture (.tga)",
