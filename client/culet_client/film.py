@@ -61,11 +61,15 @@ class Film:
 
     def add(self, image: Image, seconds: float) -> None:
         """The next picture, shown from so many seconds after the film's beginning on."""
+        self.add_pixels(image.pixels, seconds)
+
+    def add_pixels(self, pixels: NDArray[np.uint8], seconds: float) -> None:
+        """As `add`: (height, width, 3) red, green and blue, the top row first."""
         if self._last is not None and seconds - self._last[1] >= LEAST_SECONDS:
             self._write(*self._last)
         elif self._last is not None:
             seconds = self._last[1]
-        self._last = fitted(image.pixels, self.size), seconds
+        self._last = fitted(pixels, self.size), seconds
 
     def finish(self, seconds: float) -> None:
         """So long is the film; ClientError if it cannot be written, or has no picture."""

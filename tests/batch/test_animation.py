@@ -10,6 +10,7 @@ from PIL import Image
 
 from culet.batch import animation
 from culet.batch.animation import JOURNAL, Animation, fall, render_frames, times_of, turntable
+from culet.batch.film import check_film, write_film
 from culet.errors import InputError
 from culet.scene import Scene
 from culet.stage import Stage
@@ -90,3 +91,36 @@ def test_no_frames_or_too_many_are_refused() -> None:
     for seconds, rate in ((0.001, 30), (1e6, 1000)):
         with pytest.raises(InputError, match="expected 1 to 100000 frames"):
             times_of(seconds, rate)
+
+
+def test_a_film_has_every_frame_for_its_time(tmp_path: Path) -> None:
+    av = pytest.importorskip("av")
+    asked, folder, out = film(3), tmp_path / "turn.frames", tmp_path / "turn.mp4"
+    list(render_frames(asked, folder))
+    write_film(asked, folder, out, 3, lambda part: None)
+    with av.open(str(out)) as file:
+        pictures = list(file.decode(video=0))
+        assert float(file.duration / av.time_base) == pytest.approx(
+            1, abs=0.03
+        )  # measured 1.025: the end is a picture too
+    starts = [picture.time for picture in pictures]
+    assert starts[:3] == pytest.approx([0, 1 / 3, 2 / 3], abs=1e-3)
+    with Image.open(folder / "frame-000002.png") as frame:
+        seen = pictures[1].to_ndarray(format="rgb24").astype(float)
+        assert abs(seen - np.asarray(frame)).mean() < 4  # measured 1.3: nearly lossless, colour not halved
+    assert not list(tmp_path.glob(".*.part"))
+
+
+def test_a_film_that_could_not_be_made_is_refused_before_it_is_rendered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("culet.batch.film.find_spec", lambda name: name)
+    with pytest.raises(InputError, match="fps: expected at most 120"):
+        check_film(tmp_path / "a.mp4", 240, "png")
+    with pytest.raises(InputError, match="format: expected one of png, webp, tga for a film, got exr"):
+        check_film(tmp_path / "a.mp4", 30, "exr")
+    with pytest.raises(InputError, match="there is no folder"):
+        check_film(tmp_path / "b" / "a.mp4", 30, "png")
+    monkeypatch.setattr("culet.batch.film.find_spec", lambda name: None)
+    with pytest.raises(InputError, match="a film needs PyAV"):
+        check_film(tmp_path / "a.mp4", 30, "png")

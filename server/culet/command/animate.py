@@ -28,7 +28,13 @@ SECONDS = 4.0
 def animate(
     scene: SceneFile = None,
     out: Annotated[
-        Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the frames; made if missing.")
+        Path,
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="FOLDER|FILM.mp4",
+            help="Folder of the frames, made if missing; or a film, whose frames are kept in FILM.frames beside it.",
+        ),
     ] = Path("frames"),
     turntable: Annotated[bool, typer.Option("--turntable", help="The camera goes once around the stones.")] = False,
     fall: Annotated[bool, typer.Option("--fall", help="The stones fall, as of culet simulate.")] = False,
@@ -62,6 +68,7 @@ def animate(
     Stopped with Ctrl-C, the same command goes on where it was; frames are there whole or not at all.
     """
     from culet.batch.animation import Animation, times_of
+    from culet.batch.film import check_film, write_film
     from culet.rendering.files import FORMATS
 
     with errors_in_one_line():
@@ -69,13 +76,20 @@ def animate(
             raise InputError("expected one of --turntable, --fall and --path", "turntable")
         if image not in FORMATS:
             raise InputError(f"format: expected one of {', '.join(FORMATS)}; got {image!r:.20}", "format")
-        if out.is_file():
+        film = out.suffix.lower() == ".mp4"
+        if film:
+            check_film(out, fps, image)
+        elif out.is_file():
             raise InputError(f"out: expected a folder, got the file {out}", "out")
         times = times_of(seconds, fps)
         stage = read_stage(scene, preset, mesh, sky, cut)
         stages = _stages(stage, times, seconds, fall=fall, path=path)
         frames = Animation(stages, width, height, samples, error, image)
-        _render(frames, out, fresh=fresh)
+        folder = out.with_suffix(".frames") if film else out
+        _render(frames, folder, fresh=fresh)
+        if film:
+            with progress_bar(f"encoding {out.name}") as advance:
+                write_film(frames, folder, out, fps, advance)
         typer.echo(f"{out}: {len(stages)} frames of {width} x {height}")
 
 
