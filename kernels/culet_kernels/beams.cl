@@ -219,7 +219,7 @@ static inline int facet_ahead(__global const real *planes, int padded, const rea
 static inline void split_beam(const job_t *job, tally_t *tally, beam_t *stack, int *top) {
   const beam_t beam = stack[--*top];
   const real d0 = beam.d[0], d1 = beam.d[1], d2 = beam.d[2], eta = job->eta;
-  const int facets = job->solid->facets, padded = job->solid->padded, count = beam.count;
+  const int padded = job->solid->padded, count = beam.count;
   __global const real *nx = job->facets.planes + job->solid->first_plane, *ny = nx + padded, *nz = ny + padded,
                       *offset = nz + padded;
   tally->beams++;
