@@ -18,7 +18,7 @@ MOVING_STATUS = " \u00b7 ".join(
         r"server [\d.]+ ms \(simulate [\d.]+, render [\d.]+, encode [\d.]+\)",
         r"round trip [\d.]+ ms",
         r"frontier's error [\d.]+",
-        f"{SMALL['width']}\u00d7{SMALL['height']}",
+        rf"{SMALL['width']}\u00d7{SMALL['height']} (JPEG|H\.264)",
         "1 sample",
         "1 viewer$",
     )

@@ -142,7 +142,7 @@ class Demands:
         """Listen to the session's frames no more."""
         for codec in session.subscribed:
             self._link.unsubscribe(session.topics[codec])
-        session.subscribed = frozenset()
+        session.subscribed = session.held = frozenset()
 
     def begin_anew(self, session: SessionRecord) -> None:
         """Another engine has the session, and was told no demand."""

@@ -38,7 +38,7 @@ Progress = Callable[[float], None]
 FIRE = 30.0
 """CIELAB chroma."""
 JPEGS = 92, jpeg.MOVING_QUALITY, 70, 50, jpeg.LEAST_QUALITY
-CRFS = 17, BEST_CRF, 23, 26, 29, 32, 35
+CRFS = 14, 17, BEST_CRF, 23, 26, 29, 32
 JUDGED_EVERY = 15
 """Frames: FLIP takes a second for one."""
 BYTES = 35_000

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from culet.engine.painting.video import VideoEncoder, VideoError, video_codecs
+from culet.engine.painting.video import VideoEncoder, VideoError, luma_and_chroma, video_codecs
 from culet.study import trial_frames
 from culet_client.video import VideoDecoder
 from culet_protocol.frame import Codec, Flags, Frame
@@ -92,3 +92,12 @@ def test_without_pyav_nothing_is_offered_and_an_encoder_says_so(monkeypatch: pyt
             VideoEncoder(Codec.H264, WIDTH, HEIGHT, crf=20)
     finally:
         video_codecs.cache_clear()
+
+
+def test_colours_are_converted_by_the_standard_to_the_nearest_level() -> None:
+    rgb = np.random.default_rng(1).integers(0, 256, (HEIGHT, WIDTH, 3), dtype=np.uint8)
+    red, green, blue = (rgb[..., channel].astype(float) for channel in range(3))
+    luma = 0.2126 * red + 0.7152 * green + 0.0722 * blue  # BT.709, and its colour differences
+    wanted = [luma, (blue - luma) / 1.8556 + 128, (red - luma) / 1.5748 + 128]
+    found = luma_and_chroma(rgb).astype(float)
+    assert np.abs(found - np.minimum(wanted, 255)).max() < 0.51

@@ -64,6 +64,11 @@ class Outgoing:
             self.tracks[codec].hold(now, held=held)
 
     @property
+    def nbytes(self) -> int:
+        """That its encoders take."""
+        return sum(track.nbytes for track in self.tracks.values())
+
+    @property
     def is_video(self) -> bool:
         """Whether what moves goes out as video alone."""
         return Codec.JPEG not in self.codecs and any(track.works for track in self.tracks.values())

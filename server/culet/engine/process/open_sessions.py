@@ -51,6 +51,7 @@ class OpenSessions:
         """Who opened the sessions."""
         self._subscriptions: set[bytes] = set()
         memory.count("histories", lambda: SHOWN_BYTES * sum(len(live.session.history) for live in self))
+        memory.count("video", lambda: sum(live.outgoing.nbytes for live in self))
         memory.count("edits", lambda: sum(live.session.edits.nbytes for live in self))
 
     def __len__(self) -> int:
