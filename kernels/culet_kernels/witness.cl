@@ -103,7 +103,9 @@ static inline void weigh_events(world_t world, int first, task_t task, const pac
     event->cut *= over_channels(task, packet);
     event->weight[0] *= packet->weight[0];
     event->weight[1] *= packet->weight[0];
-    event->chain = event_of_packet(world, task, packet, SEES).chain;
+    const happening_t of_packet = event_of_packet(world, task, packet, SEES);
+    event->chain = of_packet.chain;
+    for (int k = 0; k < 3; k++) event->polarisation[k] = of_packet.polarisation[k];
   }
 }
 

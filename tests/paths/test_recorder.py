@@ -39,8 +39,14 @@ SCENES: dict[str, dict[str, Any]] = {
         "optics": {"cutoff": 0.02, "end": "sky"},
     },
     "wavelengths, polarised": {"stones": [DIAMOND], "optics": {"bands": 8, "polarised": True}},
-    "not convex": {"stones": [{**DIAMOND, "cut": "heart"}], "floor": {"kind": "mirror"}},
-    "several stones": preset("trio").model_dump(mode="json"),
+    "several stones, one of them not convex": {
+        "stones": [
+            {**DIAMOND, "cut": "heart"},
+            {"material": "ruby", "position": [1.2, -0.37, 0.3], "scale": 0.8},
+            {"material": "bk7", "position": [-1.2, -0.37, 0]},
+        ],
+        "floor": {"kind": "mirror"},
+    },
 }
 PIXELS = ((48, 27), (44, 22), (57, 30), (40, 33), (2, 2), (90, 50))
 

@@ -87,7 +87,7 @@ export class RayCard {
     const row = rowOf("td", [
       String(step.number),
       lightText(step, path),
-      happensText(step),
+      happensText(step, path),
       angleText(step),
       shareText(step),
     ]);

@@ -16,9 +16,9 @@ export function metText({ meets, number, side }: Part): string {
 }
 
 /** What happens at a step, in a few words. */
-export function happensText(step: Step): string {
+export function happensText(step: Step, path: Path): string {
   const said = words.ray.happens;
-  const facet = facetText(step);
+  const facet = facetText(step, path);
   const kept = percent(step.passes[0]?.kept ?? 0);
   switch (step.kind) {
     case "enters":
@@ -38,8 +38,10 @@ export function happensText(step: Step): string {
   }
 }
 
-function facetText({ stone, facet, facet_name: name }: Step): string {
-  return words.ray.facet(stone ?? "", name ?? words.ray.unnamed(String(facet)));
+function facetText({ stone, facet, facet_name: name }: Step, { poses }: Path): string {
+  const alone = Object.keys(poses).length < 2;
+  const called = name ?? words.ray.unnamed(String(facet));
+  return alone ? called : words.ray.facet(stone ?? "", called);
 }
 
 function isTotal(step: Step): boolean {

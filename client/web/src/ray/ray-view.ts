@@ -59,6 +59,7 @@ export class RayView {
       this.scene = this.scene ?? this.world.visit.scene;
       this.chosen = path.steps[0]?.number ?? null;
       this.card.show(path, this.millimetres());
+      if (document.activeElement === this.world.canvas || document.activeElement === document.body) this.card.focus();
       this.step = null;
       this.follow();
       this.draw();
