@@ -121,4 +121,13 @@ it("knows the indices of a stone by its material's name, or as the scene says th
   expect(indicesOf(SCENE, [])).toBeNull();
   expect(indicesOf({ stones: [{ material: { ior: [1.5, 1.6, 1.7] } }] }, [])).toEqual([1.5, 1.6, 1.7]);
   expect(indicesOf({ stones: [] }, materials)).toBeNull();
+  // BK7's by Schott: 1.5143, 1.5187 and 1.5267 at the lines C, e and g.
+  const pairs = [
+    [1.03961212, Math.sqrt(0.00600069867)],
+    [0.231792344, Math.sqrt(0.0200179144)],
+    [1.01046945, Math.sqrt(103.560653)],
+  ];
+  const glass = indicesOf({ stones: [{ material: { sellmeier: pairs } }] }, []) ?? [0, 0, 0];
+  for (const [k, known] of [1.5143, 1.5187, 1.5267].entries()) expect(glass[k]).toBeCloseTo(known, 4);
+  expect(indicesOf({ stones: [{ material: { sellmeier: [[-2, 0.1]] } }] }, [])).toBeNull();
 });

@@ -64,7 +64,21 @@ export function materialFacts([red, green, blue]: Material["indices"]): string {
 export function indicesOf(scene: JsonObject | null, materials: readonly Material[]): Material["indices"] | null {
   const { material } = stoneOf(scene);
   if (typeof material === "string") return materials.find(({ name }) => name === material)?.indices ?? null;
-  return triple(object(material).ior);
+  const { ior, sellmeier } = object(material);
+  return triple(ior) ?? (Array.isArray(sellmeier) ? sellmeierIndices(sellmeier) : null);
+}
+
+/** Micrometres of the lines that stand for red, green and blue, as the server's wavelengths.py has them. */
+const LINES = [0.6563, 0.5461, 0.4358] as const;
+
+/** n^2 = 1 + sum B l^2 / (l^2 - C^2) (Sellmeier 1871); null where that is no index. */
+function sellmeierIndices(pairs: readonly unknown[]): Material["indices"] | null {
+  const known = pairs.filter((pair): pair is [number, number] => Array.isArray(pair) && pair.length === 2);
+  const index = (line: number) => {
+    return Math.sqrt(known.reduce((sum, [b, c]) => sum + (b * line * line) / (line * line - c * c), 1));
+  };
+  const indices = LINES.map(index);
+  return indices.every((each) => each >= 1) ? triple(indices) : null;
 }
 
 /** The scene's before there is one. */
