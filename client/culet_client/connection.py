@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from functools import partial
+from pathlib import Path
 from typing import Any, Self
 from urllib.parse import parse_qs, urlsplit
 
@@ -85,6 +86,7 @@ def connect(
     token: str | None = None,
     size: tuple[int, int] | None = None,
     video: bool = True,
+    keys: Path | None = None,
     timeout_seconds: float = 10,
 ) -> Connection:
     """Watch a session, and steer it.
@@ -106,6 +108,8 @@ def connect(
             larger.
         video: by WebSocket, take what moves as video where the server makes some and PyAV is installed here: half the
             bytes. Else each picture is a JPEG; over ZeroMQ it always is.
+        keys: over ZeroMQ to another machine, the folder of this client's keys, as `culet keys` makes it; without it the
+            one that the variable CULET_KEYS names.
         timeout_seconds: for whatever is waited for, unless `image` is told otherwise.
 
     Raises:
@@ -117,7 +121,7 @@ def connect(
     scheme = urlsplit(url).scheme
     if scheme in ZEROMQ:
         token = token or os.environ.get("CULET_TOKEN") or None
-        return _OverZeroMq(url, session, watch, scene, preset, control, token, size, timeout_seconds)
+        return _OverZeroMq(url, session, watch, scene, preset, control, token, size, keys, timeout_seconds)
     if control is not None:
         raise ClientError(f"control: expected with an engine's frames, such as tcp://127.0.0.1:5556; got {url!r}")
     if session is not None and watch is not None:
@@ -204,6 +208,7 @@ class _OverZeroMq(Connection):
         control: str | None,
         token: str | None,
         size: tuple[int, int] | None,
+        keys: Path | None,
         timeout_seconds: float,
     ) -> None:
         self.notices = []
@@ -215,13 +220,13 @@ class _OverZeroMq(Connection):
         self._rest = (
             Rest(control, timeout_seconds, token) if control and urlsplit(control).scheme not in ZEROMQ else None
         )
-        self._engine = EngineControl(control, timeout_seconds) if control and self._rest is None else None
+        self._engine = EngineControl(control, timeout_seconds, keys) if control and self._rest is None else None
         with ExitStack() as opened:
             self.session = session
             if session is None and watch is None:
                 self.session = self._make_session(scene, preset, opened)
             watched = watch if self.session is None else watch_id(_checked(self.session))
-            self._subscription = opened.enter_context(FrameSubscription(endpoint, watched or ""))
+            self._subscription = opened.enter_context(FrameSubscription(endpoint, watched or "", keys=keys))
             if size is not None:
                 self.send(_resize(size))
             self._opened = opened.pop_all()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import time
+from pathlib import Path
 
 import zmq
 from pydantic import ValidationError
 
 from culet_client.errors import ClientError, RefusedError, SilenceError
+from culet_client.key_folder import checked_keys
 from culet_protocol.engine import REQUEST_NUMBER, Reply, engine_message
 from culet_protocol.messages import Message
 
@@ -17,8 +19,9 @@ class EngineControl:
     """The ROUTER of an engine. Each request has a connection of its own: on one that stayed open the engine would tell
     things that nobody here reads."""
 
-    def __init__(self, endpoint: str, timeout_seconds: float) -> None:
-        """The engine with that endpoint of control, such as `ipc:///tmp/culet.control`."""
+    def __init__(self, endpoint: str, timeout_seconds: float, keys: Path | None = None) -> None:
+        """The engine with that endpoint of control, such as `ipc:///tmp/culet.control`; `keys` as for frames."""
+        self._keys = checked_keys(endpoint, keys)
         self.endpoint = endpoint
         self._timeout = timeout_seconds
         self._numbers = itertools.count(1)
@@ -28,6 +31,8 @@ class EngineControl:
         number = REQUEST_NUMBER.pack(next(self._numbers))
         with zmq.Context() as context, context.socket(zmq.DEALER) as socket:
             socket.setsockopt(zmq.LINGER, 0)
+            if self._keys is not None:
+                self._keys.apply(socket, self.endpoint)
             try:
                 socket.connect(self.endpoint)
             except zmq.ZMQError as error:

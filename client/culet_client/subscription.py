@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Self
 
 import zmq
 
 from culet_client.errors import ClientError, SilenceError
+from culet_client.key_folder import checked_keys
 from culet_protocol.frame import Frame, FrameError
 
 FRAMES_WAITING = 64
@@ -29,11 +31,13 @@ class FrameSubscription:
     With `latest_only` a slow taker skips frames (ZMQ_CONFLATE: one slot, the newest wins) and is never behind.
     """
 
-    def __init__(self, endpoint: str, watch: str, *, latest_only: bool = True) -> None:
-        """ClientError for an id that is none, or an address that cannot be connected to."""
+    def __init__(self, endpoint: str, watch: str, *, latest_only: bool = True, keys: Path | None = None) -> None:
+        """ClientError for an id that is none, an address that cannot be connected to, or keys that cannot be read: of
+        the folder `keys`, or the one that CULET_KEYS names, for an engine on another machine."""
         if not re.fullmatch(r"[0-9a-f]{32}", watch):
             raise ClientError(f"a watch id has 32 hexadecimal digits, got {watch!r}")
         self.endpoint, self.watch = endpoint, watch
+        known = checked_keys(endpoint, keys)
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.SUB)
         self._socket.setsockopt(zmq.LINGER, 0)
@@ -44,6 +48,8 @@ class FrameSubscription:
         for option, value in KEEP_ALIVE:
             self._socket.setsockopt(option, value)
         self._socket.setsockopt(zmq.SUBSCRIBE, bytes.fromhex(watch))
+        if known is not None:
+            known.apply(self._socket, endpoint)
         try:
             self._socket.connect(endpoint)
         except zmq.ZMQError as error:

@@ -49,10 +49,16 @@ def check_trusted(endpoint: str, option: str, *, trusted: bool) -> None:
     if trusted or parts is None or _is_loopback(parts["address"]):
         return
     raise InputError(
-        f"--{option}: other machines reach {endpoint!r}, and whoever does {REACHED[option]}; --trust-network permits "
-        "that, tcp://127.0.0.1:PORT serves this machine alone",
+        f"--{option}: other machines reach {endpoint!r}, and whoever does {REACHED[option]}; --keys lets in those "
+        "who have keys (`culet keys` makes some), --trust-network anybody, tcp://127.0.0.1:PORT this machine alone",
         option,
     )
+
+
+def tcp_address(endpoint: str) -> str | None:
+    """The address or name of a machine, if the endpoint has one."""
+    parts = _TCP.fullmatch(endpoint)
+    return None if parts is None else parts["address"]
 
 
 def _is_loopback(address: str) -> bool:

@@ -45,6 +45,11 @@ class Settings(BaseSettings):
 
     log_level: Level = Field("info", description="What is told on stderr: events of this level and above.")
     log_format: Format = Field("text", description="How it is told: as text, or as one JSON object a line.")
+    keys: Path | None = Field(
+        None,
+        description="Folder of keys for tcp:// endpoints, made by `culet keys`: what travels there is encrypted, and "
+        "only those with keys that the engine knows are let in.",
+    )
     max_sessions: int = Field(64, ge=1, description="Sessions that may be open at once.")
     max_upload_bytes: ByteSize = Field(
         ByteSize(64 * MEBIBYTE), ge=1, description="Size of one uploaded file, such as 64MiB."

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,16 +26,18 @@ STOPPING = 20.0
 class Server:
     """Engine and gateway on a free port of loopback, for as long as the `with` lasts."""
 
-    def __init__(self, folder: Path, *options: str) -> None:
-        """`options` are further ones of the command."""
+    def __init__(self, folder: Path, *options: str, port: int = 0, stops_by_killing: bool = False) -> None:
+        """`options` are further ones of the command; one that would drain is killed at the end."""
         self._options = options
+        self._port = port
+        self._stops_by_killing = stops_by_killing
         self._messages = folder / "serve.log"
         self.url = ""
 
     def __enter__(self) -> Server:
         with self._messages.open("wb") as messages:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "culet", "serve", "--port", "0", *EMBEDDING, *self._options],
+                [sys.executable, "-m", "culet", "serve", "--port", str(self._port), *EMBEDDING, *self._options],
                 stdout=subprocess.PIPE,
                 stderr=messages,
             )
@@ -46,6 +48,8 @@ class Server:
 
     def __exit__(self, *_: object) -> None:
         self.http.close()
+        if self._stops_by_killing:
+            self.kill()
         self._process.terminate()
         assert self._process.stdout is not None
         self._process.stdout.close()
@@ -103,6 +107,16 @@ class Server:
         for pid in _children(self._process.pid):
             os.kill(pid, signal.SIGKILL)
 
+    @property
+    def is_running(self) -> bool:
+        """Whether it has not ended."""
+        return self._process.poll() is None
+
+    def kill(self) -> None:
+        """The server as a whole: what it keeps running ends with it."""
+        self._process.kill()
+        self._process.wait()
+
     def cpu_seconds(self) -> float:
         """Processor time so far of the server, and of the engine and the gateway that work: others begin meanwhile."""
         return sum(_cpu_seconds(pid) for pid in (self._process.pid, self.engine_pid(), self.gateway_pid()))
@@ -129,6 +143,14 @@ class Server:
             yield metrics
             time.sleep(0.02)  # between two looks at another process
         raise AssertionError(f"waited {PATIENCE:g} s in vain; now {metrics}\n{self._messages.read_text()}")
+
+
+def waited_until(condition: Callable[[], bool]) -> None:
+    """Wait until a condition is true of what others do."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, f"waited {PATIENCE:g} s in vain"
+        time.sleep(0.05)  # between two looks at other processes
 
 
 def _children(pid: int) -> list[int]:

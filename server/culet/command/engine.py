@@ -13,6 +13,7 @@ from culet.command.single import single_command
 from culet.command.terminal import errors_in_one_line
 from culet.endpoints import check_trusted
 from culet.engine.process.limits import Limits
+from culet.engine.process.strangers import engine_keys
 from culet.logs import configure
 
 app = single_command()
@@ -36,8 +37,9 @@ def engine(
     with errors_in_one_line():
         limits = Limits.read(given)
         configure(limits.log_level, limits.log_format)
+        engine_keys(limits.keys)
         for option, endpoint in (("control", control), *(("frames", endpoint) for endpoint in frames)):
-            check_trusted(endpoint, option, trusted=limits.trust_network)
+            check_trusted(endpoint, option, trusted=limits.trust_network or limits.keys is not None)
         if spare and not stand_by:  # one that stands by has the same environment
             from culet.service.serve import serve_engine
 

@@ -12,6 +12,7 @@ from culet.command.single import single_command
 from culet.command.terminal import errors_in_one_line
 from culet.endpoints import check_trusted
 from culet.engine.process.limits import Limits
+from culet.engine.process.strangers import engine_keys
 from culet.gateway.settings import GatewaySettings
 from culet.logs import configure
 
@@ -47,6 +48,7 @@ def serve(
     with errors_in_one_line():
         limits = Limits.read(given)  # before the child would complain of them
         configure(limits.log_level, limits.log_format)
+        engine_keys(limits.keys)
         if frames is not None:
-            check_trusted(frames, "frames", trusted=limits.trust_network)
+            check_trusted(frames, "frames", trusted=limits.trust_network or limits.keys is not None)
         run(given, frames=frames, engine_options=[*Limits.words(given)], spare=spare, open_page=open_page)

@@ -16,6 +16,7 @@ MODULES = {
     "serve": "culet.command.serve",
     "gateway": "culet.command.gateway",
     "engine": "culet.command.engine",
+    "keys": "culet.command.keys",
     "view": "culet.command.view",
     "record": "culet.command.record",
     "study": "culet.command.study",

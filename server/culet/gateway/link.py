@@ -21,6 +21,7 @@ from pydantic import ValidationError
 
 from culet.endpoints import keep_alive
 from culet.errors import BusyError, CuletError, EngineUnavailableError, InputError, NotFoundError, TooLargeError
+from culet.gateway.engine_door import engine_door_keys
 from culet.gateway.settings import GatewaySettings
 from culet_protocol.engine import (
     REQUEST_NUMBER,
@@ -93,6 +94,7 @@ class EngineLink:
         self.events = EngineEvents()
         """Told what the engine says unasked."""
         self._settings = settings
+        self._keys = engine_door_keys(settings)
         self._last_heard = 0.0
         self._away_since = -float("inf")
         self._greeted: str | None = None
@@ -113,6 +115,7 @@ class EngineLink:
             keep_alive(frames)
             frames.setsockopt(zmq.RECONNECT_IVL, RECONNECT_MS)
             frames.setsockopt(zmq.RCVHWM, FRAMES_WAITING)
+            self._show_keys(frames, self._settings.frames)
             frames.connect(self._settings.frames)
             self._frames = frames
             async with asyncio.TaskGroup() as tasks:
@@ -126,6 +129,10 @@ class EngineLink:
             if self._greeting:
                 self._greeting.cancel()
             self._context.destroy(linger=0)
+
+    def _show_keys(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
+        if self._keys is not None:
+            self._keys.apply(socket, endpoint)
 
     async def until_up(self) -> None:
         """Wait for an engine that is starting: until it answers, or has been away for `engine_start_seconds`."""
@@ -145,6 +152,7 @@ class EngineLink:
             control.setsockopt(zmq.PROBE_ROUTER, 1)
             control.setsockopt(zmq.IMMEDIATE, 1)
             monitor: zmq.asyncio.Socket = control.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+            self._show_keys(control, self._settings.control)
             control.connect(self._settings.control)
             self._control, self._last_heard = control, asyncio.get_running_loop().time()
             readers = [

@@ -8,6 +8,7 @@ from typing import Any
 
 from culet.endpoints import reachable
 from culet.gateway.address import entrance
+from culet.gateway.engine_door import check_one_engine
 from culet.gateway.listener import Listener
 from culet.gateway.settings import settings_of, with_token
 
@@ -19,6 +20,7 @@ def run_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     engine too, says so at /readyz, and finds it when it comes. Raises InputError for a setting that cannot be used or
     an address that cannot be listened on.
     """
+    check_one_engine({"control": control, "frames": frames})
     asked = settings_of(given, reachable(control), reachable(frames))
     settings = with_token(asked)
     with Listener(settings) as listener:

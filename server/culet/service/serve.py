@@ -13,6 +13,7 @@ from typing import Any
 
 from culet.endpoints import check_free, reachable
 from culet.gateway.address import entrance, listening_socket, local_url_of, url_of
+from culet.gateway.engine_door import check_one_engine
 from culet.gateway.settings import GatewaySettings, settings_of, with_token
 from culet.service.keeping import keep
 from culet.service.parts import engine_part, gateway_part
@@ -70,6 +71,7 @@ def serve_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     `given` are its settings, `control` and `frames` the engine's endpoints. InputError for a setting that cannot be
     used or an address that cannot be listened on.
     """
+    check_one_engine({"control": control, "frames": frames})
     asked = settings_of(given, reachable(control), reachable(frames))
     settings = with_token(asked)
     with socket_folder() as folder, listening_socket(settings.host, settings.port) as listening:

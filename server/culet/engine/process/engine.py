@@ -23,6 +23,7 @@ from culet.engine.process.sockets import Peers, bind_control, bind_frames
 from culet.engine.process.watchdog import Watchdog
 from culet.errors import CuletError, InputError
 from culet_protocol import engine as protocol
+from culet_protocol.keys import EngineKeys
 from culet_protocol.watch import VIDEO_NAMES
 
 log = logging.getLogger(__name__)
@@ -54,9 +55,10 @@ class Engine:
         renderer: Renderer,
         render_thread: ThreadPoolExecutor,
         encode: Callable[[Picture, str], bytes],
+        keys: EngineKeys | None = None,
     ) -> None:
-        self._control = bind_control(context, control, limits.max_upload_bytes)
-        self._frames = bind_frames(context, frames)
+        self._control = bind_control(context, control, limits.max_upload_bytes, keys)
+        self._frames = bind_frames(context, frames, keys)
         self._peers = Peers(self._control, self._give_up)
         self._tasks: set[asyncio.Task[None]] = set()
         self._under_way: dict[tuple[bytes, bytes], asyncio.Task[None]] = {}

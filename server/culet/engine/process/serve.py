@@ -17,6 +17,7 @@ from culet.engine.painting.renderer import Picture, Renderer
 from culet.engine.process.engine import Engine
 from culet.engine.process.heap import return_large_blocks
 from culet.engine.process.limits import Limits
+from culet.engine.process.strangers import engine_keys, letting_in
 from culet.errors import CuletError
 
 log = logging.getLogger(__name__)
@@ -102,6 +103,7 @@ async def serve(
     """Serve with a renderer that is made and used on the render thread, once `start` is set."""
     loop = asyncio.get_running_loop()
     stopping = asyncio.Event()
+    keys = engine_keys(limits.keys)
     for number in (signal.SIGTERM, signal.SIGINT):
         loop.add_signal_handler(number, stopping.set)
     render_thread = ThreadPoolExecutor(1, "render")
@@ -110,8 +112,9 @@ async def serve(
         renderer = await loop.run_in_executor(render_thread, renderer_of)
         if start is not None and not await _first(start, stopping):
             return
-        engine = Engine(context, control, frames, limits, renderer, render_thread, encode)
-        await engine.run_until(stopping)
+        with letting_in(context, keys):
+            engine = Engine(context, control, frames, limits, renderer, render_thread, encode, keys)
+            await engine.run_until(stopping)
     finally:
         render_thread.shutdown(wait=False, cancel_futures=True)
         context.destroy(linger=0)

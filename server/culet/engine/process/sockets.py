@@ -10,6 +10,7 @@ import zmq.asyncio
 
 from culet.endpoints import bind, keep_alive
 from culet_protocol.engine import REQUEST_NUMBER
+from culet_protocol.keys import EngineKeys
 
 log = logging.getLogger(__name__)
 
@@ -20,27 +21,35 @@ PEERS = 64
 JSON_BYTES = 2**20
 
 
-def bind_control(context: zmq.asyncio.Context, endpoint: str, upload_bytes: int) -> zmq.asyncio.Socket:
+def bind_control(
+    context: zmq.asyncio.Context, endpoint: str, upload_bytes: int, keys: EngineKeys | None = None
+) -> zmq.asyncio.Socket:
     """The ROUTER; a longer message than an upload needs ends its sender's connection."""
     socket = context.socket(zmq.ROUTER)
     socket.setsockopt(zmq.MAXMSGSIZE, upload_bytes + JSON_BYTES)
     socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that left is an error, by which it is forgotten
-    return _bind(socket, [endpoint], "control")
+    return _bind(socket, [endpoint], "control", keys)
 
 
-def bind_frames(context: zmq.asyncio.Context, endpoints: Sequence[str]) -> zmq.asyncio.Socket:
+def bind_frames(
+    context: zmq.asyncio.Context, endpoints: Sequence[str], keys: EngineKeys | None = None
+) -> zmq.asyncio.Socket:
     """The XPUB, at each of the endpoints: every new subscription is seen, and, once nobody has it any more, its end."""
     socket = context.socket(zmq.XPUB)
     socket.setsockopt(zmq.XPUB_VERBOSE, 1)
     socket.setsockopt(zmq.SNDHWM, FRAMES_HIGH_WATER)  # before bind, or it has no effect
     socket.setsockopt(zmq.MAXMSGSIZE, 1024)  # subscriptions are short
-    return _bind(socket, endpoints, "frames")
+    return _bind(socket, endpoints, "frames", keys)
 
 
-def _bind(socket: zmq.asyncio.Socket, endpoints: Sequence[str], option: str) -> zmq.asyncio.Socket:
+def _bind(
+    socket: zmq.asyncio.Socket, endpoints: Sequence[str], option: str, keys: EngineKeys | None
+) -> zmq.asyncio.Socket:
     socket.setsockopt(zmq.LINGER, 0)
     keep_alive(socket)  # and not ZeroMQ's heartbeats, which can end a process: see gateway.link
     for endpoint in endpoints:
+        if keys is not None:
+            keys.apply(socket, endpoint)
         bind(socket, endpoint, option)
     return socket
 
