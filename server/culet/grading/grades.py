@@ -14,12 +14,16 @@ from culet.grading.answer import Grades, TiltPoint
 from culet.grading.number import Number, ratio
 from culet.grading.optics import StoneOptics
 from culet.grading.rules import Rules
-from culet.grading.sums import KERNEL, UP, LightSums, View, seen_area
+from culet.grading.sums import KERNEL, NUMBERS, UP, LightSums, View, seen_area
 
 BATCHES = 16
 """That are drawn apart, to tell errors by."""
-FIRST_RAYS, MOST_RAYS, MOST_PIECES = 4096, 8192, 256
+FIRST_RAYS, LEAST_RAYS, MOST_RAYS, MOST_PIECES = 4096, 512, 8192, 256
 """Of each batch: at first, then in each further piece of work, of which there are so many at most."""
+MORE_RAYS = 1.15
+"""Than the error of the rays before lets expect to be enough: that error is known to some 20 %."""
+FIRE_TARGET = 2.0
+"""In parts of the error that is asked for of ISO, that of fire, to whose chains two thirds of the time go."""
 TARGET = 0.1
 """Points, the error of ISO that is asked for if none is named: two standard errors."""
 SIGMAS = 2.0
@@ -37,25 +41,32 @@ Sums = NDArray[np.float64]
 
 
 def grade(sums: LightSums, shape: Shape, optics: StoneOptics, rules: Rules, target: float = TARGET) -> Iterator[Grades]:
-    """Face up, better and better: until twice the standard error of ISO is below `target`, in points, or MOST_PIECES
-    are done. MeshError for a stone that is not convex."""
-    found: Sums | None = None
-    rays = FIRST_RAYS
+    """Face up, better and better: until twice the standard error of ISO is below `target`, in points, and that of fire
+    below FIRE_TARGET times that, or MOST_PIECES are done. MeshError for a stone that is not convex."""
+    found, fiery = np.zeros((2, BATCHES, NUMBERS))
+    rays, taken, fire = FIRST_RAYS, 0, True
     for seed in range(MOST_PIECES):
-        more = sums.of(shape, optics, rules, [View()], batches=BATCHES, rays=rays, seed=seed, fire=True)[0]
-        found = more if found is None else found + more
-        grades = grades_of(found, optics)
+        more = sums.of(shape, optics, rules, [View()], batches=BATCHES, rays=rays, seed=seed, fire=fire)[0]
+        found, taken = found + more, taken + rays
+        fiery = fiery + more if fire else fiery
+        grades = grades_of(found, optics, fiery)
         yield grades
-        if SIGMAS * grades.iso.error <= target:
+        wanted = max(SIGMAS * grades.iso.error / target, SIGMAS * grades.fire.error / (FIRE_TARGET * target))
+        if wanted <= 1:
             return
-        rays = MOST_RAYS
+        fire = SIGMAS * grades.fire.error > FIRE_TARGET * target
+        rays = round(min(max((MORE_RAYS * wanted**2 - 1) * taken, LEAST_RAYS), MOST_RAYS))
 
 
-def grades_of(found: Sums, optics: StoneOptics) -> Grades:
-    """By the sums (batches, NUMBERS) of one view, with fire."""
+def grades_of(found: Sums, optics: StoneOptics, with_fire: Sums | None = None) -> Grades:
+    """By the sums (batches, NUMBERS) of one view, and of those of its rays that were followed with fire; else all."""
+    fiery = found if with_fire is None else with_fire
 
     def of(name: str) -> Sums:
         return found[:, KERNEL[name]]
+
+    def of_fire(name: str) -> Sums:
+        return fiery[:, KERNEL[name]]
 
     hits = of("HITS")
     elevation = found[:, KERNEL["ELEVATIONS"] :]
@@ -76,7 +87,9 @@ def grades_of(found: Sums, optics: StoneOptics) -> Grades:
     # Of the variance to first order, since a batch that is brighter has a larger mean of squares, too.
     variance_error = ratio(of("SQUARES") - 2 * mean * of("ISO"), hits).error
     deviation_error = variance_error / (2 * deviation) if deviation > 0 else 0.0
-    spread = ratio(of("SPREAD"), of("TOGETHER")) if optics.blue_index != optics.red_index else Number(0.0, 0.0)
+    spread = (
+        ratio(of_fire("SPREAD"), of_fire("TOGETHER")) if optics.blue_index != optics.red_index else Number(0.0, 0.0)
+    )
     return Grades(
         iso=iso,
         cos=percent(of("COS"), of("LOST")),
@@ -85,7 +98,7 @@ def grades_of(found: Sums, optics: StoneOptics) -> Grades:
         window=percent(of("WINDOW")),
         extinction=percent(of("DARK")),
         contrast=Number(100 * deviation, 100 * deviation_error),
-        fire=percent(of("FIRE"), of("LOST")),
+        fire=_times(100, ratio(of_fire("FIRE"), of_fire("HITS"), of_fire("LOST"))),
         fire_degrees=spread,
         rays=int(hits.sum()),
     )
