@@ -65,7 +65,7 @@ def settings(**given: object) -> GatewaySettings:
         ("PUT", "/api/sessions/abc", Right.STEER),
         ("POST", "/api/drain", Right.ADMINISTER),
         ("POST", "/api/sessions", Right.STEER),
-        ("GET", "/api/sessions", Right.STEER),
+        ("GET", "/api/sessions", Right.ADMINISTER),
         ("DELETE", "/api/sessions/abc", NOTHING),  # whoever knows the id
         ("GET", "/api/render.png", Right.STEER),
         ("POST", "/api/render", Right.STEER),
@@ -200,6 +200,37 @@ async def test_without_the_token_nothing_is_made_rendered_or_uploaded(engine: En
         assert (await http.get("/api/render.png", params=SMALL, headers=BEARER)).status_code == 200
         assert (await http.post("/api/meshes", files=UPLOAD, headers=BEARER)).status_code == 201
         assert (await http.get("/metrics", headers=BEARER)).status_code == 200
+
+
+async def test_who_has_the_token_sees_what_is_open_and_can_close_it(engine: Endpoints, tmp_path: Path) -> None:
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+        http = guarded.http
+        made = [(await http.post("/api/sessions", json={}, headers=BEARER)).json() for _ in range(2)]
+        assert (await http.get("/api/sessions")).status_code == 401
+        assert (
+            await http.get("/api/sessions", headers={"Authorization": f"Bearer {made[0]['id']}"})
+        ).status_code == 401
+        listed = (await http.get("/api/sessions", headers=BEARER)).json()["sessions"]
+        assert {(one["id"], one["watch"]) for one in listed} == {(one["id"], one["watch"]) for one in made}
+        assert {(one["client"], one["viewers"], one["stones"], one["falling"]) for one in listed} == {
+            ("127.0.0.1", 0, 1, False)
+        }
+        assert all(0 <= one["unused_seconds"] < PATIENCE for one in listed)
+        async with guarded.viewer(made[0]["id"]):
+            first = (await http.get("/api/sessions", headers=BEARER)).json()["sessions"][0]
+            assert (first["id"], first["viewers"], first["unused_seconds"]) == (made[0]["id"], 1, 0)
+        await http.delete(f"/api/sessions/{made[0]['id']}")
+        left = (await http.get("/api/sessions", headers=BEARER)).json()["sessions"]
+        assert [one["id"] for one in left] == [made[1]["id"]]
+
+
+async def test_a_server_that_has_no_token_tells_nobody_what_is_open(gateway: Gateway) -> None:
+    """The ids let change sessions, and here nothing tells who may know them."""
+    session = await gateway.session()
+    refused = await gateway.http.get("/api/sessions")
+    assert refused.status_code == 403
+    assert session not in refused.text
+    assert "--token" in refused.json()["detail"]
 
 
 async def test_a_browser_keeps_a_cookie_in_the_token_s_place(engine: Endpoints, tmp_path: Path) -> None:

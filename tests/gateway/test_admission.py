@@ -138,7 +138,7 @@ TAKEN = {
     "/docs/": "GET, HEAD, OPTIONS",
     "/openapi.json": "GET, HEAD, OPTIONS",
     "/api/render": "OPTIONS, POST",
-    "/api/sessions": "OPTIONS, POST",
+    "/api/sessions": "GET, HEAD, OPTIONS, POST",
     "/api/sessions/x": "DELETE, GET, HEAD, OPTIONS, PATCH, PUT",
     "/api/sessions/x/events": "OPTIONS, POST",
     "/api/meshes": "OPTIONS, POST",

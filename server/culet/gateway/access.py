@@ -38,7 +38,7 @@ class Right(Flag):
     UPLOAD = auto()
     """Bring meshes and skies."""
     ADMINISTER = auto()
-    """Know how the server is, and have it stopped."""
+    """Know how the server is and what is open on it, and have it stopped."""
 
 
 NOTHING, ALL = Right(0), Right.WATCH | Right.STEER | Right.UPLOAD | Right.ADMINISTER
@@ -57,7 +57,7 @@ def needed(method: str, path: str, settings: GatewaySettings) -> Right:
         return NOTHING if settings.open_health else Right.ADMINISTER
     if path == "/metrics":
         return NOTHING if settings.open_metrics else Right.ADMINISTER
-    if path in _ADMINISTRATION:
+    if path in _ADMINISTRATION or (path == "/api/sessions" and method in ("GET", "HEAD")):
         return Right.ADMINISTER
     if UPLOADS.fullmatch(path) and method == "POST":
         return Right.UPLOAD

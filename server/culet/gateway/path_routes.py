@@ -99,7 +99,7 @@ async def path_of_pixel(
     return await _told(http, gateway, PathOf(pixel=query).message(session=session.id), session)
 
 
-@router.post("/api/sessions/{session_id}/path", responses=answers(401, 404, 413, 422, 429, 503))
+@router.post("/api/sessions/{session_id}/path", responses=answers(404, 413, 422, 429, 503))
 async def path_of_session(http: Request, session_id: str, request: PathOf, gateway: ThisGateway) -> Path:
     """The same of a pixel, or a ray, through what a session shows."""
     session = gateway.sessions.get(session_id)

@@ -123,6 +123,37 @@ export interface Integrators {
   integrators: IntegratorDescription[];
 }
 /**
+ * What the server knows of a session without asking the engine.
+ */
+export interface ListedSession {
+  /**
+   * `DELETE /api/sessions/{id}` forgets the session.
+   */
+  id: string;
+  /**
+   * Whoever knows it may watch the session, no more.
+   */
+  watch: string;
+  /**
+   * Address of who opened the session.
+   */
+  client: string;
+  viewers: number;
+  stones: number;
+  /**
+   * Whether time goes on for the stones.
+   */
+  falling: boolean;
+  /**
+   * Whether all stones have come to rest for good.
+   */
+  asleep: boolean;
+  /**
+   * Since somebody watched it, or asked for it; 0 while watched.
+   */
+  unused_seconds: number;
+}
+/**
  * A named material: where its numbers come from, and how far they can be trusted.
  */
 export interface Material {
@@ -410,6 +441,12 @@ export interface SessionAnswer {
    * Where the WebSocket is, relative to what was asked; see the protocol.
    */
   stream: string;
+}
+/**
+ * The one that was used last first.
+ */
+export interface SessionList {
+  sessions: ListedSession[];
 }
 /**
  * All named panoramas.
