@@ -29,7 +29,7 @@ MILLISECONDS = 1e3
 POLL_MILLISECONDS = 20
 THUMB = 16.0
 """CSS pixels of a range input's thumb in Chromium: its middle goes from one half of that to the other."""
-OF_ONE_VIEWER = ("ack", "ping", "resize", "visibility")
+OF_ONE_VIEWER = ("ack", "decoders", "ping", "resize", "visibility")
 """Messages that change nothing in the session."""
 
 RECORD = """() => {

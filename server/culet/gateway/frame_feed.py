@@ -14,7 +14,7 @@ from culet_protocol.watch import VIDEO
 
 MOST_WAITING = 4
 """Packets: two that were under way when the engine was told to hold, and as many for a gateway that is busy."""
-BARRED_SECONDS = 5.0
+BARRED_SECONDS = 10.0
 """For which a viewer that held up others is given pictures of their own."""
 
 

@@ -294,6 +294,7 @@ class Sessions:
                 if session.viewers:
                     session.used = time.monotonic()
                     self._demands.update(session)
+                    self._demands.heed_video(session)  # while the engine holds, no frame comes that could lead to it
                     session.tell_snapshot(time.monotonic())
                 if session.viewers_told != len(session.viewers):
                     session.viewers_told = len(session.viewers)
