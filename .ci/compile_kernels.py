@@ -74,8 +74,12 @@ def programs() -> list[Program]:
     renderers = [
         ("render.cl", (*variant.options, *each.options)) for variant, each in product(VARIANTS, features)
     ]  # a feature that is left to run time is no option
+    rays = [
+        ("path.cl", (*Variant(lanes=1, real=real).options, *each.options))
+        for real, each in product((np.float32, np.float64), (*(Features(geometry) for geometry in Geometry), *MANY))
+    ]
     alone = [(name, tuple(variant.options)) for name, variant in product(culet_kernels.NAMES, VARIANTS)]
-    return [*renderers, *alone]
+    return [*renderers, *rays, *alone]
 
 
 @cache

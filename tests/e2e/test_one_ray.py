@@ -14,7 +14,7 @@ def prism() -> str:
     (found,) = re.findall(
         r"\[A prism of glass.*?\]\(http://127\.0\.0\.1:8000/(#view=[^)]+)\)", read("docs/tutorial/teaching.md")
     )
-    return found
+    return str(found)
 
 
 def test_a_lessons_ray_is_drawn_and_told_and_the_arrow_keys_go_through_it(view_of: ViewOf) -> None:

@@ -251,6 +251,7 @@ function embeddingAsked(): Embedding {
 
 function stateChanged(before: ViewState, after: ViewState): void {
   chosen.there(idsOf(after.scene));
+  ray.changed(before.scene, after.scene);
   if (stonesOf(after.scene).length > 1 && after.scene?.stones !== before.scene?.stones) findings.changed();
   panel.update(visit.state);
   legend.update(after.scene);

@@ -67,7 +67,8 @@ def path(
     cut: CutText = None,
 ) -> None:
     """Tell all that becomes of the light of one pixel: each facet that it meets, and each end with its share."""
-    from culet.paths.asked import MOST_WAVELENGTHS, WAVELENGTHS, Pixel, Ray, answered
+    from culet.paths.answer import MOST_WAVELENGTHS, WAVELENGTHS
+    from culet.paths.asked import Pixel, Ray, answered
     from culet.paths.recorder import PathRecorder
     from culet.rendering.device import open_device
 

@@ -12,8 +12,7 @@ from culet.gateway.problems import answers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
 from culet.gateway.stone_routes import answered
-from culet.paths.answer import Path
-from culet.paths.asked import MOST_WAVELENGTHS, WAVELENGTHS
+from culet.paths.answer import MOST_WAVELENGTHS, WAVELENGTHS, Path
 from culet.scene import Scene
 from culet.scene.fields import Model, Vector
 from culet_protocol.engine import TracePath

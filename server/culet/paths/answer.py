@@ -6,6 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+WAVELENGTHS = (380.0, 780.0)
+"""nm that may be asked for: what is visible."""
+MOST_WAVELENGTHS = 16
+
 Vector = tuple[float, float, float]
 Kind = Literal["enters", "meets", "lands", "sees", "ends", "chance"]
 Met = Literal["lamp", "sky", "head", "backdrop", "floor", "left-wall", "middle-wall", "right-wall", "cut", "untold"]

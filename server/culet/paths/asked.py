@@ -15,10 +15,6 @@ from culet.rendering.light.effort import Effort
 from culet.scene.camera import Camera
 from culet.stage import Stage
 
-WAVELENGTHS = (380.0, 780.0)
-"""nm that may be asked for: what is visible."""
-MOST_WAVELENGTHS = 16
-
 
 class Pixel(NamedTuple):
     """Of a picture of that size, from its upper left corner."""

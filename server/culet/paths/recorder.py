@@ -11,17 +11,15 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.errors import SceneError
-from culet.rendering import kernel_cache
-from culet.rendering.build import Variant, build
+from culet.paths.program import PathKernel, make_path, precompile_path
+from culet.rendering.build import Variant
 from culet.rendering.chains import GROUPS, first_sample, is_spectral, wavelengths_of
-from culet.rendering.compiling import compiling
 from culet.rendering.device import Device, Real
 from culet.rendering.features import ESTIMATOR, Features, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import buffers, constants, struct
 from culet.rendering.light.effort import Effort
 from culet.rendering.light.lighting import Lighting
-from culet.rendering.making import alone
 from culet.rendering.placed_stone import PlacedStone
 from culet.rendering.projection import Projection, project
 from culet.rendering.renderer import jitter
@@ -70,12 +68,13 @@ class Record:
 class PathRecorder:
     """Of one device. One thread at a time may ask."""
 
-    def __init__(self, device: Device, real: Real = np.float32) -> None:
-        """Programs are built when they are first needed."""
-        self._device, self._real = device, real
+    def __init__(self, device: Device, real: Real = np.float32, *, apart: bool = False) -> None:
+        """Programs are built when they are first needed, with `apart` by processes of their own, so that no other
+        launch of this one waits for a compiler."""
+        self._device, self._real, self._apart = device, real, apart
         self._pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(device.queue))
         self._lighting = Lighting(device, self._pool)
-        self._programs: dict[Features, Any] = {}
+        self._programs: dict[Features, PathKernel] = {}
 
     def record(
         self,
@@ -168,18 +167,14 @@ class PathRecorder:
     def _allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
         return self._pool.allocate(size)
 
-    def _program(self, features: Features) -> tuple[Any, int]:
-        """The kernel, and the bytes that it keeps between launches."""
+    def _program(self, features: Features) -> PathKernel:
+        """Built once."""
         found = self._programs.get(features)
         if found is None:
-            options = [*Variant(lanes=1, real=self._real).options, *features.options]
-            with compiling(), alone(kernel_cache.folder(), f"path.cl {options}"):
-                program = build(self._device, "path.cl", options)
-                size = np.zeros(1, np.int32)
-                target = cl.Buffer(self._device.context, cl.mem_flags.READ_WRITE, size.nbytes)
-                cl.Kernel(program, "path_bytes")(self._device.queue, (1,), (1,), target)
-                cl.enqueue_copy(self._device.queue, size, target)
-            found = self._programs[features] = cl.Kernel(program, "path"), int(size[0])
+            variant = Variant(lanes=1, real=self._real)
+            if self._apart:
+                precompile_path(features, variant)
+            found = self._programs[features] = make_path(self._device, features, variant)
         return found
 
 

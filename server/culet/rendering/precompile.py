@@ -9,6 +9,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -32,12 +33,17 @@ def precompile(features: Features, variant: Variant, *, urgent: bool = False) ->
 
     If it fails, the caller's own build will say why.
     """
+    return in_a_process(COMMAND, features, variant, urgent=urgent)
+
+
+def in_a_process(begins: Sequence[str], features: Features, variant: Variant, *, urgent: bool) -> bool:
+    """The same by any command whose `main` takes the order: `ordered`."""
     order = {
         "features": asdict(features),
         "variant": {**asdict(variant), "real": np.dtype(variant.real).name},
         "parent": os.getpid(),
     }
-    command = ["nice", "-n", str(0 if urgent else NICENESS), *COMMAND, json.dumps(order)]
+    command = ["nice", "-n", str(0 if urgent else NICENESS), *begins, json.dumps(order)]
     try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
     except subprocess.TimeoutExpired:
@@ -45,12 +51,17 @@ def precompile(features: Features, variant: Variant, *, urgent: bool = False) ->
     return done.returncode == 0
 
 
-def main() -> None:
-    """Entry of that process."""
+def ordered() -> tuple[Features, Variant]:
+    """What this process was started for; it ends with the one that wants it."""
     order = json.loads(sys.argv[1])
     ending_with(order["parent"])()  # nobody needs the program any more
     variant = Variant(**{**order["variant"], "real": np.dtype(order["variant"]["real"]).type})
-    make(open_device(), Features(**order["features"]), variant)
+    return Features(**order["features"]), variant
+
+
+def main() -> None:
+    """Entry of that process."""
+    make(open_device(), *ordered())
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 /** The mode in which a click draws a ray: what draws it is loaded when the mode is first turned on. */
 
+import type { JsonObject } from "@culet/protocol/messages";
 import type { Visit } from "../session/visit";
 import type { Complaints } from "../signs/complaints";
 import type { RayView } from "./ray-view";
@@ -46,6 +47,12 @@ export class RayMode {
   ask(place: { x: number; y: number }): void {
     const { view } = this;
     if (view) this.world.complaints.attempt(() => view.ask(place.x, place.y));
+  }
+
+  /** The session's scene is another one. What is seen of it changes a ray's way only if more than the camera moved. */
+  changed(before: JsonObject | null, after: JsonObject | null): void {
+    const differs = (name: string) => name !== "camera" && before?.[name] !== after?.[name];
+    if (before && after && Object.keys({ ...before, ...after }).some(differs)) this.view?.changed();
   }
 
   /** Another picture is on the screen. */

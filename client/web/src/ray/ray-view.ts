@@ -11,6 +11,9 @@ import { RayCard } from "./ray-card";
 import { RayDrawing } from "./ray-drawing";
 import type { RayWorld } from "./ray-mode";
 
+/** ms without a change of the scene before the ray is asked for again. */
+const PATIENCE_MS = 250;
+
 export class RayView {
   private readonly world: RayWorld;
   private readonly drawing: RayDrawing;
@@ -22,6 +25,7 @@ export class RayView {
   private step: bigint | null = null;
   private asking = false;
   private giveUp = new AbortController();
+  private waiting: ReturnType<typeof setTimeout> | undefined;
 
   constructor(world: RayWorld, close: () => void) {
     this.world = world;
@@ -48,12 +52,28 @@ export class RayView {
       height,
     };
     if (pixel.x < 0 || pixel.y < 0 || pixel.x >= width || pixel.y >= height) return;
+    await this.tell((signal) => rest.path(session, pixel, signal));
+  }
+
+  /** The scene has changed, but for its camera: ask for the same ray again, once it stays as it is. */
+  changed(): void {
+    clearTimeout(this.waiting);
+    this.waiting = setTimeout(() => {
+      const { path } = this;
+      const { session } = this.world.visit;
+      if (path && session !== null)
+        this.world.complaints.attempt(() => this.tell((signal) => rest.pathAlong(session, path, signal)));
+    }, PATIENCE_MS);
+  }
+
+  private async tell(asked: (signal: AbortSignal) => Promise<Path>): Promise<void> {
+    clearTimeout(this.waiting);
     this.giveUp.abort();
     this.giveUp = new AbortController();
     const { signal } = this.giveUp;
     this.card.wait();
     try {
-      const path = await rest.path(session, pixel, signal);
+      const path = await asked(signal);
       if (signal.aborted) return;
       this.path = path;
       this.scene = this.scene ?? this.world.visit.scene;
@@ -93,6 +113,7 @@ export class RayView {
   }
 
   close(): void {
+    clearTimeout(this.waiting);
     this.giveUp.abort();
     this.path = null;
     this.drawing.remove();

@@ -176,6 +176,12 @@ export async function path(session: string, pixel: Pixel, signal: AbortSignal): 
   return (await request(`api/sessions/${session}/path?${query}`, { signal })).json();
 }
 
+/** The same of a ray that was told before, through what the session shows now. */
+export async function pathAlong(session: string, { origin, direction }: Path, signal: AbortSignal): Promise<Path> {
+  const asked = post({ ray: { origin, direction } });
+  return (await request(`api/sessions/${session}/path`, { ...asked, signal })).json();
+}
+
 /** Of a picture of that size, from its upper left corner. */
 export interface Pixel {
   x: number;

@@ -90,7 +90,7 @@ class StoneRequests:
 
     def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> Path:
         if self._recorder is None:
-            self._recorder = PathRecorder(open_device())
+            self._recorder = PathRecorder(open_device(), apart=True)
         return answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
 
     def _light_sums(self) -> LightSums:
