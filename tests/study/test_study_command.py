@@ -12,7 +12,18 @@ from study.reports import report
 
 @pytest.mark.parametrize(
     "command",
-    ["rendering", "simulation", "streaming", "caustics", "growth", "resting", "diff", "headline", "compare-bench"],
+    [
+        "rendering",
+        "simulation",
+        "streaming",
+        "caustics",
+        "growth",
+        "resting",
+        "video",
+        "diff",
+        "headline",
+        "compare-bench",
+    ],
 )
 def test_every_study_explains_itself(command: str) -> None:
     run = invoke("study", command, "--help")
