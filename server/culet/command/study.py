@@ -223,10 +223,10 @@ def video(
     """Encode a fall as JPEG and as video: bytes, time, PSNR, FLIP, and the fire's colour that is kept. Needs PyAV."""
     import json
 
-    from culet.rendering.renderer import Renderer
-    from culet.study.video_study import described, measure, table
+    with _errors():
+        from culet.rendering.renderer import Renderer
+        from culet.study.video_study import described, measure, table
 
-    with errors_in_one_line():
         stage = read_stage(scene, preset, None, None)
         with opened(out) as file:
             with progress_bar("encoding") as advance:

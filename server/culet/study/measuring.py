@@ -99,9 +99,11 @@ def needs_of_studies() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        if error.name is None or error.name.split(".")[0] != "skimage":
+        needed = {"skimage": "scikit-image", "flip_evaluator": "flip-evaluator"}
+        name = (error.name or "").split(".")[0]
+        if name not in needed:
             raise
-        raise InputError("a study needs scikit-image: pip install 'culet[study]'") from error
+        raise InputError(f"a study needs {needed[name]}: pip install 'culet[study]'") from error
 
 
 @contextlib.contextmanager
