@@ -176,7 +176,7 @@ export const panel = {
   walls: "Walls",
   moved: "What",
   tilt: "Tilt, \u00b0",
-  direction: "Tilted toward, \u00b0",
+  direction: "Toward, \u00b0",
   directionHint: "The side that the camera is tilted to: 0 is the picture's lower edge face up, 90 its right one",
   head: "Head, \u00b0",
   headHint:
