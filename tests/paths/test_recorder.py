@@ -153,6 +153,21 @@ def test_a_ray_past_the_stone_sees_the_sky_alone(recorder: PathRecorder) -> None
     assert step.elevation_degrees == pytest.approx(90)
 
 
+@pytest.mark.parametrize("stones", [[], [{**DIAMOND, "position": [0, 9, 9]}]], ids=["none", "one out of sight"])
+def test_where_no_stone_is_seen_a_ray_lands_on_the_floor(recorder: PathRecorder, stones: list[dict[str, Any]]) -> None:
+    camera = {"position": [3, 5, 0.5], "target": [3, 0, 0], "fov_degrees": 10}
+    stage = Stage.of(Scene.read({"stones": stones, "camera": camera}))
+    told = answered(recorder, stage, Pixel(48, 27, *SIZE))
+    (step,) = told.steps
+    (each,) = step.passes
+    assert step.kind == "lands"
+    assert each.chain is None
+    assert each.point[1] == pytest.approx(-1, abs=1e-6)  # the floor's height
+    along = np.subtract(each.point, told.origin)
+    np.testing.assert_allclose(along / np.linalg.norm(along), told.direction, atol=1e-6)
+    assert told.origin == pytest.approx(camera["position"])
+
+
 def test_wavelengths_that_are_asked_for_are_followed_with_their_own_indices(recorder: PathRecorder) -> None:
     stage = Stage.of(Scene.read({"stones": [DIAMOND]}))
     told = answered(recorder, stage, Pixel(48, 27, *SIZE), wavelengths=(656.3, 486.1))

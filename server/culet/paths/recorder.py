@@ -21,7 +21,7 @@ from culet.rendering.layout import buffers, constants, struct
 from culet.rendering.light.effort import Effort
 from culet.rendering.light.lighting import Lighting
 from culet.rendering.placed_stone import PlacedStone
-from culet.rendering.projection import Projection, project
+from culet.rendering.projection import Projection
 from culet.rendering.renderer import jitter
 from culet.stage import Stage
 
@@ -157,7 +157,7 @@ class PathRecorder:
             left_out=max(0, count - EVENTS),
             stones=inputs.shown,
             parameters=inputs.parameters,
-            projection=project(stage.scene, inputs.shown, *size),
+            projection=inputs.projection,
             wavelengths=_wavelengths(stage, features, wavelengths),
             chains=inputs.chains,
             polarised=bool(features.polarised),

@@ -47,6 +47,8 @@ class Inputs:
         self._device, self._scene, self._real = device, scene, real
         self._common = features.dispersion == 0
         self._wavelengths = tuple(wavelengths)
+        self.projection = projection
+        """Of the picture's rays, and the frame's origin."""
         self.shown = tuple(shown)
         """The stones, by their rows in the table."""
         self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
