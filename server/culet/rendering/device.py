@@ -17,6 +17,7 @@ from culet.errors import DeviceError
 from culet.optics.panoramas import check_panorama
 from culet.rendering import kernel_cache
 from culet.rendering.driver_package import how_to_install
+from culet.rendering.processors import limit_threads
 
 Real = type[np.float32] | type[np.float64]
 """The precision of a program."""
@@ -95,6 +96,7 @@ def open_device() -> Device:
 
     wanted = os.environ.get("CULET_DEVICE", "").lower()
     tried: list[str] = []
+    limit_threads()
     try:
         platforms = cl.get_platforms()
     except cl.Error as error:
