@@ -730,14 +730,14 @@ typedef struct {
   int stands_for_all;             // of a lamp that is gauged
 } bands_t;
 
-// A band ends where all do by what it adds to the light: of a red light the blue one, which adds little, much sooner.
+// A band ends by how much of its light there is: of a red light the blue one much sooner, of a white one all alike.
 static inline void enter_bands(job_t *job, tally_t *tally, bands_t bands, int facet, const corner_t *part, int count) {
-  const real cutoff = job->cutoff, even = weight_of(light_colour(job->light)) / job->room->bands;
+  const real cutoff = job->cutoff, white = weight_of(light_colour(job->light));
   for (int band = bands.first; band < bands.end; band++) {
     take_band(job, bands.chains + band);
     if (!job->light->gauges) {
       if (!(job->weight > 0)) continue;
-      job->cutoff = cutoff * even / job->weight;
+      job->cutoff = cutoff * white * weight_of(job->share) / job->weight;
       enter(job, tally, facet, part, count);
       job->cutoff = cutoff;
       continue;
