@@ -8,12 +8,14 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
+from PIL import Image
 
 import culet
 import culet_client
 from culet import notebook
-from culet.errors import InputError
+from culet.errors import CuletError, InputError
 from culet_protocol.messages import ToggleMirror
+from engine.peer import TETRAHEDRON
 
 
 @pytest.mark.parametrize(
@@ -30,6 +32,14 @@ def test_what_a_view_cannot_be_is_refused_before_a_server_is_started(given: dict
     with pytest.raises(InputError, match="expected") as refused:
         culet.view("ruby", **given)  # type: ignore[arg-type]
     assert refused.value.field == field
+
+
+@pytest.mark.parametrize("given", [{"mesh": "nowhere.obj"}, {"sky": "nowhere.exr"}])
+def test_a_file_that_cannot_be_read_is_named_before_a_server_is_started(given: dict[str, str]) -> None:
+    (name,) = given.values()
+    with pytest.raises(CuletError, match=rf"{re.escape(name)}: "):
+        culet.view("ruby", **given)  # type: ignore[arg-type]
+    assert not notebook._servers
 
 
 def test_under_jupyterhub_the_frame_leads_through_the_users_own_proxy(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,6 +77,16 @@ def test_views_share_a_server_that_ends_with_the_last(monkeypatch: pytest.Monkey
     assert np.asarray(first.picture(32, 18, samples=1)).shape == (18, 32, 3)
     policy = httpx.get(first.url).headers["Content-Security-Policy"]
     assert "frame-ancestors 'self' http://localhost:* http://127.0.0.1:*" in policy
+    mesh, sky = tmp_path / "gem.off", tmp_path / "sky.png"
+    mesh.write_bytes(TETRAHEDRON)
+    Image.new("RGB", (16, 8), (255, 0, 255)).save(sky)
+    given = culet.view({"floor": {"kind": "none"}, "backdrop": {"kind": "none"}}, mesh=mesh, sky=sky)
+    assert given.scene.stones[0].mesh is not None
+    shown = np.asarray(given.picture(32, 18, samples=1))
+    red, green, blue = shown[0, 0]
+    assert red > 100 < blue, "magenta, as the sky"
+    assert green < 50
+    given.stop()
     first.stop()
     first.stop()
     assert second.scene.floor.kind == "none"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import http.client
 import json
+import secrets
 import urllib.error
 import urllib.request
+from pathlib import PurePath
 from typing import Any
 from urllib.parse import urlencode, urlsplit, urlunsplit
 
@@ -34,7 +36,7 @@ class Rest:
             raise ClientError(f"expected a server such as http://127.0.0.1:8000, got {server!r}")
         self.server = urlunsplit((scheme, parts.netloc, parts.path.rstrip("/"), "", ""))
         self._timeout = timeout_seconds
-        self._headers = {"Content-Type": "application/json"}
+        self._headers: dict[str, str] = {}
         if token is not None:
             self._headers["Authorization"] = f"Bearer {token}"
 
@@ -63,23 +65,34 @@ class Rest:
         """What a session shows now, with camera and stones where they are."""
         return self._ask("GET", f"/api/sessions/{session}/scene")
 
+    def upload(self, kind: str, name: str, content: bytes) -> str:
+        """The id that scenes name a file by, once it is brought: one of `meshes` or `skies`, its kind by the ending of
+        its name. RefusedError says why it cannot be used."""
+        boundary, ending = secrets.token_hex(16), PurePath(name).suffix
+        head = f'--{boundary}\r\nContent-Disposition: form-data; name="file"; filename="file{ending}"\r\n\r\n'
+        body = head.encode() + content + f"\r\n--{boundary}--\r\n".encode()
+        answer = self._read(self._answer("POST", f"/api/{kind}", body, f"multipart/form-data; boundary={boundary}"))
+        return str(answer["id"])
+
     def frame(self, session: str, ending: str, asked: dict[str, float | None]) -> bytes:
         """The file of a picture of what a session shows, rendered anew; `asked` as in the query of `frame.png`."""
         query = urlencode({name: value for name, value in asked.items() if value is not None})
         return self._answer("GET", f"/api/sessions/{session}/frame.{ending}?{query}")
 
     def _ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
-        text = self._answer(method, path, body)
+        data = None if body is None else json.dumps(body).encode()
+        return self._read(self._answer(method, path, data))
+
+    def _read(self, text: bytes) -> dict[str, Any]:
         try:
             answered: dict[str, Any] = json.loads(text) if text else {}
         except ValueError as error:
             raise ClientError(f"{self.server} answered with something else than JSON; is it culet?") from error
         return answered
 
-    def _answer(self, method: str, path: str, body: dict[str, Any] | None = None) -> bytes:
-        data = None if body is None else json.dumps(body).encode()
+    def _answer(self, method: str, path: str, body: bytes | None = None, of: str = "application/json") -> bytes:
         request = urllib.request.Request(  # noqa: S310 - http or https, as checked above
-            self.server + path, data, self._headers, method=method
+            self.server + path, body, {**self._headers, "Content-Type": of}, method=method
         )
         try:
             with _OPENER.open(request, timeout=self._timeout) as answer:

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Mapping
+from pathlib import Path
 from queue import Empty, Queue
 from typing import Any, Self
 
@@ -39,13 +40,24 @@ LOCAL_PAGES = ("http://localhost:*", "http://127.0.0.1:*")
 class View:
     """A scene that a server shows and lets fall; in a notebook it shows itself. Made by `culet.view`."""
 
-    def __init__(self, server: _Server, shown: Scene, height: float, *, ui: bool, rotate: float) -> None:
+    def __init__(
+        self, server: _Server, shown: Scene, files: Mapping[str, Path], height: float, *, ui: bool, rotate: float
+    ) -> None:
         self._server, self._height = server, height
         self._rest = Rest(server.address, START_SECONDS)
         self._bare = ("" if ui else "&ui=0") + (f"&rotate={rotate:g}" if rotate else "")
-        self.session = self._rest.make_session(shown.model_dump(mode="json"), None)
+        scene = shown.model_dump(mode="json")
+        if "meshes" in files:
+            scene["stones"][0]["mesh"] = self._bring("meshes", files["meshes"])
+        if "skies" in files:
+            scene["environment"]["image"] = self._bring("skies", files["skies"])
+        self.session = self._rest.make_session(scene, None)
         """The session's id: `culet_client.connect(view.url)` watches and steers the same."""
         server.views.add(self.session)
+
+    def _bring(self, kind: str, file: Path) -> str:
+        """The id of a file that the server has then."""
+        return self._rest.upload(kind, file.name, file.read_bytes())
 
     @property
     def url(self) -> str:
@@ -113,6 +125,8 @@ def view(
     ui: bool = False,
     rotate: float = 0,
     through: str | None = None,
+    mesh: str | os.PathLike[str] | None = None,
+    sky: str | os.PathLike[str] | None = None,
 ) -> View:
     """Show a scene live, in a notebook's cell: drag, zoom, let it fall.
 
@@ -127,6 +141,8 @@ def view(
         through: where the browser reaches the server's port, if that is not on the browser's machine: a path of the
             notebook's own site, or an address, with `{port}` in it. Under JupyterHub it is, by itself,
             `<prefix>/proxy/{port}/`, where jupyter-server-proxy has it.
+        mesh: file of a mesh or of a design that takes the place of the scene's stone; as `render` takes it.
+        sky: file with a panorama that becomes the scene's sky; as `render` takes it.
 
     Raises:
         InputError: for what cannot be used; `field` names it.
@@ -134,8 +150,15 @@ def view(
     """
     _check("height", height, 50, 4000, "pixels")
     _check("rotate", rotate, -360, 360, "degrees a second")
-    shown, through = load_scene(scene), _through(through)
-    return View(_server(through), shown, height, ui=ui, rotate=rotate)
+    through = _through(through)
+    files = {kind: Path(file) for kind, file in (("meshes", mesh), ("skies", sky)) if file is not None}
+    if files:  # what they cannot be is said before a server is started
+        from culet.stills import stage_of
+
+        shown = stage_of(scene, mesh, sky)[0].scene
+    else:
+        shown = load_scene(scene)
+    return View(_server(through), shown, files, height, ui=ui, rotate=rotate)
 
 
 def _check(field: str, value: object, lowest: int, highest: int, unit: str) -> None:

@@ -56,6 +56,10 @@ class PathOf(Model):
     ray: RayFields | None = Field(None, description="As the eye would look; either this or a pixel.")
     wavelengths: Wavelengths = ()
 
+    model_config = Model.model_config | ConfigDict(
+        json_schema_extra={"examples": [{"pixel": {"x": 320, "y": 180, "width": 640, "height": 360}}]}
+    )
+
     @model_validator(mode="after")
     def _one_of_them(self) -> Self:
         if (self.pixel is None) == (self.ray is None):

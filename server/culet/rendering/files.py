@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import OpenEXR
 import PIL.Image
 from numpy.typing import NDArray
 
@@ -55,6 +54,8 @@ def _webp(rgb: Developed) -> bytes:
 
 def _exr(linear: Linear) -> bytes:
     """Linear radiance, single precision. The library writes to paths only."""
+    import OpenEXR  # most pictures are no .exr, and importing this takes 15 ms
+
     pixels = np.ascontiguousarray(linear, np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with path_in_memory(ending="exr") as path:
