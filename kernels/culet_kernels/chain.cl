@@ -16,7 +16,10 @@ static inline void take_up(meetingL *met, maskL mask, meetingL other) {
   met->hit |= mask;
   met->point = blend3(mask, other.point, met->point);
   met->normal = blend3(mask, other.normal, met->normal);
-  if (STONES == MANY) met->stone = blend_ints_by(mask, other.stone, met->stone);
+#if STONES == MANY
+  met->way = blend3(mask, other.way, met->way);
+  met->stone = blend_ints_by(mask, other.stone, met->stone);
+#endif
 }
 
 // Stones in a studio floor: of `glossy` rays, which end at the floor, those that a smooth floor would send to a stone.
@@ -110,9 +113,8 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
 #endif
     const maskL all = in_picture(world.scene, column + x, row + y), none = all & !all;
     const int host = world.scene->camera_stone;
-    meetingL met = {camera_inside ? all : none, splat(0),
-                    to_own(world, host, along(primary.origin, primary.eye, primary.direction)), primary.direction,
-                    (intL)(host)};
+    meetingL met = from_inside(world, host, along(primary.origin, primary.eye, primary.direction), primary.direction);
+    met.hit = camera_inside ? all : none;
     maskL open = camera_inside ? none : all;
     maskL heading = none;
     if (GEOMETRY == EMPTY ? 0 : STONES == ONE ? 1 : candidates.count > 0)
@@ -144,7 +146,7 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
     EACH (k, 3) begin_sums(radiance.channel[k], tile->radiance[k] + first);
     store_lanes(3 * cut, tile->cut + first);
     const intL tag = first + LANE_INDEX + (groups_of(x, y, world.scene->sample) << PIXEL_BITS);
-    if (any_lane(met.hit)) note(hits, met.hit, met.point, ray, met.normal, met.stone, tag);
+    if (any_lane(met.hit)) note(world, hits, met, ray, tag);
   }
 }
 
@@ -157,13 +159,13 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
   for (; *steps > 0; --*steps) {
     const bool all_begun = work->hit >= hits->count;
     const bool last = all_begun && is_empty(&pools->inside);
-    const bool over = last && (!REENTRY || pools->towards.count == 0); // packets are not filled any more
+    const bool over = last && is_clear(pools); // packets are not filled any more
     // Light outside goes first: it is what makes the pools grow.
     pool_t *left = larger_away(pools);
     if (left->count >= (over ? 1 : LANES))
       look_away(world, tile, pools, left, task);
-    else if (REENTRY && (pools->towards.count >= LANES || (last && pools->towards.count > 0)))
-      look_around(world, tile, pools, task);
+    else if (look_outside(world, tile, pools, task, last))
+      continue;
     else if (has_full(&pools->inside) || (all_begun && !last))
       advance(world, tile, pools, task);
     else if (!all_begun) {
@@ -173,8 +175,7 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
       if (camera_inside)
         push_inside(world, &pools->inside, mask, &packet);
       else
-        enter(world, tile, pools, task, &packet, to_frame(world, packet.stone, packet.origin), normal, mask,
-              DECIDED(GLARE, world.scene->glare));
+        enter(world, tile, pools, task, &packet, packet.origin, normal, mask, DECIDED(GLARE, world.scene->glare));
       work->hit += LANES;
     } else
       return;
@@ -186,10 +187,7 @@ static inline void begin_chain_tile(chain_work_t *work, int number) {
   work->packet = work->chain = work->hit = 0;
   work->tile.segments = (intL)(0);
   work->hits.count = 0;
-  clear_inside(&work->pools.inside);
-  clear(&work->pools.towards);
-  clear(&work->pools.away);
-  clear(&work->pools.up);
+  clear_pools(&work->pools);
 }
 
 // Goes on with a tile for as many steps as are left, each of which takes some tenths of a microsecond to some
@@ -203,7 +201,7 @@ static inline bool advance_chain_tile(world_t world, chain_work_t *work, int col
   fill(&work->hits);
   while (work->chain < scene->chains) {
     const uint seed = (((uint)scene->sample * 256 + work->chain) * 8191 + row / TILE) * 8191 + column / TILE;
-    const task_t task = {world.chains + work->chain, CHANNELS == 3 ? 0 : work->chain, seed * 0x9e3779b9u};
+    const task_t task = task_of(world, work->chain, seed);
     trace(world, work, task, steps);
     if (*steps <= 0) return false;
     work->chain += GROUPS;

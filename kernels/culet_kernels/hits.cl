@@ -15,24 +15,24 @@ typedef struct {
   int count;
 } hits_t;
 
-// Appends the lanes of a packet of rays that the mask names; `tag` says their pixels.
-static inline void note(hits_t *hits, maskL mask, vec3L point, rayL ray, vec3L normal, intL stone, intL tag) {
+// Appends the rays of a packet that meet a stone; `tag` says their pixels.
+static inline void note(world_t world, hits_t *hits, meetingL met, rayL ray, intL tag) {
   packetL packet;
-  packet.origin = point;
   packet.direction = ray.direction;
   EACH (k, WEIGHTS) packet.weight[k] = ray.weight;
   packet.polarisation = ray.polarisation;
   packet.tag = tag;
-  packet.stone = stone;
+  packet.stone = met.stone;
 #if RECORDED
   packet.event = ray.event;
 #endif
-  const packing_t packing = packing_of(mask);
+  bring(world, &packet, met);
+  const packing_t packing = packing_of(met.hit);
   const int end = hits->count;
   pack_packet(packing, &packet, hits->number[0] + end, hits->whole[0] + end, HITS);
-  pack_lanes(packing, normal.x, hits->normal[0] + end);
-  pack_lanes(packing, normal.y, hits->normal[1] + end);
-  pack_lanes(packing, normal.z, hits->normal[2] + end);
+  pack_lanes(packing, met.normal.x, hits->normal[0] + end);
+  pack_lanes(packing, met.normal.y, hits->normal[1] + end);
+  pack_lanes(packing, met.normal.z, hits->normal[2] + end);
   hits->count = end + packing.count;
 }
 

@@ -13,12 +13,10 @@
 // Advances one packet of light inside a stone by a few segments, and puts back what survives.
 static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t task) {
   maskL taken;
-  int number;
-  packetL packet = pop_inside(&pools->inside, &taken, &number);
-  __constant const stone_t *stone = world.stones + number;
-  task_t own = task;
-  if (STONES == MANY) own.chains += stone->first_chain;
-  const chainL eta = (chainL)(OF_CHAIN(own, packet.tag, eta));
+  int shape;
+  packetL packet = pop_inside(&pools->inside, &taken, &shape);
+  __constant const stone_t *stone = world.stones + shape;
+  const chainL eta = eta_of(world, task, &packet);
   maskL alive = taken;
   for (int segment = 0; segment < STRIDE && any_lane(alive); segment++) {
     const crossingL crossing = inner_exit(world, stone, packet.origin, packet.direction, alive);
@@ -28,15 +26,13 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     const real before = packet.weight[0];
 #endif
     if (ABSORPTION != 0) {
-      EACH (k, WEIGHTS)
-        packet.weight[k] *=
-            exp_fast(-(WEIGHTS == 3 ? stone->absorption[k] : OF_CHAIN(own, packet.tag, absorption)) * crossing.t);
+      EACH (k, WEIGHTS) packet.weight[k] *= exp_fast(-absorption_of(world, task, &packet, k) * crossing.t);
     }
     const realL cos_s = clamp(dot3(packet.direction, crossing.normal), (realL)0, (realL)1);
     const realL squared_a = squared_cosine_in_air(cos_s, eta);
     const maskL leaves = alive & (squared_a > 0);
 #if RECORDED
-    if (alive) packet.event = tell_meeting(world, task, &packet, number, before, crossing.t, crossing.normal);
+    if (alive) packet.event = tell_meeting(world, task, &packet, before, crossing.t, crossing.normal);
 #endif
     if (POLARISED || any_lane(leaves)) {
       const realL cos_a = sqrt(fmax(squared_a, (realL)0));
@@ -46,9 +42,9 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
 #endif
       if (any_lane(leaves)) {
         polarisationL transmitted = parts.transmitted;
-        if (POLARISED) transmitted.axis = outward(stone, transmitted.axis);
-        leave(world, tile, pools, task, &packet, from_own(stone, outward(stone, packet.origin)),
-              outward(stone, refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal)),
+        if (POLARISED) transmitted.axis = turned_out(stone, transmitted.axis);
+        leave(world, tile, pools, task, &packet, turned_out(stone, packet.origin),
+              turned_out(stone, refract_outward(packet.direction, cos_a, cos_s, eta, crossing.normal)),
               (real)1 - parts.kept, transmitted, leaves);
       }
       scale_weights(&packet, parts.kept);
@@ -57,9 +53,9 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     packet.direction = reflect_inside(stone, packet.direction, cos_s, crossing.normal);
     packet.tag += ONE_BOUNCE;
     const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
-    alive = settle(world, tile, task, &packet, stone, alive, used_up);
+    alive = settle(world, tile, task, &packet, INSIDE, alive, used_up);
   }
-  if (any_lane(alive)) push_to_stone(&pools->inside, number, alive, &packet);
+  if (any_lane(alive)) push_to_shape(&pools->inside, shape, alive, &packet);
 }
 
 #endif

@@ -169,6 +169,25 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 }
 #endif
 
+// The number of the first lane that a mask names; there must be one.
+#if LANES == 1
+static inline int first_number(maskL mask, intL number) { return number; }
+#else
+static inline int first_number(maskL mask, intL number) {
+  int own[LANES];
+  store_ints(number, own);
+#if LANES == 16 && AVX512
+  const uint lanes = (ushort)__builtin_ia32_cvtd2mask512(mask);
+  return own[popcount((lanes & -lanes) - 1)];
+#else
+  int keep[LANES], lane = 0;
+  store_mask(mask, keep);
+  while (!keep[lane]) lane++;
+  return own[lane];
+#endif
+}
+#endif
+
 // For each k below a small number that is known at compile time. PoCL does not unroll all that it could by itself, and a loop
 // that is left keeps its quantities in memory.
 #define EACH(k, number) _Pragma("unroll") for (int k = 0; k < (number); k++)

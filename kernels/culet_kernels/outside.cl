@@ -8,10 +8,31 @@
 
 typedef struct {
   inside_t inside;
+#if STONES == MANY
+  pool_t leaving; // stones, still in the axes of light inside
+#endif
   pool_t towards; // may meet a stone
   pool_t away;    // can meet the room and the sky only, by way of mirrors a stone again
   pool_t up;      // can meet the sky only
 } pools_t;
+
+static inline void clear_pools(pools_t *pools) {
+  clear_inside(&pools->inside);
+#if STONES == MANY
+  clear(&pools->leaving);
+#endif
+  clear(&pools->towards);
+  clear(&pools->away);
+  clear(&pools->up);
+}
+
+// Whether no light waits outside the stones but what meets none of them.
+static inline int is_clear(const pools_t *pools) {
+#if STONES == MANY
+  if (pools->leaving.count > 0) return 0;
+#endif
+  return REENTRY ? pools->towards.count == 0 : 1;
+}
 
 // Puts off a packet that meets no stone next. Where there is a floor and no wall, what goes up and what goes down wait apart, so
 // that a packet does not look at both.
@@ -30,54 +51,53 @@ static inline void put_off(world_t world, tile_t *tile, pools_t *pools, task_t t
     push(&pools->towards, mask, packet);
   else {
 #if RECORDED
-    if (mask) tell_end(world, task, packet, 0, black());
+    if (mask) tell_end(world, task, packet, ABROAD, black());
 #endif
     lose(tile, mask, packet, over_channels(task, packet));
   }
 }
 
-// Lets go what leaves a stone's surface at a point of the frame, reflected or from inside. `packet` is as it meets the surface.
+// Puts off a packet that is outside the stones, by what it may meet.
+static inline void let_go(world_t world, tile_t *tile, pools_t *pools, task_t task, maskL mask, const packetL *packet) {
+#if STONES == MANY
+  const maskL towards = mask & passes_others(world, packet->origin, packet->direction, packet->stone);
+  if (any_lane(towards)) put_off(world, tile, pools, task, towards, packet);
+  put_away(world, pools, mask & !towards, packet);
+#else
+  if (EXCHANGE)
+    put_off(world, tile, pools, task, mask, packet);
+  else
+    put_away(world, pools, mask, packet);
+#endif
+}
+
+// Lets go what leaves a stone, or what it reflects, at this point of the frame, in the frame's axes. Of MANY it is as `packet` is, in
+// the axes of light inside: since stones differ by lane, it waits to be turned into the frame in a full packet.
 static inline void leave(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point,
                          vec3L direction, realL share, polarisationL polarisation, maskL mask) {
   packetL outer = *packet;
-  outer.origin = point;
   outer.direction = direction;
   outer.polarisation = polarisation;
   scale_weights(&outer, share);
-  if (EXCHANGE)
-    put_off(world, tile, pools, task, mask, &outer);
-  else
-    put_away(world, pools, mask, &outer);
-}
-
 #if STONES == MANY
-// The index of each lane's stone.
-static inline chainL eta_of_each(world_t world, task_t task, const packetL *packet) {
-  int number[LANES], tag[LANES];
-  real eta[LANES];
-  store_ints(packet->stone, number);
-  store_ints(packet->tag, tag);
-  for (int lane = 0; lane < LANES; lane++)
-    eta[lane] = task.chains[world.stones[number[lane]].first_chain + (tag[lane] >> PIXEL_BITS & (GROUPS - 1))].eta;
-  return load_lanes(eta);
-}
+  push(&pools->leaving, mask, &outer);
 #else
-static inline chainL eta_of_each(world_t world, task_t task, const packetL *packet) {
-  return OF_CHAIN(task, packet->tag, eta);
-}
+  outer.origin = point;
+  let_go(world, tile, pools, task, mask, &outer);
 #endif
+}
 
 // Splits light that meets a stone from outside, at the origin of the packet, which is this point of the frame: what is reflected goes into the room, if
 // `glare` says so, and what enters starts a chain.
 static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point,
                          vec3L normal, maskL mask, bool glare) {
   const realL cos_a = clamp(-dot3(packet->direction, normal), (realL)0, (realL)1);
-  const chainL eta = eta_of_each(world, task, packet);
+  const chainL eta = eta_of(world, task, packet);
   const realL cos_s = cosine_in_stone(cos_a, eta);
   const splitL parts = meet_boundary(world, packet, normal, cos_a, cos_s, fmax(cos_a * cos_a, splat((real)1e-30)), eta);
 #if RECORDED
   packetL told = *packet;
-  if (mask) told.event = tell_entry(world, task, packet, point, normal, parts.kept, glare);
+  if (mask) told.event = tell_entry(world, task, packet, normal, parts.kept, glare);
   packet = &told;
 #endif
   if (glare)
@@ -88,12 +108,12 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   inner.polarisation = parts.transmitted;
   scale_weights(&inner, (real)1 - parts.kept);
   inner.tag = packet->tag & (ONE_BOUNCE - 1);
-  const maskL goes_on = settle(world, tile, task, &inner, 0, mask, mask & !mask);
+  const maskL goes_on = settle(world, tile, task, &inner, ENTERING, mask, mask & !mask);
   if (has_room_inside(&pools->inside))
     push_inside(world, &pools->inside, goes_on, &inner);
   else {
 #if RECORDED
-    if (goes_on) tell_end(world, task, &inner, 0, black());
+    if (goes_on) tell_end(world, task, &inner, ENTERING, black());
 #endif
     lose(tile, goes_on, &inner, over_channels(task, &inner));
   }
@@ -135,25 +155,51 @@ static inline void look_away(world_t world, tile_t *tile, pools_t *pools, pool_t
   }
 }
 
+#if STONES == MANY
+// Takes one packet of what leaves stones, into the frame.
+static inline void turn_out(world_t world, tile_t *tile, pools_t *pools, task_t task) {
+  maskL taken;
+  packetL packet = pop(&pools->leaving, &taken);
+  const axesL axes = inner_axes_of(world, packet.stone);
+  packet.origin = to_frame(world, packet.stone, out_of_axes_of(axes, packet.origin));
+  packet.direction = out_of_axes_of(axes, packet.direction);
+  if (POLARISED) packet.polarisation.axis = out_of_axes_of(axes, packet.polarisation.axis);
+  let_go(world, tile, pools, task, taken, &packet);
+}
+#endif
+
 // Takes one packet that may meet a stone: it enters, or goes on through the room.
 static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task_t task) {
   maskL taken;
   packetL packet = pop(&pools->towards, &taken);
-  const meetingL met = stone_entry(world, packet.origin, packet.direction, splat(0), taken, packet.stone);
+  meetingL met = stone_entry(world, packet.origin, packet.direction, splat(0), taken, packet.stone);
   const rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
   const maskL meets = met.hit & !hidden_by_room(world, ray, met.t);
   const maskL misses = taken & !meets;
   if (any_lane(misses)) put_away(world, pools, misses, &packet);
   // Between stones that overlap light could be reflected for ever; so only what is worth it meets another one.
   maskL hits = taken & meets;
-  if (STONES == MANY) hits = settle(world, tile, task, &packet, 0, hits, misses & !misses);
+  if (STONES == MANY) hits = settle(world, tile, task, &packet, ABROAD, hits, misses & !misses);
   if (any_lane(hits)) {
     const vec3L point = along(packet.origin, met.t, packet.direction);
-    packet.origin = met.point;
-    if (STONES == MANY)
-      packet.stone = blend_ints_by(hits, met.stone, (intL)(0)); // no lane names a stone that is not there
+    met.stone = blend_ints_by(hits, met.stone, (intL)(0)); // no lane names a stone that is not there
+    bring(world, &packet, met);
     enter(world, tile, pools, task, &packet, point, met.normal, hits, true);
   }
+}
+
+// Takes a packet of light outside that may meet a stone, if there is a full one, or the `last` ones; returns whether it did.
+static inline bool look_outside(world_t world, tile_t *tile, pools_t *pools, task_t task, bool last) {
+  const int enough = last ? 1 : LANES;
+#if STONES == MANY
+  if (pools->leaving.count >= enough) {
+    turn_out(world, tile, pools, task);
+    return true;
+  }
+#endif
+  if (REENTRY ? pools->towards.count < enough : 1) return false;
+  look_around(world, tile, pools, task);
+  return true;
 }
 
 #endif

@@ -9,7 +9,7 @@
 #define MAX_LIGHTS 8
 #define MAX_LAMPS 24
 #define MAX_SURFACES 4 // the floor and three walls
-#define MAX_STONES 64
+#define MAX_STONES 64  // a power of 2
 #define MAP_LEVELS 2   // of a light map
 #define MAP_SIZE 512   // rows and columns of each level
 
@@ -66,8 +66,8 @@ typedef struct {
   int pierces;               // a stone reaches through a surface of the room, which may hide a part of it
 } parameters_t;
 
-// A stone. Its facets, triangles and shadows are in its own measure: relative to its centre, in the world's axes (triangles:
-// in its own), in units of its radius.
+// A stone. Its facets, triangles and shadows are in its own measure: relative to its centre, in units of its radius. They are in the
+// world's axes; but triangles in its own; and of MANY its facets in the inner axes, where they are those of all stones of its shape.
 typedef struct {
   real centre[3];                    // in the frame
   real radius, inverse_radius;       // R
@@ -85,10 +85,22 @@ typedef struct {
   int first_chain;                   // its material's
   int convex;                        // light that leaves it does not come back by itself
   int by_triangles;                  // it is met by its tree, not by its half-spaces
+  int alike;                         // the first stone of its shape, whose packets it shares; by_triangles: itself
   int few_mirrors;                   // it reflects light into few directions
   int columns[2], rows[2];           // first and last pixel where a ray of the camera may meet it
   int shadow_start[MAX_LIGHTS + 1];  // where each light's planes begin
 } stone_t;
+
+// What differs by stone, where the lanes of a packet are in different ones (stone_columns.cl): columns of MAX_STONES numbers, by
+// stone. Those of the chains follow, two for each chain of a stone: its eta and its absorption.
+#define COLUMN_CENTRE 0
+#define COLUMN_RADIUS 3
+#define COLUMN_INVERSE_RADIUS 4
+#define COLUMN_ALIKE 5
+#define COLUMN_INNER_AXES 6 // row by row
+#define COLUMN_ABSORPTION 15
+#define COLUMNS 18
+#define CHAIN_COLUMNS 2
 
 // Stones that are near each other, at most eight: a ray that passes their common sphere by need not be tested against each.
 typedef struct {

@@ -171,13 +171,12 @@ static inline void follow(world_t world, __constant const map_frame_t *frame, __
   pools_t *pools = &photons->pools;
   for (;;) {
     pool_t *left = larger_away(pools);
-    if (left->count >= LANES || (last && is_empty(&pools->inside) && pools->towards.count == 0 && left->count > 0)) {
+    if (left->count >= LANES || (last && is_empty(&pools->inside) && is_clear(pools) && left->count > 0)) {
       maskL taken;
       const packetL packet = pop(left, &taken);
       land(world, frame, bundles, photons, task, &packet, packet.origin, packet.direction, taken, 1, to);
-    } else if (REENTRY &&
-               (pools->towards.count >= LANES || (last && is_empty(&pools->inside) && pools->towards.count > 0)))
-      look_around(world, &photons->tile, pools, task);
+    } else if (look_outside(world, &photons->tile, pools, task, last && is_empty(&pools->inside)))
+      continue;
     else if (has_full(&pools->inside) || (last && !is_empty(&pools->inside)))
       advance(world, &photons->tile, pools, task);
     else
@@ -200,11 +199,8 @@ __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *fra
   for (int job = first + item; job < last; job += get_global_size(0)) {
     const int number = job / steps % bundle_count, round = job / steps / bundle_count, chain = job % steps * GROUPS;
     __global const bundle_t *bundle = bundles + number;
-    const task_t task = {world.chains + chain, CHANNELS == 3 ? 0 : chain, (uint)job * 0x9e3779b9u};
-    clear_inside(&photons.pools.inside);
-    clear(&photons.pools.towards);
-    clear(&photons.pools.away);
-    clear(&photons.pools.up);
+    const task_t task = task_of(world, chain, job);
+    clear_pools(&photons.pools);
     photons.tile.segments = (intL)(0);
     const real flux = CHANNELS == 3 ? (bundle->flux[0] + bundle->flux[1] + bundle->flux[2]) / 3
                                     : bundle->flux[task.first_channel] / 3;
@@ -215,16 +211,16 @@ __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *fra
     for (int i = 0; i < BATCH; i += LANES) {
       const rayL ray = emitted(bundle, (uint)round * BATCH + i, job % steps);
       const maskL all = widen(LANE_INDEX >= (intL)(0));
-      const meetingL met = stone_entry(world, ray.origin, ray.direction, ray.start, all, (intL)(NOBODY));
+      meetingL met = stone_entry(world, ray.origin, ray.direction, ray.start, all, (intL)(NOBODY));
       const maskL meets = met.hit & widen(met.stone == (intL)(bundle->stone)) & !hidden_by_room(world, ray, met.t);
       if (!any_lane(meets)) continue;
       packetL packet;
-      packet.origin = met.point;
       packet.direction = ray.direction;
       EACH (k, WEIGHTS) packet.weight[k] = splat(1);
       packet.polarisation = ray.polarisation;
       packet.tag = i + LANE_INDEX + ((LANE_INDEX + i / LANES) % GROUPS << PIXEL_BITS);
-      packet.stone = blend_ints_by(meets, met.stone, (intL)(0));
+      met.stone = packet.stone = blend_ints_by(meets, met.stone, (intL)(0));
+      bring(world, &packet, met);
       const vec3L point = along(ray.origin, blend(meets, met.t, splat(0)), ray.direction);
       own[INCIDENT] -= land(world, frame, bundles, &photons, task, &packet, point, ray.direction, meets, -1, &to);
       if (!follow_on) continue;

@@ -42,98 +42,109 @@ static inline void clear(pool_t *pool) {
   }
 }
 
-// A packet that comes into a stone, or begins there.
-static inline packetL turned_inward(__constant const stone_t *stone, const packetL *packet) {
-  packetL inner = *packet;
-  inner.origin = inward(stone, packet->origin);
-  inner.direction = inward(stone, packet->direction);
-  if (POLARISED) inner.polarisation.axis = inward(stone, packet->polarisation.axis);
-  return inner;
+// Brings a packet to where it meets a stone. Of MANY it then is in the axes of light inside.
+static inline void bring(world_t world, packetL *packet, meetingL met) {
+  packet->origin = met.point;
+#if STONES == MANY
+  packet->direction = met.way;
+  packet->stone = met.stone;
+  if (POLARISED) packet->polarisation.axis = into_axes_of(inner_axes_of(world, met.stone), packet->polarisation.axis);
+#endif
 }
 
-// Rays inside stones, in the axes of light inside. A packet of them is in one stone, since its facets are looked at by all lanes together: the rays of each
-// stone gather until they are a packet, and full packets wait in a pile, the latest on top.
+// Rays inside stones, in the axes of light inside. The facets of a shape are looked at by all lanes of a packet together, so a packet
+// is of one shape, whichever stones of that shape its lanes are in: the rays of each shape have a pool of their own, by the number
+// of its first stone. What these have no room for waits in a pile of full packets, the latest on top.
 #if STONES == MANY
-#define PILE 256 // full packets that may wait; what finds no room is counted as cut
+#define PILE 256                   // full packets that may wait; what finds no room is counted as cut
+#define GATHERING_RAYS (2 * LANES) // that stay in a shape's own pool
+#define GATHERING_SIZE (4 * LANES) // a packet more may come, and is written whole
 
 typedef struct {
-  real number[NUMBERS][2 * LANES];
-  int whole[WHOLES][2 * LANES];
+  real number[NUMBERS][GATHERING_SIZE];
+  int whole[WHOLES][GATHERING_SIZE];
   int count;
 } gathering_t;
 
 typedef struct {
   real number[PILE][NUMBERS][LANES];
   int whole[PILE][WHOLES][LANES];
-  int stone[PILE];
-  gathering_t of_stone[MAX_STONES];
+  int shape[PILE];
+  gathering_t of_shape[MAX_STONES];
+  ulong ripe;    // the shapes whose pools hold a packet, a bit each
   int full;      // packets on the pile
-  int gathering; // rays of all stones that are not yet a packet
+  int gathering; // rays in the pools
 } inside_t;
 
 static inline void clear_inside(inside_t *inside) {
   inside->full = inside->gathering = 0;
-  for (int i = 0; i < MAX_STONES; i++) inside->of_stone[i].count = 0;
+  inside->ripe = 0;
+  for (int i = 0; i < MAX_STONES; i++) inside->of_shape[i].count = 0;
 }
 
 static inline int is_empty(const inside_t *inside) { return inside->full == 0 && inside->gathering == 0; }
 
-static inline int has_full(const inside_t *inside) { return inside->full > 0; }
+static inline int has_full(const inside_t *inside) { return inside->ripe != 0 || inside->full > 0; }
 
 // Whether a packet has room, whatever stones its lanes are in.
 static inline int has_room_inside(const inside_t *inside) { return inside->full <= PILE - LANES; }
 
-static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const packetL *packet) {
-  gathering_t *own = inside->of_stone + stone;
+static inline void push_to_shape(inside_t *inside, int shape, maskL mask, const packetL *packet) {
+  gathering_t *own = inside->of_shape + shape;
   const packing_t packing = packing_of(mask);
-  pack_packet(packing, packet, own->number[0] + own->count, own->whole[0] + own->count, 2 * LANES);
+  pack_packet(packing, packet, own->number[0] + own->count, own->whole[0] + own->count, GATHERING_SIZE);
   own->count += packing.count;
   inside->gathering += packing.count;
-  if (own->count < LANES) return;
-  own->count -= LANES;
-  inside->gathering -= LANES;
-  EACH (k, NUMBERS) store_lanes(load_lanes(own->number[k] + own->count), inside->number[inside->full][k]);
-  EACH (k, WHOLES) store_ints(load_ints(own->whole[k] + own->count), inside->whole[inside->full][k]);
-  inside->stone[inside->full++] = stone;
+  if (own->count > GATHERING_RAYS) {
+    own->count -= LANES;
+    inside->gathering -= LANES;
+    EACH (k, NUMBERS) store_lanes(load_lanes(own->number[k] + own->count), inside->number[inside->full][k]);
+    EACH (k, WHOLES) store_ints(load_ints(own->whole[k] + own->count), inside->whole[inside->full][k]);
+    inside->shape[inside->full++] = shape;
+  }
+  if (own->count >= LANES) inside->ripe |= 1ul << shape;
 }
 
-// Appends the lanes that the mask names, each to its own stone, of a packet that comes from outside.
+// Appends the lanes that the mask names, each to its own stone, of a packet that is in the axes of light inside.
 static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
-  int named[LANES], number[LANES];
-  store_mask(mask, named);
-  store_ints(packet->stone, number);
-  for (int lane = 0; lane < LANES; lane++) {
-    if (!named[lane]) continue;
-    const int stone = number[lane];
-    const maskL same = mask & widen(packet->stone == (intL)(stone));
-    const packetL inner = turned_inward(world.stones + stone, packet);
-    push_to_stone(inside, stone, same, &inner);
-    for (int other = lane + 1; other < LANES; other++) named[other] = number[other] == stone ? 0 : named[other];
+  const realL alike = by_stone(world, COLUMN_ALIKE, packet->stone);
+  while (any_lane(mask)) {
+    const int shape = first_number(mask, reals_to_int(alike));
+    const maskL same = mask & (alike == splat((real)shape));
+    push_to_shape(inside, shape, same, packet);
+    mask &= !same;
   }
 }
 
-// Takes a packet of one stone: the one on top of the pile; if that is empty, the largest that gathers.
-__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *stone) {
-  const maskL all = widen(LANE_INDEX < (intL)(LANES));
+// Takes a packet of one shape: the one on top of the pile, which is the latest that came, so that the pile stays small; else of a pool that
+// holds one, else the largest pool.
+__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *shape) {
   if (inside->full > 0) {
     inside->full--;
-    *mask = all;
-    *stone = inside->stone[inside->full];
+    *mask = widen(LANE_INDEX < (intL)(LANES));
+    *shape = inside->shape[inside->full];
     return load_packet(inside->number[inside->full][0], inside->whole[inside->full][0], LANES);
   }
-  int largest = 0;
-  for (int i = 1; i < MAX_STONES; i++)
-    if (inside->of_stone[i].count > inside->of_stone[largest].count) largest = i;
-  gathering_t *own = inside->of_stone + largest;
-  EACH (k, NUMBERS) // no lane holds what was never written
-    for (int lane = own->count; lane < LANES; lane++) own->number[k][lane] = own->number[k][0];
-  EACH (k, WHOLES)
-    for (int lane = own->count; lane < LANES; lane++) own->whole[k][lane] = own->whole[k][0];
-  *mask = widen(LANE_INDEX < (intL)(own->count));
-  *stone = largest;
-  inside->gathering -= own->count;
-  own->count = 0;
-  return load_packet(own->number[0], own->whole[0], 2 * LANES);
+  int from = 0;
+  if (inside->ripe != 0)
+    from = (int)popcount((inside->ripe & -inside->ripe) - 1);
+  else
+    for (int i = 1; i < MAX_STONES; i++)
+      if (inside->of_shape[i].count > inside->of_shape[from].count) from = i;
+  gathering_t *own = inside->of_shape + from;
+  const int taken = min(own->count, LANES);
+  if (taken < LANES) { // no lane holds what was never written
+    EACH (k, NUMBERS)
+      for (int lane = taken; lane < LANES; lane++) own->number[k][lane] = own->number[k][0];
+    EACH (k, WHOLES)
+      for (int lane = taken; lane < LANES; lane++) own->whole[k][lane] = own->whole[k][0];
+  }
+  *mask = widen(LANE_INDEX < (intL)(taken));
+  *shape = from;
+  inside->gathering -= taken;
+  own->count -= taken;
+  if (own->count < LANES) inside->ripe &= ~(1ul << from);
+  return load_packet(own->number[0] + own->count, own->whole[0] + own->count, GATHERING_SIZE);
 }
 #else
 typedef pool_t inside_t;
@@ -141,15 +152,20 @@ static inline void clear_inside(inside_t *inside) { clear(inside); }
 static inline int is_empty(const inside_t *inside) { return inside->count == 0; }
 static inline int has_full(const inside_t *inside) { return inside->count >= LANES; }
 static inline int has_room_inside(const inside_t *inside) { return has_room(inside); }
-static inline void push_to_stone(inside_t *inside, int stone, maskL mask, const packetL *packet) {
+static inline void push_to_shape(inside_t *inside, int shape, maskL mask, const packetL *packet) {
   push(inside, mask, packet);
 }
+// A packet that is in the frame.
 static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
-  const packetL inner = turned_inward(world.stones, packet);
+  __constant const stone_t *stone = world.stones;
+  packetL inner = *packet;
+  inner.origin = inward(stone, packet->origin);
+  inner.direction = inward(stone, packet->direction);
+  if (POLARISED) inner.polarisation.axis = inward(stone, packet->polarisation.axis);
   push(inside, mask, &inner);
 }
-__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *stone) {
-  *stone = 0;
+__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *shape) {
+  *shape = 0;
   return pop(inside, mask);
 }
 #endif

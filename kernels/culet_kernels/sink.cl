@@ -75,9 +75,9 @@ static inline realL cutoff_now(world_t world, const tile_t *tile, task_t task, c
 }
 
 // What becomes of chains whose weight is below the cut-off, or whose bounces are used up: which go on. What ends is added
-// to `cut`. Of light inside a stone, directions are in that stone's axes; of light outside, `host` is null.
-static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *packet, __constant const stone_t *host,
-                           maskL mask, maskL used_up) {
+// to `cut`. `place` says where it is.
+static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *packet, int place, maskL mask,
+                           maskL used_up) {
   const int end_kind = DECIDED(END, world.scene->end_kind);
   const realL weight = largest_weight(packet);
   maskL ends = mask & (used_up | (weight < world.scene->cutoff));
@@ -87,8 +87,9 @@ static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *pa
     scale_weights(packet, blend(lucky, world.scene->cutoff / fmax(weight, splat((real)1e-30)), splat(1)));
 #if RECORDED
     if (lucky)
-      packet->event = tell_chance(world, task, packet, host != 0, world.scene->cutoff / fmax(weight, (real)1e-30));
-    if (ends & !lucky) tell_end(world, task, packet, host, black());
+      packet->event =
+          tell_chance(world, task, packet, place == INSIDE, world.scene->cutoff / fmax(weight, (real)1e-30));
+    if (ends & !lucky) tell_end(world, task, packet, place, black());
 #endif
     lose(tile, ends & used_up, packet, over_channels(task, packet));
     return mask & (lucky | !ends);
@@ -97,12 +98,12 @@ static inline maskL settle(world_t world, tile_t *tile, task_t task, packetL *pa
     ends &= used_up | (weight < cutoff_now(world, tile, task, packet));
   radianceL seen = black();
   if (end_kind == SKYLIGHT) {
-    const vec3L direction = host ? outward(host, packet->direction) : packet->direction;
+    const vec3L direction = at_stone(place) ? outward_of(world, packet, packet->direction) : packet->direction;
     seen = sky(world, direction, channels_of(task));
     show(tile, task, ends, packet, seen);
   }
 #if RECORDED
-  if (ends) tell_end(world, task, packet, host, seen);
+  if (ends) tell_end(world, task, packet, place, seen);
 #endif
   lose(tile, ends, packet, over_channels(task, packet));
   return mask & !ends;

@@ -5,16 +5,18 @@
 // it enters that one there.
 #ifndef CULET_STONES
 #define CULET_STONES
-#include "features.cl"
-#include "world.cl"
+#include "stone_columns.cl"
 
 #define NOBODY (-1) // in place of a stone's number
 
-// Where a ray from outside first meets a stone.
+// Where a ray from outside first meets a stone. Of MANY all is in the axes of light inside that stone.
 typedef struct {
   maskL hit;
   realL t;      // R
   vec3L point;  // in the measure of the stone
+#if STONES == MANY
+  vec3L way;    // its direction
+#endif
   vec3L normal; // outward
   intL stone;   // its number
 } meetingL;
@@ -28,34 +30,13 @@ typedef struct {
 #define FEW_LANES (LANES == 16 ? 6 : LANES == 8 ? 3 : LANES == 4 ? 2 : 1)
 
 #if STONES == MANY
-// Positions in a stone's measure, and back. Each lane's stone may be another.
-static inline realL of_each(__constant const real *first, intL stone) {
-  int number[LANES];
-  real value[LANES];
-  store_ints(stone, number);
-  for (int lane = 0; lane < LANES; lane++)
-    value[lane] = *(__constant const real *)((__constant const char *)first + number[lane] * sizeof(stone_t));
-  return load_lanes(value);
-}
-static inline vec3L to_frame(world_t world, intL stone, vec3L point) {
-  const realL radius = of_each(&world.stones->radius, stone);
-  return vec3(fma(radius, point.x, of_each(world.stones->centre, stone)),
-              fma(radius, point.y, of_each(world.stones->centre + 1, stone)),
-              fma(radius, point.z, of_each(world.stones->centre + 2, stone)));
-}
+// Positions in a stone's measure.
 static inline vec3L to_own(world_t world, int number, vec3L point) {
   __constant const stone_t *stone = world.stones + number;
   return scale3(splat(stone->inverse_radius),
                 vec3(point.x - stone->centre[0], point.y - stone->centre[1], point.z - stone->centre[2]));
 }
-static inline vec3L from_own(__constant const stone_t *stone, vec3L point) {
-  return vec3(fma(point.x, splat(stone->radius), splat(stone->centre[0])),
-              fma(point.y, splat(stone->radius), splat(stone->centre[1])),
-              fma(point.z, splat(stone->radius), splat(stone->centre[2])));
-}
 #else
-static inline vec3L to_frame(world_t world, intL stone, vec3L point) { return point; }
-static inline vec3L from_own(__constant const stone_t *stone, vec3L point) { return point; }
 static inline vec3L to_own(world_t world, int number, vec3L point) { return point; }
 #endif
 
@@ -167,42 +148,142 @@ static inline crossingL enter_one_by_one(__global const real *blocks, int count,
   return crossing;
 }
 
+// Where rays enter a stone, all in its measure and the axes of light inside; their facets are those of any stone of its shape.
+static inline crossingL enter_shape(world_t world, __constant const stone_t *stone, vec3L origin, vec3L direction,
+                                    realL t_min, maskL mask) {
+  if (packing_of(mask).count <= FEW_LANES)
+    return enter_one_by_one(world.blocks + stone->first_block * 4 * TREE_WIDTH, stone->blocks, origin, direction, t_min,
+                            mask);
+  return hull_entry_from(world.facets + stone->first_facet, stone->facets, origin, direction, t_min, TOUCH);
+}
+
+// Takes up where rays cross stones, if that comes before what they met so far. Those go on from a foot along a way, which their own
+// measure is `radius` R of, `middle` R after they begin.
+static inline void meet(meetingL *first, maskL mask, crossingL crossing, realL middle, realL radius, vec3L foot,
+                        vec3L way, intL number) {
+  const realL t = fma(crossing.t, radius, middle);
+  const maskL sooner = mask & crossing.hit & (t < first->t);
+  first->hit |= sooner;
+  first->t = blend(sooner, t, first->t);
+  first->point = blend3(sooner, along(foot, crossing.t, way), first->point);
+  first->way = blend3(sooner, way, first->way);
+  first->normal = blend3(sooner, crossing.normal, first->normal);
+  first->stone = blend_ints_by(sooner, number, first->stone);
+}
+
 // Looks whether rays enter this stone before the one that they met so far. `from` is the stone that each comes from.
 static inline void meet_stone(world_t world, int number, vec3L origin, vec3L direction, realL t_min, maskL mask,
                               intL from, meetingL *first) {
   __constant const stone_t *stone = world.stones + number;
-  const passageL way =
+  const passageL past =
       passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach);
   const maskL returns = widen(from == (intL)(number));
-  maskL near = mask & way.passes & (way.middle - stone->reach < first->t);
+  maskL near = mask & past.passes & (past.middle - stone->reach < first->t);
   if (stone->convex) near &= !returns;
   if (!any_lane(near)) return;
-  const vec3L foot = scale3(splat(stone->inverse_radius), way.foot); // from here on in the stone's own measure
-  const realL start = (t_min - way.middle) * stone->inverse_radius;
+  const vec3L foot = into_axes(stone->inner_axes, scale3(splat(stone->inverse_radius), past.foot)),
+              way = into_axes(stone->inner_axes, direction);
+  const realL start = (t_min - past.middle) * stone->inverse_radius;
   crossingL crossing;
   if (by_half_spaces(stone))
-    crossing = packing_of(near).count <= FEW_LANES
-                   ? enter_one_by_one(world.blocks + stone->first_block * 4 * TREE_WIDTH, stone->blocks, foot,
-                                      direction, start, near)
-                   : hull_entry_from(world.facets + stone->first_facet, stone->facets, foot, direction, start, TOUCH);
+    crossing = enter_shape(world, stone, foot, way, start, near);
   else {
-    crossing = mesh_crossing(stone, tree_of(world), foot, direction, blend(returns, start, start - DEPTH), (real)1e30,
-                             near, 1);
+    crossing =
+        mesh_crossing(stone, tree_of(world), foot, way, blend(returns, start, start - DEPTH), (real)1e30, near, 1);
     crossing.t = fmax(crossing.t, start);
   }
-  const realL t = fma(crossing.t, splat(stone->radius), way.middle);
-  const maskL sooner = near & crossing.hit & (t < first->t);
-  first->hit |= sooner;
-  first->t = blend(sooner, t, first->t);
-  first->point = blend3(sooner, along(foot, crossing.t, direction), first->point);
-  first->normal = blend3(sooner, crossing.normal, first->normal);
-  first->stone = blend_ints_by(sooner, (intL)(number), first->stone);
+  meet(first, near, crossing, past.middle, splat(stone->radius), foot, way, (intL)(number));
 }
 
 static inline meetingL nobody(vec3L origin, vec3L direction) {
   const maskL none = origin.x < origin.x;
-  const meetingL meeting = {none, splat(1e30f), origin, direction, (intL)(NOBODY)};
+  const meetingL meeting = {none, splat(1e30f), origin, direction, direction, (intL)(NOBODY)};
   return meeting;
+}
+#endif
+
+#if STONES == MANY
+// Whether rays pass the sphere of a stone that they can meet, coming from this one or from NOBODY.
+static inline maskL passes_others(world_t world, vec3L origin, vec3L direction, intL from) {
+  maskL passes = origin.x < origin.x;
+  for (int i = 0; i < world.scene->groups; i++) {
+    __constant const group_t *group = world.groups + i;
+    if (!any_lane(
+            passage(origin, direction, splat(0), group->centre[0], group->centre[1], group->centre[2], group->reach)
+                .passes))
+      continue;
+    for (int number = group->first; number < group->last; number++) {
+      __constant const stone_t *stone = world.stones + number;
+      const maskL past =
+          passage(origin, direction, splat(0), stone->centre[0], stone->centre[1], stone->centre[2], stone->reach)
+              .passes;
+      passes |= past & (stone->convex ? !widen(from == (intL)(number)) : (origin.x == origin.x));
+    }
+  }
+  return passes;
+}
+
+// Of the stones whose spheres rays pass before they meet the one that they met so far: for each ray the one whose sphere comes
+// first, of those that it was not `asked` for (a bit for each stone, 32 in each word).
+#define ASKED_WORDS 2
+typedef struct {
+  intL word[ASKED_WORDS];
+} askedL;
+
+static inline intL next_stone(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask, intL from,
+                              const askedL *asked, realL t_max) {
+  intL next = (intL)(NOBODY);
+  for (int i = 0; i < world.scene->groups; i++) {
+    __constant const group_t *group = world.groups + i;
+    const passageL way =
+        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach);
+    const maskL near = mask & way.passes & (way.middle - group->reach < t_max);
+    if (!any_lane(near)) continue;
+    for (int number = group->first; number < group->last; number++) {
+      __constant const stone_t *stone = world.stones + number;
+      const passageL past =
+          passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach);
+      const intL was_asked = (number < 32 ? asked->word[0] : asked->word[1]) & (intL)(1 << number % 32),
+                 comes_from = (from == (intL)(number)) & (intL)(-(stone->convex != 0)),
+                 barred = (was_asked != 0) | comes_from;
+      const realL t = past.middle - stone->reach;
+      const maskL sooner = near & past.passes & (t < t_max) & !widen(barred);
+      t_max = blend(sooner, t, t_max);
+      next = blend_ints_by(sooner, (intL)(number), next);
+    }
+  }
+  return next;
+}
+
+// Looks whether rays enter this stone before the one that they met so far, each ray another one of the same shape. `stone` is any
+// of them.
+static inline void meet_alike(world_t world, __constant const stone_t *stone, intL number, vec3L origin,
+                              vec3L direction, realL t_min, maskL mask, meetingL *first) {
+  const axesL axes = inner_axes_of(world, number);
+  const realL inverse = by_stone(world, COLUMN_INVERSE_RADIUS, number), radius = by_stone(world, COLUMN_RADIUS, number);
+  const vec3L centre = vector_by_stone(world, COLUMN_CENTRE, number);
+  const vec3L apart = vec3(origin.x - centre.x, origin.y - centre.y, origin.z - centre.z);
+  const realL middle = -dot3(apart, direction);
+  const vec3L foot = into_axes_of(axes, scale3(inverse, along(apart, middle, direction))),
+              way = into_axes_of(axes, direction);
+  const crossingL crossing = enter_shape(world, stone, foot, way, (t_min - middle) * inverse, mask);
+  meet(first, mask, crossing, middle, radius, foot, way, number);
+}
+
+// The same for rays of stones of any shape.
+static inline void meet_each(world_t world, intL number, vec3L origin, vec3L direction, realL t_min, maskL mask,
+                             intL from, meetingL *first) {
+  const realL alike = by_stone(world, COLUMN_ALIKE, number);
+  while (any_lane(mask)) {
+    const int kind = first_number(mask, reals_to_int(alike));
+    const maskL same = mask & (alike == splat((real)kind));
+    __constant const stone_t *stone = world.stones + kind;
+    if (by_half_spaces(stone))
+      meet_alike(world, stone, number, origin, direction, t_min, same, first);
+    else
+      meet_stone(world, kind, origin, direction, t_min, same, from, first);
+    mask &= !same;
+  }
 }
 #endif
 
@@ -210,21 +291,15 @@ static inline meetingL nobody(vec3L origin, vec3L direction) {
 static inline meetingL stone_entry(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask, intL from) {
 #if STONES == MANY
   meetingL first = nobody(origin, direction);
-  for (int i = 0; i < world.scene->groups; i++) {
-    __constant const group_t *group = world.groups + i;
-    const passageL way =
-        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach);
-    const maskL near = mask & way.passes & (way.middle - group->reach < first.t);
-    if (!any_lane(near)) continue;
-    for (int number = group->first; number < group->last; number++) {
-      __constant const stone_t *stone = world.stones + number; // to ask here saves most of the calls
-      const passageL past =
-          passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach);
-      if (any_lane(near & past.passes & (past.middle - stone->reach < first.t)))
-        meet_stone(world, number, origin, direction, t_min, near, from, &first);
-    }
+  askedL asked;
+  EACH (k, ASKED_WORDS) asked.word[k] = (intL)(0);
+  for (;;) {
+    const intL next = next_stone(world, origin, direction, t_min, mask, from, &asked, first.t);
+    mask &= widen(next >= 0);
+    if (!any_lane(mask)) return first;
+    EACH (k, ASKED_WORDS) asked.word[k] |= blend_ints(next >> 5 == (intL)(k), (intL)(1) << (next & 31), (intL)(0));
+    meet_each(world, next, origin, direction, t_min, mask, from, &first);
   }
-  return first;
 #else
   const crossingL crossing =
       GEOMETRY == HULL ? hull_entry(world.facets, world.stones->facets, origin, direction, t_min)
@@ -256,6 +331,26 @@ static inline vec3L inward(__constant const stone_t *stone, vec3L v) {
 }
 static inline vec3L outward(__constant const stone_t *stone, vec3L v) {
   return INNER_AXES ? out_of_axes(stone->inner_axes, v) : v;
+}
+
+// A ray that begins inside a stone, at a point of the frame.
+static inline meetingL from_inside(world_t world, int number, vec3L point, vec3L direction) {
+  meetingL met;
+  met.hit = point.x >= point.x;
+  met.t = splat(0);
+  met.point = to_own(world, number, point);
+  met.normal = direction;
+  met.stone = (intL)(number);
+#if STONES == MANY
+  met.point = inward(world.stones + number, met.point);
+  met.way = inward(world.stones + number, direction);
+#endif
+  return met;
+}
+
+// What leaves a stone: of MANY it is turned out of those axes later, in a full packet.
+static inline vec3L turned_out(__constant const stone_t *stone, vec3L v) {
+  return STONES == MANY ? v : outward(stone, v);
 }
 
 // Whether a stone lies between points of the room and a light; all in the stone's own measure.

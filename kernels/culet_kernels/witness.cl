@@ -36,27 +36,38 @@ static inline happening_t event_of_packet(world_t world, task_t task, const pack
   return event;
 }
 
+// Where a packet is in the frame.
+static inline vec3L told_point(world_t world, const packetL *packet, int place) {
+  if (!at_stone(place)) return packet->origin;
+#if STONES == MANY
+  return to_frame(world, packet->stone, outward_of(world, packet, packet->origin));
+#else
+  return outward(world.stones, packet->origin);
+#endif
+}
+static inline vec3L told_direction(world_t world, const packetL *packet, int place, vec3L direction) {
+  return at_stone(place) ? outward_of(world, packet, direction) : direction;
+}
+
 // Light that meets a stone from outside.
-static inline int tell_entry(world_t world, task_t task, const packetL *packet, vec3L point, vec3L normal, real kept,
-                             int glare) {
+static inline int tell_entry(world_t world, task_t task, const packetL *packet, vec3L normal, real kept, int glare) {
   happening_t event = event_of_packet(world, task, packet, ENTERS);
-  set_place(&event, point, packet->direction, normal);
+  set_place(&event, told_point(world, packet, ENTERING), told_direction(world, packet, ENTERING, packet->direction),
+            told_direction(world, packet, ENTERING, normal));
   event.kept = kept;
   event.surface = glare; // whether what is reflected is followed
   return append_event(world, event);
 }
 
 // Light that meets a stone's surface from inside, after a way there.
-static inline int tell_meeting(world_t world, task_t task, const packetL *packet, int number, real weight, real length,
+static inline int tell_meeting(world_t world, task_t task, const packetL *packet, real weight, real length,
                                vec3L normal) {
-  __constant const stone_t *stone = world.stones + number;
   happening_t event = event_of_packet(world, task, packet, MEETS);
-  event.stone = number;
   event.weight[0] = weight;
-  event.length = length * stone->radius;
+  event.length = length * world.stones[event.stone].radius;
   event.kept = 1;
-  set_place(&event, from_own(stone, outward(stone, packet->origin)), outward(stone, packet->direction),
-            outward(stone, normal));
+  set_place(&event, told_point(world, packet, INSIDE), outward_of(world, packet, packet->direction),
+            outward_of(world, packet, normal));
   return append_event(world, event);
 }
 
@@ -65,14 +76,12 @@ static inline void tell_kept(world_t world, int number, real kept) {
 }
 
 // Weight that is dropped, and what is shown in its place.
-static inline void tell_end(world_t world, task_t task, const packetL *packet, __constant const stone_t *host,
-                            radianceL seen) {
+static inline void tell_end(world_t world, task_t task, const packetL *packet, int place, radianceL seen) {
   happening_t event = event_of_packet(world, task, packet, ENDS);
-  event.inside = host != 0;
+  event.inside = place == INSIDE;
   event.cut = over_channels(task, packet);
-  const vec3L origin = host ? from_own(host, outward(host, packet->origin)) : packet->origin;
-  const vec3L direction = host ? outward(host, packet->direction) : packet->direction;
-  set_place(&event, origin, direction, direction);
+  const vec3L direction = told_direction(world, packet, place, packet->direction);
+  set_place(&event, told_point(world, packet, place), direction, direction);
   for (int k = 0; k < CHANNELS; k++) {
     const real light = packet->weight[min(k, WEIGHTS - 1)] * seen.channel[k];
     event.light[task.first_channel + k] = SPECTRAL ? OF_CHAIN(task, packet->tag, share[k]) * light : light;

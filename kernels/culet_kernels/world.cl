@@ -12,6 +12,7 @@
   BUFFER(__constant const parameters_t, scene)                                                                         \
   BUFFER(__constant const stone_t, stones)                                                                             \
   BUFFER(__constant const group_t, groups) /* MANY */                                                                  \
+  BUFFER(__global const real, columns)     /* MANY: what differs by stone, see stone_columns.cl */                     \
   BUFFER(__global const real4, facets)     /* HULL: normal and offset */                                               \
   BUFFER(__global const real, blocks)      /* HULL of MANY: the same, by TREE_WIDTH */                                 \
   BUFFER(__global const real4, rows)       /* HULL: the same by symmetry, see facet_rows.cl */                         \

@@ -117,14 +117,18 @@ def test_one_stone_in_a_table_looks_as_it_does_alone(exact: Renderer) -> None:
         assert radiance(in_table) == pytest.approx(radiance(alone), abs=1e-9)
 
 
+def mean_in_sigmas(single: Array, double: Array) -> float:
+    """The mean difference, over that of differences each of which is as likely positive as negative."""
+    signed: Array = (single - double).mean(axis=-1)
+    return float(signed.sum() / np.linalg.norm(signed))
+
+
 def test_single_precision_shows_what_double_does(renderer: Renderer, exact: Renderer) -> None:
     """But where rounding decides on which side of an edge light goes."""
     single, double = (radiance(take(used, stage(twelve(), **VIEW))) for used in (renderer, exact))
     difference: Array = abs(single - double).max(axis=-1)
     assert (difference > 1e-3).mean() < 0.02
-    signed: Array = (single - double).mean(axis=-1)
-    sigma = np.linalg.norm(signed) / signed.size  # of the mean, if each pixel is as likely brighter as darker
-    assert abs(signed.mean()) < 3 * sigma  # measured 2.1, and 1.7 at 960 x 540
+    assert abs(mean_in_sigmas(single, double)) < 3  # measured 1.1, and 1.7 to 3.0 at 960 x 540
     assert single.mean() == pytest.approx(double.mean(), rel=1e-3)  # 2.5e-4, of which two pixels are most
 
 
@@ -233,7 +237,7 @@ def test_polarised_bands_among_stones_are_in_single_precision_what_they_are_in_d
     difference: Array = abs(single - double).max(axis=-1)
     with compared(single, double):
         assert (difference > 1e-3).mean() < 0.004  # measured 0.0017
-        assert single.mean() == pytest.approx(double.mean(), rel=1e-5)  # measured 2.7e-6
+        assert abs(mean_in_sigmas(single, double)) < 3  # measured 1.4, and 0.2 at 400 x 225
 
 
 def clear(**settings: Any) -> dict[str, Any]:  # noqa: ANN401

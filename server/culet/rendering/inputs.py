@@ -19,6 +19,7 @@ from culet.rendering.lit_room import set_light_map
 from culet.rendering.parameters import parameters
 from culet.rendering.placed_stone import placed_stones
 from culet.rendering.projection import project
+from culet.rendering.stone_columns import stone_columns
 from culet.rendering.stone_table import StoneTable, grouped
 from culet.scene.model import Scene
 from culet.scene.sky import ImageEnvironment
@@ -92,11 +93,13 @@ class Inputs:
             stones = self._table.stones.copy()
             stones["first_chain"] *= self._struct["chains"]
             self.chains = chains
-            self._uploaded = self._upload(self._struct), self._upload(stones), self._upload(chains)
+            columns = stone_columns(stones, chains, int(self._struct["chains"])).astype(self._real)
+            self._uploaded = tuple(self._upload(array) for array in (self._struct, stones, columns, chains))
             self._sample = sample
-        struct, table, chains = self._uploaded
+        struct, table, columns, chains = self._uploaded
         return {
-            "scene": struct, "stones": table, **self._fixed, "chains": chains, "panorama": self._panorama,
+            "scene": struct, "stones": table, "columns": columns, **self._fixed, "chains": chains,
+            "panorama": self._panorama,
             "light_map": self._light_map.buffer if self._light_map else None,
         }  # fmt: skip
 

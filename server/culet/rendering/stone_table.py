@@ -40,9 +40,9 @@ class StoneTable:
     stones: NDArray[np.void]
     groups: NDArray[np.void]
     facets: Array
-    """(F, 4)"""
+    """(F, 4): of MANY those of each shape, in the inner axes."""
     blocks: Array
-    """(B, 4, WIDTH): the facets of a stone, WIDTH abreast."""
+    """(B, 4, WIDTH): of MANY the same, WIDTH abreast."""
     rows: Array
     """(N, 4): the facets of each shape by its symmetry, see facet_rows.py."""
     shadows: Array
@@ -67,6 +67,7 @@ class StoneTable:
             _place(rows, scene, stones, projection.origin)
         facets, blocks, shadows, trees = [np.zeros((1, 4))], [np.zeros((0, 4, WIDTH))], [np.zeros((1, 4))], []
         first_facet, first_block, first_row, first_plane, root, leaves = 1, 0, 0, 1, 0, 0
+        rows["alike"] = np.arange(len(rows))
         by_symmetry = []
         for shape, numbers in by_shape(stones).items():
             by_triangles = features.geometry == Geometry.MESH and (
@@ -87,19 +88,20 @@ class StoneTable:
             by_symmetry.append(own_rows)
             first_row += len(own_rows)
             rotations = np.array([stones[number].rotation for number in numbers])
-            planes = np.empty((len(numbers), len(shape.planes), 4))
-            planes[..., :3] = symmetric.planes[:, :3] @ rotations.transpose(0, 2, 1)
-            planes[..., 3] = symmetric.planes[:, 3]
             rows["inner_axes"][numbers] = rotations @ symmetric.axes
-            count, own = np.arange(len(numbers)), _abreast(planes)
-            rows["first_facet"][numbers] = first_facet + count * planes.shape[1]
-            rows["first_block"][numbers] = first_block + count * own.shape[1]
-            rows["blocks"][numbers] = own.shape[1]
-            facets.append(planes.reshape(-1, 4))
-            blocks.append(own.reshape(-1, 4, WIDTH))
-            first_facet, first_block = first_facet + len(facets[-1]), first_block + len(blocks[-1])
-            for number, planes_of_one in zip(numbers, planes if features.lights != 0 else (), strict=False):
-                volumes = _shadow_volumes(scene, stones[number], planes_of_one)
+            rows["first_facet"][numbers], rows["first_block"][numbers] = first_facet, first_block
+            if features.stones == Stones.MANY:
+                rows["alike"][numbers] = numbers[0]
+                own = _turned(symmetric.planes, symmetric.axes.T)
+                blocks.append(_abreast(own))
+                rows["blocks"][numbers] = len(blocks[-1])
+                first_block += len(blocks[-1])
+            else:
+                own = _turned(symmetric.planes, rotations[0])
+            facets.append(own)
+            first_facet += len(own)
+            for number, rotation in zip(numbers, rotations if features.lights != 0 else (), strict=False):
+                volumes = _shadow_volumes(scene, stones[number], _turned(symmetric.planes, rotation))
                 starts = first_plane + np.cumsum([0, *map(len, volumes)])
                 rows["shadow_start"][number, : len(starts)] = starts
                 shadows += volumes
@@ -170,13 +172,17 @@ def _groups(rows: NDArray[np.void], real: Real) -> NDArray[np.void]:
     return groups
 
 
+def _turned(planes: Array, rotation: Array) -> Array:
+    """Half-spaces, (F, 4), in other axes."""
+    return np.column_stack([planes[:, :3] @ rotation.T, planes[:, 3]])
+
+
 def _abreast(planes: Array) -> Array:
-    """(N, B, 4, WIDTH) of (N, F, 4), filled up with planes that nothing meets."""
-    stones, count, _ = planes.shape
-    rows = np.zeros((stones, -(-count // WIDTH) * WIDTH, 4))
-    rows[..., 3] = 1
-    rows[:, :count] = planes
-    return rows.reshape(stones, -1, WIDTH, 4).transpose(0, 1, 3, 2)
+    """(B, 4, WIDTH) of (F, 4), filled up with planes that nothing meets."""
+    rows = np.zeros((-(-len(planes) // WIDTH) * WIDTH, 4))
+    rows[:, 3] = 1
+    rows[: len(planes)] = planes
+    return rows.reshape(-1, WIDTH, 4).transpose(0, 2, 1)
 
 
 def _shadow_volumes(scene: Scene, stone: PlacedStone, planes: Array) -> list[Array]:
