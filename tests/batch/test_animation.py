@@ -15,6 +15,7 @@ from culet.errors import InputError
 from culet.scene import Scene
 from culet.stage import Stage
 from culet.stills import render_stage
+from video_extra import needs_av
 
 DEFAULT = Stage.of(Scene())
 SIZE = 48, 27
@@ -93,8 +94,10 @@ def test_no_frames_or_too_many_are_refused() -> None:
             times_of(seconds, rate)
 
 
+@needs_av
 def test_a_film_has_every_frame_for_its_time(tmp_path: Path) -> None:
-    av = pytest.importorskip("av")
+    import av
+
     asked, folder, out = film(3), tmp_path / "turn.frames", tmp_path / "turn.mp4"
     list(render_frames(asked, folder))
     write_film(asked, folder, out, 3, lambda part: None)

@@ -13,8 +13,8 @@ from culet_client.errors import ClientError
 from culet_client.film import Film, fitted
 from culet_client.image import Image
 from culet_protocol.frame import Codec, Flags, Frame
+from video_extra import needs_av
 
-needs_av = pytest.mark.skipif(importlib.util.find_spec("av") is None, reason="culet[video] is not installed")
 RED, BLUE = (230, 40, 40), (50, 60, 230)
 
 

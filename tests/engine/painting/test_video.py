@@ -14,10 +14,10 @@ from culet.engine.painting.video import VideoEncoder, VideoError, luma_and_chrom
 from culet.study import trial_frames
 from culet_client.video import VideoDecoder
 from culet_protocol.frame import Codec, Flags, Frame
+from video_extra import needs_av
 
 WIDTH, HEIGHT = 96, 64
 FRAME = Frame(bytes(16), Codec.H264, Flags.KEY, 1, WIDTH, HEIGHT, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"")
-needs_av = pytest.mark.skipif(importlib.util.find_spec("av") is None, reason="culet[video] is not installed")
 
 
 def picture(number: int) -> NDArray[np.uint8]:
