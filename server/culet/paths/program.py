@@ -48,8 +48,11 @@ def make_path(device: Device, features: Features, variant: Variant) -> PathKerne
         cl.enqueue_copy(queue, size, target)
         kept = int(size[0])
         # No step of a pixel that has not begun: nothing is read but what the kernel keeps.
-        scratch = cl.Buffer(device.context, flags.READ_WRITE, struct("parameters_t", np.float64).itemsize)
-        work = cl.Buffer(device.context, flags.READ_WRITE | flags.COPY_HOST_PTR, hostbuf=np.zeros(kept, np.uint8))
+        zeros = flags.READ_WRITE | flags.COPY_HOST_PTR  # of a scene without stones
+        scratch = cl.Buffer(
+            device.context, zeros, hostbuf=np.zeros(struct("parameters_t", np.float64).itemsize, np.uint8)
+        )
+        work = cl.Buffer(device.context, zeros, hostbuf=np.zeros(kept, np.uint8))
         nothing, start = np.int32(0), np.float64(0)
         kernel = cl.Kernel(program, "path")
         kernel(
