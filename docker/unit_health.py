@@ -1,4 +1,4 @@
-"""Exit code 0 if this container's server makes pictures: a small one is asked for, through its gateway and its engine."""
+"""Exit code 0 if this container's server makes pictures: a small one is asked for through gateway and engine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def main() -> int:
     token = os.environ.get("CULET_TOKEN")
     request = Request(PICTURE, headers={"Authorization": f"Bearer {token}"} if token else {})
     try:
-        with urlopen(request, timeout=PATIENCE_SECONDS) as answer:
+        with urlopen(request, timeout=PATIENCE_SECONDS) as answer:  # noqa: S310 - the constant above
             return 0 if answer.read(8) == b"\x89PNG\r\n\x1a\n" else 1
     except HTTPError as refused:
         return 0 if refused.code == BUSY else 1
