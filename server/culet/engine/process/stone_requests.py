@@ -24,7 +24,6 @@ from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
 from culet.grading.size import size_of
 from culet.grading.sums import LightSums
-from culet.paths.answer import Path
 from culet.paths.asked import Pixel, Ray, answered
 from culet.paths.recorder import PathRecorder
 from culet.rendering.device import open_device
@@ -85,13 +84,13 @@ class StoneRequests:
         asked = _asked(request)
         stage = await self._staged(request)
         effort = Effort.PATIENT if request.session is None else Effort.RESTING
-        path = await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort)
-        return asdict(path)
+        return await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort)
 
-    def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> Path:
+    def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> dict[str, Any]:
         if self._recorder is None:
             self._recorder = PathRecorder(open_device(), apart=True)
-        return answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
+        path = answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
+        return asdict(path)  # not on the loop: of thousands of steps it takes longer than a frame
 
     def _light_sums(self) -> LightSums:
         if self._sums is None:
