@@ -54,6 +54,20 @@ def test_who_decodes_video_has_pictures_of_their_own_until_a_key_frame_and_then_
     assert taken(feed) == [2, 3]
 
 
+def test_a_key_frame_of_a_picture_that_was_sent_begins_no_video() -> None:
+    feed = FrameFeed()
+    feed.follow(Codec.H264)
+    offer(feed, 1)
+    assert taken(feed) == [1]
+    offer(feed, 1, Codec.H264)
+    assert feed.lacks_key
+    offer(feed, 2, Codec.H264, depends_on=1)
+    assert taken(feed) == [], "a page does not decode one number twice, and so lacks what this packet needs"
+    offer(feed, 3, Codec.H264)
+    offer(feed, 4, Codec.H264, depends_on=3)
+    assert taken(feed) == [3, 4]
+
+
 def test_a_still_between_packets_is_shown_and_gives_way_to_what_is_newer() -> None:
     feed = following()
     feed.offer(frame(2), b"", Codec.H264, 0)

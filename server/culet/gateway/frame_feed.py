@@ -64,12 +64,12 @@ class FrameFeed:
 
     def offer(self, frame: Frame, message: bytes, stream: Codec, now: float) -> None:
         """A frame came: of the session's pictures of their own (JPEG), or of its video in a codec, in which there are
-        pictures of their own too."""
+        pictures of their own too. Of a number that it was sent as a picture it decodes no packet."""
         if stream not in self.codecs:
             return
         if frame.codec not in VIDEO:
             self._put(Waiting(frame.sequence, message, is_video=False))
-        elif Flags.KEY in frame.flags and now >= self._barred_until:
+        elif Flags.KEY in frame.flags and frame.sequence != self._taken and now >= self._barred_until:
             self._waiting.clear()
             self._put(Waiting(frame.sequence, message, is_video=True))
             self._follows, self.lacks_key = frame.sequence, False

@@ -167,11 +167,11 @@ class FrameSender:
         self._tally.durations.frame.add(max(0.0, now - begun_at))
         outgoing.message, outgoing.sent_at = message, now
         self._tally.counters.frames_sent += 1
-        if message is not None:
-            self._send_to(codecs, message)
         for track, sent in packed.items():
             track.sequence = session.sequence
             self._send_to({track.codec}, sent)
+        if message is not None:  # after the packets: who is sent a frame as a picture cannot begin video with it
+            self._send_to(codecs, message)
 
     def _send_to(self, codecs: Collection[Codec], message: bytes) -> None:
         """A message by the session's watch id to who subscribes to frames in those codecs."""
