@@ -20,6 +20,8 @@ export class VideoWork {
   private readonly port: Port;
   private readonly asked = new Map<number, Asked>();
   private asks = 0;
+  /** Why nothing is decoded any more. */
+  private ended: string | null = null;
 
   constructor(port: Port = newWorker()) {
     this.port = port;
@@ -46,6 +48,7 @@ export class VideoWork {
 
   /** Nothing is decoded any more. */
   end(why = "expected pictures of nothing more"): void {
+    this.ended ??= why;
     this.port.terminate();
     const all = [...this.asked.values()];
     this.asked.clear();
@@ -53,6 +56,7 @@ export class VideoWork {
   }
 
   private ask(work: Work): Promise<Done> {
+    if (this.ended !== null) return Promise.reject(new Error(this.ended)); // a worker that has ended answers nothing
     this.asks += 1;
     const id = this.asks;
     return new Promise((resolve, reject) => {
