@@ -178,6 +178,13 @@ def test_wavelengths_that_are_asked_for_are_followed_with_their_own_indices(reco
     assert blue == pytest.approx(2.4354, abs=5e-4)
 
 
+def test_light_on_the_floor_that_takes_too_long_is_refused(device: Device) -> None:
+    hasty = PathRecorder(device, light_seconds=0)
+    with pytest.raises(SceneError, match="caustics_cutoff makes it end sooner"):
+        answered(hasty, Stage.of(preset("matte")), Pixel(*PIXELS[0], *SIZE))
+    assert answered(hasty, Stage.of(Scene()), Pixel(*PIXELS[0], *SIZE)).steps, "of a scene that needs no such light"
+
+
 @pytest.mark.parametrize("pixel", [(96, 0), (0, 54), (-1, 0)])
 def test_a_pixel_that_is_not_in_the_picture_is_refused(recorder: PathRecorder, pixel: tuple[int, int]) -> None:
     with pytest.raises(SceneError, match="expected x from 0 to 95 and y from 0 to 53"):

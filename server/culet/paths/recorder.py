@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -68,10 +70,12 @@ class Record:
 class PathRecorder:
     """Of one device. One thread at a time may ask."""
 
-    def __init__(self, device: Device, real: Real = np.float32, *, apart: bool = False) -> None:
+    def __init__(
+        self, device: Device, real: Real = np.float32, *, apart: bool = False, light_seconds: float = math.inf
+    ) -> None:
         """Programs are built when they are first needed, with `apart` by processes of their own, so that no other
-        launch of this one waits for a compiler."""
-        self._device, self._real, self._apart = device, real, apart
+        launch of this one waits for a compiler. A scene's light map may take `light_seconds`."""
+        self._device, self._real, self._apart, self._light_seconds = device, real, apart, light_seconds
         self._pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(device.queue))
         self._lighting = Lighting(device, self._pool)
         self._programs: dict[Features, PathKernel] = {}
@@ -89,7 +93,8 @@ class PathRecorder:
     ) -> Record:
         """The first sample of a pixel of a picture of that size, or of `wavelengths` (nm) in place of the scene's own.
 
-        SceneError for the classic estimator, which follows no chains, and for light that has no end.
+        SceneError for the classic estimator, which follows no chains, for light that has no end, and for a light map
+        that takes too long.
         """
         needed = features_of(stage)
         if needed.estimator != ESTIMATOR["chain"]:
@@ -118,8 +123,14 @@ class PathRecorder:
     ) -> Record:
         light = self._lighting.of(stage) if features_of(stage).light_map != 0 else None
         if light is not None:
+            until = time.monotonic() + self._light_seconds
             for _ in light.pieces(stage.scene.optics.caustics_cutoff, effort, LIGHT_SECONDS, first=True):
-                pass
+                if time.monotonic() > until:
+                    raise SceneError(
+                        f"expected light on floor and walls that is found within {self._light_seconds:g} s, got more: "
+                        "a higher optics.caustics_cutoff makes it end sooner",
+                        "optics.caustics_cutoff",
+                    )
         bound = None if light is None else light.bound
         inputs = Inputs(self._device, stage, *size, features, self._real, bound, wavelengths)
         given = inputs.of_sample(0)

@@ -35,6 +35,9 @@ from culet_protocol.engine import DrawDiagram, Grade, Measure, TracePath
 
 T = TypeVar("T")
 
+LIGHT_SECONDS = 20.0
+"""Of a ray's light map, some hundred times what the default cut-off takes: others wait for the same thread."""
+
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
@@ -88,7 +91,7 @@ class StoneRequests:
 
     def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> dict[str, Any]:
         if self._recorder is None:
-            self._recorder = PathRecorder(open_device(), apart=True)
+            self._recorder = PathRecorder(open_device(), apart=True, light_seconds=LIGHT_SECONDS)
         path = answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
         return asdict(path)  # not on the loop: of thousands of steps it takes longer than a frame
 
