@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
@@ -33,7 +33,7 @@ class ClientKeys:
     """Of a gateway or a viewer. Each key is 40 characters of Z85."""
 
     public: bytes
-    secret: bytes
+    secret: bytes = field(repr=False)
     engine: bytes
     """The engine's public key: whoever has not its secret is not talked to."""
 
@@ -57,7 +57,7 @@ class ClientKeys:
 class EngineKeys:
     """Of an engine."""
 
-    secret: bytes
+    secret: bytes = field(repr=False)
     allowed: Path
     """Folder of the public keys of those who may connect."""
 

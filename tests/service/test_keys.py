@@ -36,6 +36,7 @@ def test_each_machine_gets_a_folder_that_only_its_owner_reads(tmp_path: Path) ->
     assert {file.stem for file in engine.allowed.glob("*.key")} == {"gateway", "viewer"}
     given_away = [file for name in ("gateway", "viewer") for file in (folder / name).iterdir()]
     assert not any(engine.secret in file.read_bytes() for file in given_away)
+    assert not any(each.secret.decode() in repr(each) for each in (gateway, engine)), "no log has a secret"
     make_keys(folder, ["later"])
     assert EngineKeys.read(folder / "engine") == engine, "the engine keeps its own"
     assert (engine.allowed / "later.key").is_file()
