@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -89,7 +90,7 @@ def test_a_fall_has_the_stone_where_it_is_at_each_frames_time() -> None:
 
 
 def test_no_frames_or_too_many_are_refused() -> None:
-    for seconds, rate in ((0.001, 30), (1e6, 1000)):
+    for seconds, rate in ((0.001, 30), (1e6, 1000), (math.inf, 30), (math.nan, 30)):
         with pytest.raises(InputError, match="expected 1 to 100000 frames"):
             times_of(seconds, rate)
 

@@ -36,12 +36,17 @@ def test_values_are_a_range_with_its_end_or_a_list(text: str, values: tuple[obje
         ("a=1:inf:1", "expected finite numbers"),
         ("a=2:1:1", "expected 1 to 100000 values from FROM to TO; got 0"),
         ("a=0:1e9:1", "got 1000000001"),
+        ("a=-1e308:1e308:1", "got inf"),
     ],
 )
 def test_a_text_that_says_no_values_is_refused(text: str, said: str) -> None:
     with pytest.raises(SceneError, match=said) as refused:
         variation(text)
     assert refused.value.field == "vary"
+
+
+def test_what_is_no_number_of_json_is_a_word() -> None:
+    assert variation("a=NaN,Infinity,1").values == ("NaN", "Infinity", 1), "a journal holds no NaN"
 
 
 def test_all_combinations_are_points_the_last_field_changing_first() -> None:

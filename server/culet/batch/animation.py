@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,10 +52,11 @@ class Animation:
 
 def times_of(seconds: float, frames_per_second: float) -> list[float]:
     """s, of each frame; InputError for none, or too many."""
-    count = round(seconds * frames_per_second)
+    asked = seconds * frames_per_second
+    count = round(asked) if math.isfinite(asked) else 0
     if not 1 <= count <= MOST_FRAMES:
         raise InputError(
-            f"seconds: expected 1 to {MOST_FRAMES} frames, got {count} of {seconds:g} s at {frames_per_second:g}",
+            f"seconds: expected 1 to {MOST_FRAMES} frames, got {asked:.0f} of {seconds:g} s at {frames_per_second:g}",
             "seconds",
         )
     return [number / frames_per_second for number in range(count)]

@@ -45,10 +45,12 @@ def _range(text: str, ends: Sequence[str]) -> tuple[float, ...]:
         raise SceneError(f"vary: expected three numbers FROM:TO:STEP; got {text!r:.80}", "vary") from None
     if not (math.isfinite(least) and math.isfinite(most) and math.isfinite(step)) or step == 0:
         raise SceneError(f"vary: expected finite numbers and a step other than 0; got {text!r:.80}", "vary")
-    count = math.floor((most - least) / step * (1 + 1e-12) + 1e-9) + 1
+    steps = (most - least) / step
+    count = math.floor(steps * (1 + 1e-12) + 1e-9) + 1 if abs(steps) <= MOST_POINTS else 0
     if not 1 <= count <= MOST_POINTS:
         raise SceneError(
-            f"vary: expected 1 to {MOST_POINTS} values from FROM to TO; got {max(count, 0)} of {text!r:.80}", "vary"
+            f"vary: expected 1 to {MOST_POINTS} values from FROM to TO; got {max(steps + 1, 0):.0f} of {text!r:.80}",
+            "vary",
         )
     return tuple(round(least + k * step, 12) for k in range(count))
 
@@ -56,7 +58,7 @@ def _range(text: str, ends: Sequence[str]) -> tuple[float, ...]:
 def _value(said: str) -> Any:  # noqa: ANN401 - of JSON
     """A number, true, null or a list as JSON has it, or else a word."""
     try:
-        return json.loads(said)
+        return json.loads(said, parse_constant=str)  # NaN and the infinities are words, which no number may be
     except ValueError:
         return said
 
