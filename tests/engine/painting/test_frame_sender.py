@@ -15,7 +15,7 @@ from culet.engine.painting.counters import Tally
 from culet.engine.painting.frame_sender import FrameSender, Outgoing
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.video import Packet, VideoEncoder, VideoError
-from culet.engine.painting.video_track import MOST_FAILURES, VideoTrack
+from culet.engine.painting.video_track import BYTES_PER_PIXEL, MOST_FAILURES, VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
 from culet.scene import Scene
@@ -165,3 +165,17 @@ async def test_after_one_failure_video_goes_on_with_a_key_frame(desk: Desk) -> N
     Telling.fails = False
     assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 3)]
     assert desk.sent[-1].depends_on == 0
+
+
+async def test_encoders_are_given_back_while_nothing_is_sent_and_video_goes_on_with_a_key_frame(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    await desk.publish()
+    await desk.publish()
+    held = desk.outgoing.nbytes
+    assert held == BYTES_PER_PIXEL[Codec.H264] * 32 * 18
+    desk.outgoing.unsent += 1
+    assert desk.outgoing.give_back() == 0, "one may be encoding"
+    desk.outgoing.unsent -= 1
+    assert (desk.outgoing.give_back(), desk.outgoing.nbytes) == (held, 0)
+    await desk.publish()
+    assert [frame.depends_on for frame in desk.sent] == [0, 1, 0]

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+import time
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
 import pytest
 
+from culet.engine.painting.frame_sender import Outgoing
+from culet.engine.painting.painter import Painter
+from culet.engine.painting.video_track import VideoTrack
+from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
+from culet.engine.process.open_sessions import OpenSessions
 from culet.errors import BusyError
+from culet.stage import Library
+from culet_protocol.frame import Codec
+from engine.painting.test_frame_sender import Telling
 
 MEBIBYTE = 2**20
 
@@ -57,3 +70,19 @@ def test_what_failed_is_not_reserved_any_more() -> None:
     with pytest.raises(ZeroDivisionError), memory.reserved("reading", 5, "it"):
         raise ZeroDivisionError
     assert memory.free == 10
+
+
+def test_encoders_of_sessions_at_rest_are_given_back_and_those_of_moving_ones_are_not() -> None:
+    memory, resting, moving = Memory(10**9), Outgoing(), Outgoing(sent_at=time.monotonic())
+    edits = SimpleNamespace(nbytes=0)
+    lives = [
+        SimpleNamespace(outgoing=each, session=SimpleNamespace(history=(), edits=edits)) for each in (moving, resting)
+    ]
+    painter = cast(Painter, SimpleNamespace(pictures=dict(enumerate(lives))))
+    OpenSessions(painter, Limits(), memory, Library())
+    for each in (resting, moving):
+        each.watch(Codec.H264, subscribed=True)
+        each.tracks[Codec.H264] = VideoTrack(Codec.H264, Telling)
+        each.tracks[Codec.H264].encode(np.zeros((18, 32, 3), np.uint8), 30, 0)
+    memory.make_room(memory.budget)
+    assert resting.nbytes == 0 < moving.nbytes

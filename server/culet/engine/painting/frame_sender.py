@@ -68,6 +68,16 @@ class Outgoing:
         """That its encoders take."""
         return sum(track.nbytes for track in self.tracks.values())
 
+    def give_back(self) -> int:
+        """Close its encoders, unless a frame is on its way: video goes on with a key frame. The bytes that are free by
+        that."""
+        if self.unsent > 0:
+            return 0
+        held = self.nbytes
+        for track in self.tracks.values():
+            track.close()
+        return held
+
     @property
     def is_video(self) -> bool:
         """Whether what moves goes out as video alone."""

@@ -29,6 +29,8 @@ SESSION_BYTES = 2**20
 SHOWN_BYTES = 2**14
 """Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
 TOPICS = (Codec.JPEG, *VIDEO)
+AT_REST_SECONDS = 2.0
+"""Without a frame, after which a session's encoders are given back where memory is needed."""
 HISTORY_SHARE = 1 / 8
 """Of the memory that all histories together may take."""
 
@@ -52,7 +54,15 @@ class OpenSessions:
         self._subscriptions: set[bytes] = set()
         memory.count("histories", lambda: SHOWN_BYTES * sum(len(live.session.history) for live in self))
         memory.count("video", lambda: sum(live.outgoing.nbytes for live in self))
+        memory.give_back(self._give_encoders_back)
         memory.count("edits", lambda: sum(live.session.edits.nbytes for live in self))
+
+    def _give_encoders_back(self, size: int) -> None:
+        """Of sessions at rest, until so many bytes are free."""
+        until = time.monotonic() - AT_REST_SECONDS
+        for live in self:
+            if size > 0 and live.outgoing.sent_at < until:
+                size -= live.outgoing.give_back()
 
     def __len__(self) -> int:
         return len(self._painter.pictures)
