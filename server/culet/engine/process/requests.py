@@ -124,7 +124,7 @@ class Requests:
             case protocol.Measure():
                 return await self._stones.measure(request), None
             case protocol.TracePath():
-                return await self._stones.path(request), None
+                return {}, await self._stones.path(request)
             case protocol.PutMesh():
                 return await self._meshes.put(request.mesh, request.file_type, _file(data)), None
             case protocol.PutSky():

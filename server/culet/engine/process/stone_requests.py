@@ -9,6 +9,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from typing import Any, TypeVar
 
+from pydantic import TypeAdapter
+
 from culet.engine.process.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.session import events
@@ -24,6 +26,7 @@ from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
 from culet.grading.size import size_of
 from culet.grading.sums import LightSums
+from culet.paths.answer import Path
 from culet.paths.asked import Pixel, Ray, answered
 from culet.paths.recorder import PathRecorder
 from culet.rendering.device import open_device
@@ -35,6 +38,7 @@ from culet_protocol.engine import DrawDiagram, Grade, Measure, TracePath
 
 T = TypeVar("T")
 
+PATH: TypeAdapter[Path] = TypeAdapter(Path)
 LIGHT_SECONDS = 20.0
 """Of a ray's light map, some hundred times what the default cut-off takes: others wait for the same thread."""
 
@@ -81,19 +85,19 @@ class StoneRequests:
         stage = await self._staged(request)
         return await _in(self._drawing, _measured, stage, request.stone)
 
-    async def path(self, request: TracePath) -> dict[str, Any]:
-        """All that becomes of a pixel's light, or of a ray's; InputError, NotFoundError. What a session shows is soon
-        another scene, so that its light map is made in one pass."""
+    async def path(self, request: TracePath) -> bytes:
+        """JSON of all that becomes of a pixel's light, or a ray's; InputError, NotFoundError. What a session shows is
+        soon another scene, so that its light map is made in one pass."""
         asked = _asked(request)
         stage = await self._staged(request)
         effort = Effort.PATIENT if request.session is None else Effort.RESTING
         return await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort)
 
-    def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> dict[str, Any]:
+    def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> bytes:
         if self._recorder is None:
             self._recorder = PathRecorder(open_device(), apart=True, light_seconds=LIGHT_SECONDS)
         path = answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
-        return asdict(path)  # not on the loop: of thousands of steps it takes longer than a frame
+        return PATH.dump_json(path)  # not on a loop: of thousands of steps that takes longer than a frame
 
     def _light_sums(self) -> LightSums:
         if self._sums is None:
