@@ -168,8 +168,8 @@ class Measure(Message):
 
 class TracePath(Message):
     """Tell all that becomes of the light of one pixel, or of one ray, of a scene or of what a session shows; the
-    reply's bytes are JSON of a `culet.paths.answer.Path`. `pixel` is x, y, width and height, `ray` an origin and a direction;
-    one of them is given. `wavelengths`, nm, are followed in place of the scene's own."""
+    reply's bytes are JSON of a `culet.paths.answer.Path`. `pixel` is x, y, width and height, `ray` an origin and a
+    direction; one of them is given. `wavelengths`, nm, are followed in place of the scene's own."""
 
     type: Literal["trace_path"] = "trace_path"
     scene: dict[str, Any] | None = None
