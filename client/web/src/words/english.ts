@@ -212,7 +212,7 @@ export const share = {
   copied: "The link is on the clipboard.",
   selected: "This browser does not let the page write to the clipboard. The link is selected: copy it from here.",
   code: "The watching link as a QR code",
-  ownMachine: "These links lead to this machine only: start culet with --host to be reached by others.",
+  ownMachine: "These links lead to this machine only: start culet with --host 0.0.0.0 to be reached by others.",
 };
 
 export const sliders = {
@@ -328,7 +328,8 @@ export const cut = {
     ],
     pavilion_ratio: [
       "Pavilion, ratio",
-      "The tangent of each pavilion facet's angle is so many times the file's; all meets are kept",
+      "The tangent of each pavilion facet's angle is so many times the file's: 1.018 makes 41.25\u00b0 of 40.75\u00b0; all " +
+        "meets are kept",
     ],
     girdle_percent: ["Girdle, %", "From its lowest corner to its highest, of the stone's width: the crown is moved"],
     table_percent: ["Table, %", "The top facet's width, of the stone's: it is cut higher or lower"],
@@ -344,7 +345,9 @@ export const cut = {
 /** Two designs that are changed over. */
 export const compare = {
   keep: "Keep this design to compare",
-  kept: "This design is kept. Choose or change another one; A changes the two over, and the grades tell how they differ.",
+  kept:
+    "This design is kept. Choose or change another one: the grades tell how they differ, and the key A changes the two " +
+    "over.",
   noStone: "There is no stone whose design could be kept.",
 };
 
