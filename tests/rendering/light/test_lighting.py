@@ -265,6 +265,57 @@ def test_a_pass_that_another_picture_has_begun_anew_adds_nothing(renderer: Rende
     assert (texels(renderer, found) == wanted).all()
 
 
+def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_maps(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three viewers whose pictures are refined by turns, in small pieces."""
+    stages = [Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (1.0, 1.5, 2.0)]
+    wanted = []
+    for stage in stages:
+        renderer.lighting.forget()
+        wanted.append(texels(renderer, lit(renderer, stage, Effort.RESTING)[1]))
+    renderer.lighting.forget()
+    held, most, take, give_back = 0, 0, renderer.lighting.take_beams, renderer.lighting.give_back
+
+    def taken() -> Beams:
+        nonlocal held, most
+        held += 1
+        most = max(most, held)
+        return take()
+
+    def given(beams: Beams) -> None:
+        nonlocal held
+        held -= 1
+        give_back(beams)
+
+    monkeypatch.setattr(renderer.lighting, "take_beams", taken)
+    monkeypatch.setattr(renderer.lighting, "give_back", given)
+    works = [renderer.picture(stage, *SIZE, effort=Effort.RESTING).refine_in_pieces(1, 1e-5) for stage in stages]
+    while works:
+        works = [work for work in works if next(work, None) is not None]
+    assert (most, held) == (1, 0)
+    for stage, texels_alone in zip(stages, wanted, strict=True):
+        found = renderer.lighting.of(stage)
+        assert found is not None
+        assert found.passes == 1
+        assert (texels(renderer, found) == texels_alone).all()
+
+
+def test_a_pass_that_nobody_waits_for_is_given_up_for_another_stage(renderer: Renderer) -> None:
+    left, wanted = (Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (1.0, 1.5))
+    renderer.lighting.forget()
+    given_up = renderer.picture(left, *SIZE, effort=Effort.RESTING).refine_in_pieces(1, 1e-5)
+    for _ in range(5):
+        next(given_up)
+    given_up.close()
+    abandoned = renderer.lighting.of(left)
+    assert abandoned is not None
+    lit(renderer, wanted, Effort.RESTING)
+    assert abandoned.passes == 0
+    lit(renderer, left, Effort.RESTING)
+    assert abandoned.passes == 1, "and made when it is needed"
+
+
 def test_a_pass_that_failed_is_made_anew(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
     stage, made = Stage.of(scene_of()), Beams.pieces
 

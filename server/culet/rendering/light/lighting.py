@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from enum import Enum, auto
 from typing import Any, NamedTuple
@@ -85,6 +86,9 @@ class Lighting:
         """That are at no pass."""
         self._first: Beams | None = None
         """Whose programs the others share."""
+        self._under_way: dict[Effort, Illumination] = {}
+        """Whose pass has begun and is not done yet. Of each effort there is one at a time: a pass holds 8 MiB a surface
+        for each core, and ten pictures would hold that ten times."""
         self._warm: set[tuple[bool, bool, bool]] = set()
         """Kinds of stages for whose beams there is machine code."""
         self.photons = Photons(device)
@@ -136,8 +140,23 @@ class Lighting:
         """All maps; pictures that are being made of them go on."""
         self._kept.clear()
 
+    def others_end(self, effort: Effort) -> Iterator[object]:
+        """Let the pass of such an effort that is under way end, whoever it is for, or give it up if nobody waits for
+        it; yields between its launches."""
+        while (other := self._under_way.get(effort)) is not None:
+            yield from other.end_pass()
+
+    @contextmanager
+    def under_way(self, effort: Effort, illumination: Illumination) -> Iterator[None]:
+        """For as long as a pass takes."""
+        self._under_way[effort] = illumination
+        try:
+            yield
+        finally:
+            del self._under_way[effort]
+
     def take_beams(self) -> Beams:
-        """For one pass; passes of several pictures may be under way by turns."""
+        """For one pass; passes of pictures of different efforts may be under way by turns."""
         if self._beams:
             return self._beams.pop()
         self._first = self._first or Beams(self.device)
@@ -209,6 +228,8 @@ class Illumination:
         """Made for a moving picture, in a hurry."""
         self._running: Generator[object, None, None] | None = None
         """The pass under way. A picture that is given up leaves it to the next one: none is left out or made twice."""
+        self._waiting = 0
+        """Pictures that wait for the pass under way."""
         self._weight = 0.0
         self._squared = 0.0
         self._bias = 0.0
@@ -288,23 +309,51 @@ class Illumination:
         self._spread.clear()
 
     def _advance(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
-        """Go on with the pass under way, or else with a new one; if another picture begins anew, with that one's."""
-        self._running = self._running or self._pass(cutoff, effort, seconds)
-        while self._running is not None:
-            running = self._running
-            try:
-                for piece in running:  # noqa: UP028 - that would end it with the picture that it is made for
-                    yield piece
-            except Exception:
-                self._running = None  # it has ended without a pass
-                raise
-            if self._running is running:
-                self._running = None
-            if self.passes > 0:
+        """Go on with the pass under way, or else with a new one; if another picture begins anew, with that one's. A new
+        pass waits for the one of another stage, or is spared if a picture of this stage has made one meanwhile."""
+        if self._running is None:
+            made = self.version
+            yield from self._of.others_end(effort)
+            if self.version != made:
                 return
+        self._running = self._running or self._pass(cutoff, effort, seconds)
+        self._waiting += 1
+        try:
+            while self._running is not None:
+                running = self._running
+                try:
+                    for piece in running:  # noqa: UP028 - that would end it with the picture that it is made for
+                        yield piece
+                except Exception:
+                    self._running = None  # it has ended without a pass
+                    raise
+                if self._running is running:
+                    self._running = None
+                if self.passes > 0:
+                    return
+        finally:
+            self._waiting -= 1
+
+    def end_pass(self) -> Iterator[object]:
+        """Let the pass under way end, for a picture of another stage, or give it up if none of this stage waits for it.
+        If it fails, the other picture does not learn of it: the one that it is for makes it again."""
+        while (running := self._running) is not None:
+            if self._waiting == 0:
+                running.close()
+            try:
+                piece = next(running)
+            except Exception:  # that there is no more, or its failure
+                if self._running is running:
+                    self._running = None
+            else:
+                yield piece
 
     def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Generator[object, None, None]:
-        """One pass more."""
+        """One pass more, the only one of such an effort."""
+        with self._of.under_way(effort, self):
+            yield from self._made(cutoff, effort, seconds)
+
+    def _made(self, cutoff: float, effort: Effort, seconds: float) -> Generator[object, None, None]:
         number, started, scene = self.passes, time.perf_counter(), self.stage.scene
         rays = rays_of(self.stage, number, moving=effort is Effort.MOVING)
         follows = scene.optics.caustics == "on"
