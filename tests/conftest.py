@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
@@ -29,7 +30,9 @@ REST_SAMPLES = "16"
 
 
 def pytest_configure() -> None:
-    """What every process is told that a test starts."""
+    """What every process is told that a test starts; and that no example has a time, which other work would exceed."""
+    settings.register_profile("culet", deadline=None)
+    settings.load_profile("culet")
     os.environ.setdefault("CULET_REST_SAMPLES", REST_SAMPLES)
 
 

@@ -111,3 +111,12 @@ def test_seconds_of_a_drain_are_not_negative() -> None:
         GatewaySettings(control="ipc://unused", frames="ipc://unused", drain_seconds=-1)
     with Listener(GatewaySettings(control="ipc://unused", frames="ipc://unused", port=0)) as listener:
         assert listener.gateway.settings.drain_seconds == 0, "at once, as a server alone is stopped best"
+
+
+async def test_a_server_that_others_reach_without_a_token_is_not_stopped_by_them(
+    engine: Endpoints, tmp_path: Path
+) -> None:
+    async with gateway_before(engine, web=tmp_path, no_token=True, allow_host=("gems.example",)) as gateway:
+        refused = await gateway.http.post("/api/drain", json={"seconds": 0})
+        assert (refused.status_code, "could stop it" in refused.json()["detail"]) == (403, True)
+        assert (await gateway.http.get("/readyz")).status_code == 200

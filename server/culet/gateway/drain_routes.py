@@ -7,13 +7,19 @@ from typing import Annotated
 from fastapi import APIRouter, Body
 from pydantic import Field
 
+from culet.errors import ForbiddenError
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
+from culet.gateway.settings import is_reached
 from culet.scene.fields import Model
 
 router = APIRouter(tags=["health"])
 
 DRAIN_PATH = "/api/drain"
+OPEN_TO_ALL = (
+    "this server has no token, so that whoever reaches it could stop it; send its process SIGTERM, or start it "
+    "with a token"
+)
 LONGEST_SECONDS = 7 * 24 * 3600.0
 
 
@@ -34,13 +40,16 @@ class DrainAnswer(Model):
     viewers: Annotated[int, Field(description="Who watch; the server ends before if nobody does any more.")]
 
 
-@router.post(DRAIN_PATH, status_code=202, responses=answers(401, 413, 422, 429))
+@router.post(DRAIN_PATH, status_code=202, responses=answers(401, 403, 413, 422, 429))
 async def drain(gateway: ThisGateway, request: Annotated[DrainRequest | None, Body()] = None) -> DrainAnswer:
     """Stop the server once nobody uses it any more, or after so many seconds.
 
     Until then it says at /readyz that it is not ready, and answers 503 to whoever wants a new session. Whoever has one
-    keeps it and is told. Once begun this cannot be taken back; asked for again, the shorter time counts.
+    keeps it and is told. Once begun this cannot be taken back; asked for again, the shorter time counts. A server that
+    others reach without a token answers 403: any of them could stop it.
     """
+    if gateway.settings.token is None and is_reached(gateway.settings):
+        raise ForbiddenError(OPEN_TO_ALL)
     seconds = request.seconds if request else None
     gateway.sessions.drain.begin(gateway.settings.drain_seconds if seconds is None else seconds)
     return DrainAnswer(seconds=gateway.sessions.drain.left, viewers=gateway.sessions.viewers)

@@ -96,6 +96,7 @@ async def path_of_pixel(
     http: Request, session_id: str, query: Annotated[PixelQuery, Query()], gateway: ThisGateway
 ) -> Response:
     """The same of a pixel of what a session shows."""
+    await gateway.sessions.settle(session_id)
     session = gateway.sessions.get(session_id)
     return await _told(http, gateway, PathOf(pixel=query).message(session=session.id), session)
 
@@ -103,6 +104,7 @@ async def path_of_pixel(
 @router.post("/api/sessions/{session_id}/path", response_model=Path, responses=answers(404, 413, 422, 429, 503))
 async def path_of_session(http: Request, session_id: str, request: PathOf, gateway: ThisGateway) -> Response:
     """The same of a pixel, or a ray, through what a session shows."""
+    await gateway.sessions.settle(session_id)
     session = gateway.sessions.get(session_id)
     return await _told(http, gateway, request.message(session=session.id), session)
 

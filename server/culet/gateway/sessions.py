@@ -235,7 +235,7 @@ class Sessions:
         lately = time.monotonic() - RELOAD_SECONDS
         if any(session.viewers or session.used > lately for session in self._sessions.values()):
             return True
-        with contextlib.suppress(EngineUnavailableError):
+        with contextlib.suppress(CuletError):  # an engine that cannot tell keeps no server from its end
             for session in list(self._sessions.values()):
                 if await self._watched_elsewhere(session):
                     return True

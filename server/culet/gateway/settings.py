@@ -218,15 +218,16 @@ def _with_token_or_without(settings: GatewaySettings, given: Mapping[str, Any]) 
 
 
 def with_token(settings: GatewaySettings) -> GatewaySettings:
-    """The settings with a token that is made, if others can reach the server and nothing was said about one.
-
-    They can by the address that is listened on, and by a proxy on this machine: a server has a proxy that is trusted,
-    or a name of its own, for no other reason.
-    """
+    """The settings with a token that is made, if others can reach the server and nothing was said about one."""
     if settings.token is not None or settings.no_token:
         return settings
-    reached = not is_own_machine(settings.host) or settings.allow_host or settings.trusted_proxy
-    return settings.model_copy(update={"token": made_token() if reached else None})
+    return settings.model_copy(update={"token": made_token() if is_reached(settings) else None})
+
+
+def is_reached(settings: GatewaySettings) -> bool:
+    """Whether other machines reach the server: by the address that is listened on, or by a proxy on this machine, since
+    a server has a proxy that is trusted, or a name of its own, for no other reason."""
+    return not is_own_machine(settings.host) or bool(settings.allow_host or settings.trusted_proxy)
 
 
 def look_for_page(settings: GatewaySettings) -> None:

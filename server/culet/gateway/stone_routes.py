@@ -144,11 +144,12 @@ async def answered(
     message: Grade | DrawDiagram | Measure | TracePath,
     session: SessionRecord | None,
 ) -> tuple[dict[str, Any], bytes | memoryview]:
-    """The engine's answer, about the session if there is one, in a place of the client; grades in the client's turn."""
+    """The engine's answer, about the session if there is one, in a place of the client; grades and rays in the client's
+    turn."""
     client = client_of(http.scope)
 
     async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
-        async with gateway.grades.turn(client) if isinstance(message, Grade) else nullcontext():
+        async with gateway.grades.turn(client) if isinstance(message, Grade | TracePath) else nullcontext():
             if session is None:
                 return await gateway.uploads.request(message, patient=True)
             return await gateway.sessions.request(session, message, patient=True)
