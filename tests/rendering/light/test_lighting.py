@@ -307,7 +307,7 @@ def test_a_pass_that_nobody_waits_for_is_given_up_for_another_stage(renderer: Re
     given_up = renderer.picture(left, *SIZE, effort=Effort.RESTING).refine_in_pieces(1, 1e-5)
     for _ in range(5):
         next(given_up)
-    given_up.close()
+    del given_up
     abandoned = renderer.lighting.of(left)
     assert abandoned is not None
     lit(renderer, wanted, Effort.RESTING)
