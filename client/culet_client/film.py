@@ -47,9 +47,13 @@ class Film:
         self._shown_until = 0.0
         try:
             self._file = av.open(str(self._part), "w", format="mp4", options={"movflags": "+faststart"})
-            stream = self._file.add_stream("libx264", rate=Fraction(30), options={"crf": CRF, "preset": "medium"})
         except (OSError, av.FFmpegError) as error:
             raise ClientError(f"cannot make {path}: {error.strerror or error}") from error
+        try:
+            stream = self._file.add_stream("libx264", rate=Fraction(30), options={"crf": CRF, "preset": "medium"})
+        except (ValueError, av.FFmpegError) as error:
+            self.discard()
+            raise ClientError(f"cannot make {path}: this PyAV has no libx264: {error}") from error
         assert isinstance(stream, VideoStream)  # noqa: S101 - of a video codec
         stream.width, stream.height = self.size
         stream.pix_fmt = f"yuv{chroma}p"

@@ -70,6 +70,24 @@ def test_a_film_that_is_given_up_leaves_no_file(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@needs_av
+def test_a_pyav_without_the_encoder_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Container:
+        def __init__(self, path: str) -> None:
+            Path(path).touch()
+
+        def add_stream(self, name: str, **_: object) -> None:
+            raise ValueError(name)
+
+        def close(self) -> None:
+            pass
+
+    monkeypatch.setattr("av.open", lambda path, *_args, **_options: Container(path))
+    with pytest.raises(ClientError, match="no libx264"):
+        Film(tmp_path / "fall.mp4", (32, 18))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_without_pyav_it_is_said_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     find = importlib.util.find_spec
     monkeypatch.setattr("culet_client.film.find_spec", lambda name: None if name == "av" else find(name))

@@ -51,6 +51,20 @@ def test_a_proportion_cuts_the_stone_anew_and_leaves_the_others(wide_view: View,
     assert view.problems == []
 
 
+def test_a_kept_design_and_the_shown_one_are_changed_over_by_the_button_and_by_the_key(wide_view: View) -> None:
+    view = wide_view
+    pavilion = view.page.get_by_role("spinbutton", name="Pavilion, \u00b0")
+    other = view.page.get_by_role("button", name="Show the kept design")
+    view.page.get_by_role("button", name="Keep this design to compare").click()
+    assert not other.is_visible()
+    view.change(lambda: type_in(view, "Pavilion, \u00b0", "39"))
+    view.change(lambda: view.page.keyboard.press("a"))  # Enter has left the number
+    assert pavilion.input_value() == "40.75"
+    view.change(other.click)
+    assert pavilion.input_value() == "39"
+    assert view.problems == []
+
+
 def test_a_mesh_has_no_proportions_and_gives_way_to_a_cut(wide_view: View, server: Server, tmp_path: Path) -> None:
     view = wide_view
     file = tmp_path / "tetrahedron.obj"

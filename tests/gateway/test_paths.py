@@ -51,7 +51,7 @@ async def test_a_folder_without_its_slash_leads_to_the_page() -> None:
         assert answer.url.join(answer.headers["location"]).raw_path == b"/user/ada/gems/?preset=matte"
 
 
-@pytest.mark.parametrize("folder", ["gems", "/a//b", "/a b", "/../etc", "https://gems.example/"])
+@pytest.mark.parametrize("folder", ["gems", "/a//b", "/a b", "/../etc", "/ä", "https://gems.example/"])
 def test_what_is_no_folder_is_refused(folder: str) -> None:
     with pytest.raises(ValueError, match="expected a folder such as /gems"):
         GatewaySettings(control="ipc://unused", frames="ipc://unused", root_path=folder)

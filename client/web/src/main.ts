@@ -189,6 +189,7 @@ const panel = new Panel(element("panel", HTMLElement), {
   patch: (patch) => visit.send({ type: "patch_scene", patch }),
   newSession: () => visit.startAnew(),
   keepDesign,
+  changeDesigns,
   otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
   measure: (scene) => rest.proportions(scene),

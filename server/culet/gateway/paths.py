@@ -8,7 +8,7 @@ import re
 from starlette.responses import RedirectResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-FOLDER = re.compile(r"(/[\w.~-]+)*")
+FOLDER = re.compile(r"(/[\w.~-]+)*", re.ASCII)
 """Of a site, as `/gems` or `/user/ann/proxy/8000`; empty for the whole of it."""
 
 

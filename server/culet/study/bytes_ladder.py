@@ -12,7 +12,7 @@ import datetime as dt
 import json
 import statistics
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -79,8 +79,8 @@ def _poses(scene: Scene) -> Iterator[Stage]:
         yield stage.posed([(body.position, body.orientation) for body in world.state.bodies])
 
 
-def main() -> None:
-    """Print the ladder as JSON, and what it was measured on."""
+def print_ladder(measure: Callable[[Renderer, Scene], dict[str, Any]]) -> None:
+    """Print a ladder of the default scene as JSON, and what it was measured on."""
     renderer = Renderer()
     found = measure(renderer, Scene())
     measured = {
@@ -94,4 +94,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    print_ladder(measure)

@@ -8,10 +8,7 @@ there is one in a hundred, do not count. Needs PyAV.
 
 from __future__ import annotations
 
-import datetime as dt
-import json
 import statistics
-import sys
 from typing import Any
 
 import numpy as np
@@ -22,9 +19,8 @@ from culet.engine.painting.video import VideoEncoder
 from culet.optics.tone import tone_map
 from culet.rendering.renderer import Renderer
 from culet.scene.model import Scene
-from culet.study.bytes_ladder import REFERENCE_CUTOFF, REFERENCE_SAMPLES, SCALES, SIZE
+from culet.study.bytes_ladder import REFERENCE_CUTOFF, REFERENCE_SAMPLES, SCALES, SIZE, print_ladder
 from culet.study.falling_frames import falling
-from culet.study.provenance import provenance
 from culet.study.radiance_error import enlarged, radiance_error
 from culet.study.video_frames import decoded
 from culet_protocol.frame import Codec
@@ -73,19 +69,5 @@ def _cell(frames: list[NDArray[np.uint8]], references: list[NDArray[np.floating[
     return round(statistics.mean(len(packet.data) for packet in packets[1:])), round(statistics.mean(errors), 4)
 
 
-def main() -> None:
-    """Print the ladder as JSON, and what it was measured on."""
-    renderer = Renderer()
-    found = measure(renderer, Scene())
-    measured = {
-        "made": dt.datetime.now(dt.UTC).isoformat(timespec="seconds"),
-        **provenance(renderer.describe()),
-        "width": SIZE[0],
-        "height": SIZE[1],
-    }
-    json.dump({"measured": measured, **found}, sys.stdout, indent=2)
-    print()
-
-
 if __name__ == "__main__":
-    main()
+    print_ladder(measure)

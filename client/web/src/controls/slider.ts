@@ -81,8 +81,10 @@ export class Slider extends Control<number> {
     this.choose(taken);
   }
 
-  /** Arrow keys go by the slider's step: the browser would go by 1, since any number may be typed. */
+  /** Arrow keys go by the slider's step: the browser would go by 1, since any number may be typed. Enter takes what was
+   * typed and goes back to the range, which leaves letters to the page. */
   private stepped(event: KeyboardEvent): void {
+    if (event.key === "Enter") this.range.focus();
     const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (sign === undefined) return;
     event.preventDefault();

@@ -21,6 +21,9 @@ export interface CutActions {
   openDiagram: (stone: string) => void;
   measure: Measure;
   keepDesign: () => void;
+  changeDesigns: () => void;
+  /** The scene as the design that is kept would have it; null without another one. */
+  otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
 }
 
 type Values = Record<string, number>;
@@ -53,13 +56,19 @@ export class CutPanel {
   private readonly shape: LiveControls<{ cut: string }>;
   private readonly list = new Choice<string>(words.cut.shape, [], "");
   private readonly usual: Command;
+  private readonly change: Command;
+  private readonly otherwise: CutActions["otherwise"];
   private readonly kinds = new Map<string, CutKind>();
   private readonly sliders = new Map<string, Sliders>();
   private readonly place: HTMLElement;
   private readonly anew: RecutSliders;
   private scene: ViewState["scene"] = null;
 
-  constructor(section: Section, { patch: send, clamped, openDiagram, measure, keepDesign }: CutActions) {
+  constructor(
+    section: Section,
+    { patch: send, clamped, openDiagram, measure, keepDesign, changeDesigns, otherwise }: CutActions,
+  ) {
+    this.otherwise = otherwise;
     this.section = section.show(false);
     this.send = send;
     this.clamped = clamped;
@@ -74,6 +83,7 @@ export class CutPanel {
     const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene) }));
     this.usual = section.add(new Command(words.cut.usual, reset));
     section.add(new Command(words.compare.keep, keepDesign));
+    this.change = section.add(new Command(words.compare.change, changeDesigns, "A")).show(false);
     section.add(new Command(words.grades.diagram, () => openDiagram(text(stoneOf(this.scene).id, ""))));
   }
 
@@ -87,6 +97,7 @@ export class CutPanel {
     for (const [name, sliders] of this.sliders) sliders.update(name === now);
     this.anew.update(scene, this.section.open);
     this.usual.show(kind !== undefined);
+    this.change.show(this.otherwise(scene) !== null);
   }
 
   addCuts(cuts: readonly CutKind[], state: ViewState): void {

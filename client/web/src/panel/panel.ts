@@ -42,6 +42,8 @@ export interface PanelActions {
   grades: Ask;
   /** Keep the chosen stone's design, to compare others with. */
   keepDesign: () => void;
+  /** Show the design that is kept, and keep the one that is shown. */
+  changeDesigns: () => void;
   /** The scene as the design would have it that this one is compared with; null without one. */
   otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
   /** Ask for a stone's proportions. */

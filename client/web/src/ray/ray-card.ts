@@ -54,6 +54,7 @@ export class RayCard {
   /** An answer is waited for. */
   wait(): void {
     this.card.setAttribute("aria-busy", "true");
+    if (!this.path) this.status.replaceChildren(paragraph(words.ray.waits));
   }
 
   show(path: Path, millimetres: number): void {

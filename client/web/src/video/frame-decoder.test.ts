@@ -6,8 +6,13 @@ import { FrameDecoder } from "./frame-decoder";
 import type { VideoWork } from "./video-work";
 
 const GOLDEN = parseFrame(bytes("h264.bin"));
-const delta: Frame = { ...GOLDEN, flags: GOLDEN.flags & ~Flag.KEY };
 const key: Frame = { ...GOLDEN, flags: GOLDEN.flags | Flag.KEY, dependsOn: 0 };
+const delta: Frame = {
+  ...GOLDEN,
+  flags: GOLDEN.flags & ~Flag.KEY,
+  sequence: key.sequence + 1,
+  dependsOn: key.sequence,
+};
 const jpeg: Frame = { ...GOLDEN, codec: Codec.JPEG };
 
 describe("the decoder of frames", () => {
@@ -69,6 +74,7 @@ describe("the decoder of frames", () => {
 
   it("asks for a key frame when the decoder fails, and waits for it", async () => {
     await decoder.offer(["h264"]);
+    expect(await decoder.decode(key)).toBe("picture");
     fails = true;
     expect(await decoder.decode(delta)).toBeNull();
     fails = false;
@@ -77,6 +83,19 @@ describe("the decoder of frames", () => {
     expect(await decoder.decode(jpeg)).toBe("image/jpeg");
     expect(await decoder.decode(key)).toBe("picture");
     expect(await decoder.decode(delta)).toBe("picture");
+  });
+
+  it("shows no packet whose picture before is missing, and does not blame the decoder", async () => {
+    await decoder.offer(["h264"]);
+    expect(await decoder.decode(key)).toBe("picture");
+    for (let gaps = 1; gaps <= 3; gaps++) {
+      const later = { ...delta, sequence: delta.sequence + 1, dependsOn: delta.sequence };
+      expect(await decoder.decode(later)).toBeNull();
+      expect(told.length).toBe(1 + gaps);
+      expect(await decoder.decode(key)).toBe("picture");
+    }
+    expect(told.at(-1)).toEqual(["h264"]);
+    expect(ended).toBe(0);
   });
 
   it("goes on with pictures of their own once the decoder has failed twice", async () => {

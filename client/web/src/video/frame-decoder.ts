@@ -37,6 +37,8 @@ export class FrameDecoder {
   private codecs: VideoCodec[] = [];
   private failures = 0;
   private broken = false;
+  /** Number of the packet that was decoded last: the next one needs its picture. */
+  private decoded: number | null = null;
 
   constructor(world: DecoderWorld) {
     this.world = world;
@@ -57,7 +59,13 @@ export class FrameDecoder {
     if (codec === undefined) return createImageBitmap(new Blob([frame.payload], { type: MIME[frame.codec] ?? "" }));
     const isKey = (frame.flags & Flag.KEY) !== 0;
     if (!this.work || (this.broken && !isKey)) return null;
+    if (!isKey && frame.dependsOn !== this.decoded) {
+      this.broken = true; // a packet is missing, which is no fault of the decoder
+      this.world.tell(this.codecs);
+      return null;
+    }
     this.broken = false;
+    this.decoded = frame.sequence;
     try {
       const { width, height, payload } = frame;
       return await this.work.decode({ codec, isKey, width, height, data: payload });

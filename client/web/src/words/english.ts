@@ -93,6 +93,7 @@ export const gestures: readonly (readonly [string, string])[] = [
 export const ray = {
   title: "One ray",
   how: "Click a point of the stone: its light is drawn from your eye to where it comes from.",
+  waits: "The ray is being followed…",
   close: "Close",
   steps: "Steps of the light",
   columns: ["Step", "Light", "What happens", "Angle", "Share"],
@@ -345,6 +346,7 @@ export const cut = {
 /** Two designs that are changed over. */
 export const compare = {
   keep: "Keep this design to compare",
+  change: "Show the kept design",
   kept:
     "This design is kept. Choose or change another one: the grades tell how they differ, and the key A changes the two " +
     "over.",
