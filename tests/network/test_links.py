@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import pytest
 
 from culet_protocol.messages import Orbit, ResetStone, Resize, ToggleFall
 from network.shaped_link import Shape, running_link
-from network.watching import Seen, Watcher, new_session, server_at
+from network.watching import Arrival, Seen, Watcher, new_session, percentile, server_at
 
 FAST = Shape(megabits=20, milliseconds=40, kilobytes=200)
 SLOW = Shape(megabits=2, milliseconds=150, kilobytes=100)
@@ -22,6 +22,10 @@ STARTED_SECONDS = 6.0
 """After which a new stream, of whose link nothing was known, has found what that carries."""
 SETTLED_SECONDS = 3.0
 """After which a stream has to have found to what a link carries."""
+FULL_QUEUE_SECONDS = SLOW.kilobytes * 8e3 / (SLOW.megabits * 1e6) + SLOW.milliseconds / 2e3
+"""Until a packet is over the slow link if it finds the queue full: what a stream comes to that does not follow."""
+SLOW_FRAME = SLOW.megabits * 1e6 / 8 / 10
+"""Bytes of a frame of which the slow link carries 10 a second, as the goal asks."""
 
 
 @contextmanager
@@ -49,10 +53,31 @@ def check_slow(seen: Seen, fast: Seen) -> None:
     assert max(frame.bytes for frame in seen.arrivals) < max(frame.bytes for frame in fast.arrivals)
 
 
-@pytest.mark.timed
+def test_a_link_that_becomes_slow_and_fast_again_is_followed(tmp_path: Path) -> None:
+    """With frames that were drawn before. Nothing depends on how fast this machine is: frames get smaller on the slow
+    link, do not wait for a full queue of it, and get larger again. Measured 31 to 96 kB, 5 to 17, 24 to 96."""
+    with watched(FAST, "gateway", ready=tmp_path) as watcher:
+        watcher.frames_until(lambda frames: largest(frames) > SLOW_FRAME)
+        watcher.link.become(SLOW)
+        watcher.frames_until(lambda frames: largest(frames) < SLOW_FRAME and waited(frames) < FULL_QUEUE_SECONDS)
+        watcher.link.become(FAST)
+        watcher.frames_until(lambda frames: largest(frames) > SLOW_FRAME)
+
+
+def largest(frames: Sequence[Arrival]) -> int:
+    """Bytes."""
+    return max(frame.bytes for frame in frames)
+
+
+def waited(frames: Sequence[Arrival]) -> float:
+    """s, the median of their latencies."""
+    return percentile([frame.latency for frame in frames], 0.5)
+
+
+@pytest.mark.soak
 def test_a_link_that_becomes_slow_and_fast_again_is_followed_in_three_seconds(tmp_path: Path) -> None:
-    """With frames that were drawn before, so that the link alone counts. Measured 29.8 frames/s and 0.09 s, 13 frames/s
-    and 0.28 s."""
+    """As above, as fast as the goals say, which idle cores reach. Measured 29.8 frames/s and 0.09 s, 13 frames/s and
+    0.28 s."""
     with watched(FAST, "gateway", ready=tmp_path) as watcher:
         watcher.seen(STARTED_SECONDS)
         fast = watcher.seen(2)

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -25,10 +25,11 @@ from culet_protocol.frame import Frame
 from culet_protocol.messages import Ack, Message, Ping, Resize
 from network import namespaces
 from network.shaped_link import SERVER, Link
+from shared.patience import PATIENCE
 
 PORT = 8077
-PATIENCE = 60.0
-"""s; for a server to start, kernels to compile."""
+STRETCH = 20
+"""Frames that are looked at together."""
 PING_SECONDS = 0.25
 
 
@@ -126,6 +127,17 @@ class Watcher:
         if self._asked_at is not None:
             pings.append(time.time() - self._asked_at)
         return Seen([arrival for arrival in self.arrivals if arrival.at >= begun], pings, seconds)
+
+    def frames_until(self, condition: Callable[[Sequence[Arrival]], bool]) -> None:
+        """Wait until a condition holds of the last frames that have come since, STRETCH of them."""
+        begun, deadline = len(self.arrivals), time.monotonic() + PATIENCE
+        while True:
+            frames = self.arrivals[begun:][-STRETCH:]
+            if len(frames) == STRETCH and condition(frames):
+                return
+            late = self.closed is not None or time.monotonic() > deadline
+            assert not late, f"never so; {self.closed or Seen(frames, [], PATIENCE) if frames else 'no frames'}"
+            time.sleep(0.05)  # between two looks at another thread
 
     def _run(self) -> None:
         namespaces.enter(self.link.viewer)
