@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 from e2e.conftest import ViewOf
@@ -49,3 +50,16 @@ def test_a_preset_that_does_not_exist_is_named_with_those_that_do(view_of: ViewO
     obstacle.wait_for()
     for name in ("coal", "default", "classic"):
         assert name in obstacle.inner_text()
+
+
+def test_an_address_asks_for_a_background_of_live_pictures_and_for_the_legend_alone(view_of: ViewOf) -> None:
+    view = view_of().open("?preset=aset&ui=0&legend=1&background=1f3a5f")
+    corner = view.at_rest().pixels[0, 0]
+    assert np.abs(corner - (0x1F, 0x3A, 0x5F)).max() <= 4  # a JPEG's; without it 0, 0, 0
+    assert view.scene["film"]["background"] == "#1f3a5f"
+    legend = view.page.locator("#legend")
+    assert "Your head" in legend.inner_text()
+    assert not view.page.locator("#panel").is_visible()
+    view.page.goto(view.page.url.replace("&legend=1", ""))
+    view.until("() => window.culet && culet.framesShown > 0")
+    assert not legend.is_visible()

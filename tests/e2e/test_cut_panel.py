@@ -51,6 +51,19 @@ def test_a_proportion_cuts_the_stone_anew_and_leaves_the_others(wide_view: View,
     assert view.problems == []
 
 
+FULL = """box => {
+  box.value = '-41.25';
+  const style = getComputedStyle(box), pen = document.createElement('canvas').getContext('2d');
+  pen.font = style.font;
+  const room = box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  return room - pen.measureText(box.value).width;
+}"""
+
+
+def test_a_box_has_room_for_the_longest_number(wide_view: View) -> None:
+    assert wide_view.page.get_by_role("spinbutton", name="Pavilion, \u00b0").evaluate(FULL) >= 0
+
+
 def test_a_kept_design_and_the_shown_one_are_changed_over_by_the_button_and_by_the_key(wide_view: View) -> None:
     view = wide_view
     pavilion = view.page.get_by_role("spinbutton", name="Pavilion, \u00b0")

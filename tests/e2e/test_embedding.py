@@ -11,19 +11,20 @@ from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Frame, 
 from e2e.server import PATIENCE, SHOP, Server
 
 WORDS = """<!doctype html><title>shop</title>
+<script>document.addEventListener("error", event => {{ window.why = event.message }}, true)</script>
 <script type="module" src="{server}/element/culet-viewer.js"></script>
-<culet-viewer preset="matte" rotate="40" alt="A diamond" style="width: 320px; height: 240px"></culet-viewer>"""
+<culet-viewer {attributes} alt="A diamond" style="width: 320px; height: 240px"></culet-viewer>"""
 
 
-def shop(browser: Browser, server: Server) -> BrowserContext:
+def shop(browser: Browser, server: Server, attributes: str) -> BrowserContext:
     context = browser.new_context(viewport={"width": 400, "height": 300})
-    words = WORDS.format(server=server.url)
+    words = WORDS.format(server=server.url, attributes=attributes)
     context.route(f"{SHOP}/**", lambda route: route.fulfill(body=words, content_type="text/html"))
     return context
 
 
 def framed(page: Page) -> Frame:
-    """The page within, once it shows a picture."""
+    """The page within, once it is shown."""
     page.locator("culet-viewer iframe.shown").wait_for(timeout=PATIENCE * 1e3)
     return page.frames[1]
 
@@ -38,7 +39,7 @@ def azimuth(frame: Frame) -> float:
 def test_a_shops_page_shows_a_poster_first_and_then_turns_the_stone_without_interface_or_cookies(
     browser: Browser, server: Server
 ) -> None:
-    context = shop(browser, server)
+    context = shop(browser, server, 'preset="matte" rotate="40"')
     page = context.new_page()
     messages: list[ConsoleMessage] = []
 
@@ -63,3 +64,15 @@ def test_a_shops_page_shows_a_poster_first_and_then_turns_the_stone_without_inte
     session = frame.evaluate("() => culet.session")
     context.close()
     server.http.delete(f"/api/sessions/{session}")
+
+
+def test_a_preset_that_the_server_has_not_is_named_in_the_pictures_place_and_in_an_event(
+    browser: Browser, server: Server
+) -> None:
+    context = shop(browser, server, 'preset="rubi"')
+    page = context.new_page()
+    page.goto(f"{SHOP}/stones")
+    obstacle = framed(page).get_by_role("alertdialog")
+    assert "no preset 'rubi'; there are: default, " in obstacle.inner_text()
+    assert page.evaluate("() => window.why") == obstacle.locator("#obstacle-text").inner_text()
+    context.close()

@@ -50,3 +50,13 @@ def test_a_lessons_ray_is_drawn_and_told_and_the_arrow_keys_go_through_it(view_o
     page.locator("#ray-card").wait_for(state="detached")
     assert page.locator("#ray").count() == 0
     assert view.problems == []
+
+
+def test_on_a_phone_the_panel_gives_its_place_to_the_table(view_of: ViewOf) -> None:
+    view = view_of(viewport={"width": 390, "height": 500}, has_touch=True).open(prism())
+    for folded in ("culet", "Stone"):
+        view.page.get_by_role("button", name=folded, exact=True).tap()
+    view.page.get_by_role("button", name="Draw one ray").tap()
+    view.page.locator("#ray-card tbody tr").first.wait_for()  # that is seen
+    assert not view.page.locator("#fall").is_visible()
+    assert view.problems == []

@@ -19,7 +19,7 @@ import { showStatus } from "./meter/status-line";
 import { element } from "./page";
 import { Panel } from "./panel/panel";
 import { ChosenStone } from "./picture/chosen-stone";
-import { type Embedding, embeddingOf, SHOWN, Turntable } from "./picture/embedding";
+import { type Embedding, embeddingOf, Turntable, tellAround } from "./picture/embedding";
 import { Legend } from "./picture/legend";
 import { OutlineView } from "./picture/outline-view";
 import { afterPainting, Screen } from "./picture/screen";
@@ -64,6 +64,7 @@ const files = new OpenedFiles();
 const signs = new Signs(
   () => visit.send({ type: "look_at_stone" }),
   () => visit.startAnew(),
+  (text, passes) => tellAround({ culet: "obstacle", text, passes }),
 );
 const screen = new Screen(canvas, (size) => visit.viewer?.resize(size));
 const shown = new ShownPicture(screen);
@@ -161,7 +162,10 @@ const ray = new RayMode({
   visit,
   canvas,
   complaints,
-  changed: (on) => element("main", HTMLElement).classList.toggle("tracing", on),
+  changed: (on) => {
+    element("main", HTMLElement).classList.toggle("tracing", on);
+    if (on) panel.makeRoom();
+  },
 });
 const clips = new Clips({
   task: (text, button, end) => toasts.task(text, button, end),
@@ -255,7 +259,7 @@ function stateChanged(before: ViewState, after: ViewState): void {
   ray.changed(before.scene, after.scene);
   if (stonesOf(after.scene).length > 1 && after.scene?.stones !== before.scene?.stones) findings.changed();
   panel.update(visit.state);
-  legend.update(after.scene);
+  if (embedding.legend) legend.update(after.scene);
   fallButton.update(after);
   signs.lookLabel(worded(words.whereabouts.look, after.scene));
   meter.update(after);
@@ -274,7 +278,7 @@ function firstShown(): void {
     welcome.show();
     loadCatalogues();
   }
-  if (window.parent !== window) window.parent.postMessage(SHOWN, "*");
+  tellAround({ culet: "shown" });
 }
 
 /** What the panel and the scenes are filled with: once, and not while the first picture is being made. */

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from culet.gateway.client_address import client_of
 from culet.gateway.departure import while_waited_for
@@ -16,7 +17,7 @@ from culet.gateway.problems import answers
 from culet.gateway.quality import MISSED, TARGET, quality_headers
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
-from culet.scene.film import MOST_SAMPLES, STILL_ERROR, STILL_LEAST, STILL_SAMPLES
+from culet.scene.film import MOST_SAMPLES, STILL_ERROR, STILL_LEAST, STILL_SAMPLES, is_background
 from culet.scene.patch import patched
 from culet.scene.sky_seen import under
 from culet.scene.stone import MaterialName
@@ -61,6 +62,11 @@ Error = Annotated[
 Kind = Literal["none", "matte", "mirror"]
 
 
+def _with_hash(value: str) -> str:
+    """A colour as a scene has it: in an address # begins something else."""
+    return f"#{value}" if re.fullmatch("[0-9a-fA-F]{6}", value) else value
+
+
 class StillQuery(Model):
     """A preset, and the few things of it that are often changed; for everything else there is POST /api/render."""
 
@@ -76,8 +82,10 @@ class StillQuery(Model):
     background: (
         Annotated[
             str,
+            BeforeValidator(_with_hash),
+            AfterValidator(is_background),
             Field(
-                pattern="^(backdrop|transparent|#?[0-9a-fA-F]{6})$",
+                json_schema_extra={"pattern": "^(backdrop|transparent|#?[0-9a-fA-F]{6})$"},
                 description="Behind everything: `transparent` for nothing, with alpha (white in .jpg), or a colour "
                 "such as `f4f1ea`; both take twice the work. Not given: as the preset has it.",
             ),
@@ -92,8 +100,7 @@ class StillQuery(Model):
             for stone in data["stones"]:
                 stone["material"] = self.material
         if self.background is not None:
-            is_word = self.background in ("backdrop", "transparent")
-            data["film"]["background"] = self.background if is_word else f"#{self.background.removeprefix('#')}"
+            data["film"]["background"] = self.background
         if self.environment is not None:
             data["environment"] = {"kind": self.environment}
             if self.environment != "studio":

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from culet.scene.fields import Model
 
@@ -19,7 +20,17 @@ STILL_SAMPLES = 256
 """Samples of such a still at most: a scene of glitter that never settles is done after some seconds."""
 
 
-Background = Annotated[str, Field(pattern="^(backdrop|transparent|#[0-9a-fA-F]{6})$")]
+_BACKGROUND = "^(backdrop|transparent|#[0-9a-fA-F]{6})$"
+
+
+def is_background(value: str) -> str:
+    """The same; ValueError for what is none."""
+    if re.fullmatch(_BACKGROUND, value) is None:
+        raise ValueError("expected backdrop, transparent, or a colour of six hexadecimal digits such as #f4f1ea")
+    return value
+
+
+Background = Annotated[str, AfterValidator(is_background), Field(json_schema_extra={"pattern": _BACKGROUND})]
 
 
 class Sampling(Model):
@@ -44,7 +55,8 @@ class Film(Model):
         "backdrop",
         description="What stills have behind everything, apart from what lights the stones. backdrop: what the camera "
         "sees there; transparent: nothing, with alpha in .png, .webp, .tga and .exr, white in .jpg; a colour such as "
-        "#f4f1ea: exactly that on the screen (.exr: as transparent). Live pictures have the backdrop.",
+        "#f4f1ea: exactly that on the screen (.exr: as transparent). Live pictures have the colour too, as near as the "
+        "tone map comes to it, and the backdrop in place of nothing.",
     )
     exposure: Annotated[float, Field(gt=0, le=1e6)] = 1
     tone_map: Literal["srgb", "neutral", "filmic", "classic", "none"] = Field(

@@ -1,6 +1,6 @@
 /** `<culet-viewer>`: a gem in any page. It shows a poster, and the live picture of a server over that once it has come. */
 
-import { SHOWN } from "../picture/embedding";
+import type { Told } from "../picture/embedding";
 import { viewer } from "../words/english";
 import { frameAddress, posterAddress, type Wanted } from "./addresses";
 
@@ -25,7 +25,7 @@ function pause(ms: number): Promise<void> {
 }
 
 export class CuletViewer extends HTMLElement {
-  static readonly observedAttributes = ["src", "preset", "watch", "rotate", "poster", "alt"];
+  static readonly observedAttributes = ["src", "preset", "watch", "rotate", "background", "poster", "alt"];
   private readonly poster = document.createElement("img");
   private frame: HTMLIFrameElement | null = null;
   private origin = "";
@@ -104,9 +104,16 @@ export class CuletViewer extends HTMLElement {
 
   private hear({ source, origin, data }: MessageEvent): void {
     if (!this.frame || source !== this.frame.contentWindow || origin !== this.origin) return;
-    if ((data as Partial<typeof SHOWN> | null)?.culet !== SHOWN.culet) return;
-    this.frame.classList.add("shown");
-    this.dispatchEvent(new Event("load"));
+    const told = data as Told | null;
+    if (told?.culet === "shown") {
+      this.frame.classList.add("shown");
+      this.dispatchEvent(new Event("load"));
+    }
+    if (told?.culet === "obstacle") {
+      // The page says itself what is in the way; while that may pass by itself the poster stays, if there is one.
+      if (!told.passes || this.poster.hidden) this.frame.classList.add("shown");
+      if (!told.passes) this.dispatchEvent(new ErrorEvent("error", { message: told.text }));
+    }
   }
 
   /** What its attributes ask for; null, and an `error` event, if `src` is no address. */
@@ -114,8 +121,14 @@ export class CuletViewer extends HTMLElement {
     const src = this.getAttribute("src") ?? HOME;
     try {
       const { href } = new URL(src, document.baseURI);
-      const [preset, watch, rotate] = ["preset", "watch", "rotate"].map((name) => this.getAttribute(name));
-      return { src: href, preset: preset ?? null, watch: watch ?? null, rotate: rotate ?? null };
+      const given = (name: string) => this.getAttribute(name);
+      return {
+        src: href,
+        preset: given("preset"),
+        watch: given("watch"),
+        rotate: given("rotate"),
+        background: given("background"),
+      };
     } catch {
       this.dispatchEvent(new ErrorEvent("error", { message: viewer.noAddress(src) }));
       return null;

@@ -76,6 +76,7 @@ export class Panel {
   private readonly toggles: [keyof Shown, Toggle][] = [];
   /** Those whose labels tell how many stones they act on. */
   private readonly counted: [Command, Action][] = [];
+  private readonly root: Section;
   private readonly stone: Section;
   private clip: Command | null = null;
   private state: ViewState | null = null;
@@ -84,6 +85,7 @@ export class Panel {
     this.actions = actions;
     const said = words.panel;
     const root = new Section(said.title, 1);
+    this.root = root;
     this.edits = root.add(new EditButtons(actions.perform));
     const stone = root.section(said.stone.one);
     const surroundings = root.section(said.surroundings);
@@ -144,6 +146,11 @@ export class Panel {
     const { clip, files } = words;
     this.clip?.label(on ? files.stop : files.nextSeconds);
     this.clip?.name(on ? clip.stopRecording : labelOf(actionNamed("clip_next")));
+  }
+
+  /** On a narrow window the open panel lies where the table of a ray is to be. */
+  makeRoom(): void {
+    if (window.innerWidth < NARROW) this.root.fold(true);
   }
 
   addCuts(cuts: readonly CutKind[]): void {

@@ -3,22 +3,45 @@ import { embeddingOf, queryOf, REST_MS, Turntable } from "./embedding";
 
 describe("an address", () => {
   it("that says nothing has the whole interface and stands still", () => {
-    expect(embeddingOf("?preset=ruby")).toEqual({ ui: true, rotate: 0 });
-    expect(queryOf({ ui: true, rotate: 0 })).toBe("");
+    expect(embeddingOf("?preset=ruby")).toEqual({ ui: true, rotate: 0, legend: true, background: null });
+    expect(queryOf(embeddingOf("?preset=ruby"))).toBe("");
   });
 
   it("asks for no interface and for a turntable, also in the address of the session that was made", () => {
     const asked = embeddingOf("?ui=0&rotate=-20.5&preset=ruby");
-    expect(asked).toEqual({ ui: false, rotate: -20.5 });
+    expect(asked).toEqual({ ui: false, rotate: -20.5, legend: false, background: null });
     expect(embeddingOf(`?session=0${queryOf(asked)}`)).toEqual(asked);
   });
 
-  it.each(["?ui=no", "?ui=", "?rotate=fast", "?rotate=", "?rotate=361", "?rotate=NaN", "?rotate=Infinity"])(
-    "%s is refused in words",
-    (search) => {
-      expect(() => embeddingOf(search)).toThrow(/in the address: expected .*, got/);
-    },
-  );
+  it.each(["?ui=0&legend=1", "?legend=0"])("%s has a legend or none apart from the interface", (search) => {
+    const asked = embeddingOf(search);
+    expect(asked.legend).toBe(!asked.ui);
+    expect(embeddingOf(`?session=0${queryOf(asked)}`)).toEqual(asked);
+  });
+
+  it("asks for a colour behind everything with or without its #, which the session then has", () => {
+    for (const search of ["?background=f4f1ea", "?background=%23f4f1ea"]) {
+      const asked = embeddingOf(search);
+      expect(asked.background).toBe("#f4f1ea");
+      expect(queryOf(asked)).toBe("");
+    }
+  });
+
+  it.each([
+    "?ui=no",
+    "?ui=",
+    "?rotate=fast",
+    "?rotate=",
+    "?rotate=361",
+    "?rotate=NaN",
+    "?rotate=Infinity",
+    "?legend=yes",
+    "?background=blue",
+    "?background=transparent",
+    "?background=",
+  ])("%s is refused in words", (search) => {
+    expect(() => embeddingOf(search)).toThrow(/in the address: expected .*, got/);
+  });
 });
 
 describe("a turntable", () => {

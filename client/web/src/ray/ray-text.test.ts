@@ -49,6 +49,13 @@ test("a facet is named, with its stone where there are several", () => {
   expect(happensText(meeting({}), two)).toBe("leaves by main of gem, 25\u00a0% reflected");
 });
 
+test("light from outside is told by what it comes from, of several the brightest", () => {
+  const seen = { ...meeting({}), kind: "sees" } as unknown as Step;
+  expect(happensText({ ...seen, parts: PATH.parts }, PATH)).toBe("comes from the lamp at the left (emitter 4)");
+  expect(happensText({ ...seen, parts: PATH.parts.slice(1) }, PATH)).toBe("comes from the sky");
+  expect(happensText(seen, PATH)).toBe("comes from outside");
+});
+
 test("the channels that go together are told by their letters, wavelengths by their span", () => {
   expect(lightText(meeting({}), PATH)).toBe("RG");
   const waves = { ...PATH, chains: [{ wavelength: 450 }, { wavelength: 650 }] } as unknown as Path;

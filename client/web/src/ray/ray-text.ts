@@ -28,7 +28,7 @@ export function happensText(step: Step, path: Path): string {
     case "lands":
       return step.passes[0]?.kept ? said.mirrored(kept) : said.lands;
     case "sees":
-      return said.sees;
+      return said.sees(originText(step));
     case "ends":
       return step.inside ? said.endsInside : said.ends;
     case "chance":
@@ -36,6 +36,12 @@ export function happensText(step: Step, path: Path): string {
     default:
       return step.kind satisfies never;
   }
+}
+
+/** What the light of a step comes from: of several the brightest. */
+function originText({ parts = [] }: Step): string {
+  const [brightest] = [...parts].sort((a, b) => b.share - a.share);
+  return brightest ? metText(brightest) : words.ray.happens.outside;
 }
 
 function facetText({ stone, facet, facet_name: name }: Step, { poses }: Path): string {

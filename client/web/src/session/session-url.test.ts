@@ -36,7 +36,10 @@ it("has the server's token behind its hash, or none", () => {
 it("names a session that is looked at and not steered", () => {
   expect(wantedSession(`?watch=${ID}`)).toEqual({ kind: "watch", id: ID });
   expect(wantedSession("?watch=x")).toEqual({ kind: "invalid", id: "x" });
-  expect(wantedSession(watchAddress(ID, { ui: false, rotate: 0 }))).toEqual({ kind: "watch", id: ID });
+  expect(wantedSession(watchAddress(ID, { ui: false, rotate: 0, legend: false, background: null }))).toEqual({
+    kind: "watch",
+    id: ID,
+  });
   expect(watchedStreamUrl("https://culet.test/gems/?watch=1")).toBe("wss://culet.test/gems/api/stream");
 });
 

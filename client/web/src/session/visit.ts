@@ -3,6 +3,7 @@
 import type { Frame } from "@culet/protocol/frame";
 import { CloseCode, type Outlined, type Picked, type Reached } from "@culet/protocol/messages";
 import { fitted, LinkError, unpackedView } from "../files/view-link";
+import { part } from "../json";
 import type { Arrival } from "../meter/frame-history";
 import { type Embedding, queryOf } from "../picture/embedding";
 import { framingPatch } from "../picture/framing";
@@ -110,7 +111,9 @@ export class Visit {
         return wanted.id;
       case "view": {
         const scene = fitted(await unpackedView(wanted.packed), this.world.aspect());
-        return (await rest.createSession({ scene })).id;
+        const { background } = this.embedding;
+        const film = background === null ? {} : { film: { ...part(scene, "film"), background } };
+        return (await rest.createSession({ scene: { ...scene, ...film } })).id;
       }
       case "new":
         return this.newSession(wanted.preset);
@@ -120,8 +123,11 @@ export class Visit {
   /** The id of a session that is made for this window. */
   private async newSession(preset: string | undefined): Promise<string> {
     const { id, scene } = await rest.createSession(preset === undefined ? {} : { preset });
-    const patch = framingPatch(scene, this.world.aspect());
-    if (patch) await rest.patchSession(id, patch);
+    const framing = framingPatch(scene, this.world.aspect());
+    const { background } = this.embedding;
+    if (framing || background !== null) {
+      await rest.patchSession(id, { ...framing, ...(background === null ? {} : { film: { background } }) });
+    }
     return id;
   }
 

@@ -19,13 +19,18 @@ export class Signs {
     element("obstacle-button", HTMLButtonElement),
   );
   private readonly startAnew: () => void;
+  private readonly obstructed: (text: string, passes: boolean) => void;
   private wrong: string | null = null;
   private elsewhere: string | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  /** `look` has stones that are out of sight looked at, `startAnew` leaves for a new session. */
-  constructor(look: () => void, startAnew: () => void) {
+  /**
+   * `look` has stones that are out of sight looked at, `startAnew` leaves for a new session; `obstructed` is told what is
+   * in the way of a picture, and whether that may pass by itself.
+   */
+  constructor(look: () => void, startAnew: () => void, obstructed: (text: string, passes: boolean) => void) {
     this.startAnew = startAnew;
+    this.obstructed = obstructed;
     this.look.onclick = look;
     this.waiting.show(words.connection.connecting);
   }
@@ -63,18 +68,21 @@ export class Signs {
   end(text: string): void {
     this.banner.show(null);
     this.obstacle.show(text, words.connection.startAnew, this.startAnew);
+    this.obstructed(text, false);
   }
 
   /** Something failed: it can be tried again if the user wants to. */
   retry(text: string, again: () => void): void {
     this.banner.show(null);
     this.obstacle.show(text, words.connection.tryAgain, again);
+    this.obstructed(text, false);
   }
 
   /** Something failed, and is tried again after a pause, ms, or at once. */
   retryAfter(text: string, delay: number, again: () => void): void {
     this.banner.show(null);
     this.obstacle.show(`${text}\n${tryingAgainText(delay)}`, words.connection.tryNow, again);
+    this.obstructed(text, true);
   }
 
   /** Nothing is in the way any more. */

@@ -130,7 +130,8 @@ export const ray = {
     leaves: (facet: string, kept: string) => `leaves by ${facet}, ${kept} reflected`,
     mirrored: (kept: string) => `mirrored, ${kept}`,
     lands: "ends on a surface",
-    sees: "comes from outside",
+    sees: (from: string) => `comes from ${from}`,
+    outside: "outside",
     ends: "is dropped: too faint",
     endsInside: "is dropped inside: too faint",
     chance: "goes on by chance",
@@ -630,6 +631,9 @@ export const address = {
   ui: (got: string) => `ui in the address: expected 0 or 1, got ${got}.`,
   rotate: (most: number, got: string) =>
     `rotate in the address: expected ${-most} to ${most} degrees a second, got ${got}.`,
+  legend: (got: string) => `legend in the address: expected 0 or 1, got ${got}.`,
+  background: (got: string) =>
+    `background in the address: expected a colour of six hexadecimal digits such as f4f1ea, got ${got}.`,
   otherVersion: "This link is of another version of culet: it cannot be read.",
   damaged: "This link is damaged: a part of it is missing or changed. Copy it again, as a whole.",
   noScene: "This link is damaged: there is no scene in it.",

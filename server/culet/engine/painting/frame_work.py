@@ -12,6 +12,7 @@ from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Shown
+from culet.rendering.behind import before_its_colour
 from culet.rendering.light.effort import Effort
 from culet.rendering.target import Target
 from culet.stage import Stage
@@ -75,7 +76,8 @@ class FrameWork:
     @property
     def stage(self) -> Stage:
         """As it is drawn: what is shown, by the plan."""
-        return self.shown.stage if self.plan is None else self.shown.stage.showing(self.plan.scene)
+        scene = self.shown.scene if self.plan is None else self.plan.scene
+        return self.shown.stage.showing(before_its_colour(scene))
 
     @property
     def samples(self) -> int:
