@@ -192,7 +192,5 @@ def test_a_transparent_picture_has_alpha(tmp_path: Path) -> None:
     assert (said_so.rgb == picture.rgb).all()
     colour = culet.render(ALL_SKY, *SIZE, background="#f4f1ea", samples=1)
     assert (colour.rgb == (0xF4, 0xF1, 0xEA)).all(), "to the last bit, whatever the tone map is"
-    with pytest.raises(
-        SceneError, match=r"film\.background: expected backdrop, .* as #f4f1ea; got 'blue'"
-    ):
+    with pytest.raises(SceneError, match=r"film\.background: expected backdrop, .* as #f4f1ea; got 'blue'"):
         culet.render(ALL_SKY, *SIZE, background="blue")

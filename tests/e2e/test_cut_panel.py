@@ -8,6 +8,7 @@ import pytest
 
 from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
+from e2e.test_accessibility import violations
 from e2e.view import View, difference
 
 SEEN = 1
@@ -75,6 +76,29 @@ def test_a_kept_design_and_the_shown_one_are_changed_over_by_the_button_and_by_t
     assert pavilion.input_value() == "40.75"
     view.change(other.click)
     assert pavilion.input_value() == "39"
+    assert view.problems == []
+
+
+def test_a_divider_has_the_kept_design_at_its_left_until_the_picture_changes(wide_view: View) -> None:
+    view = wide_view
+    page = view.page
+    page.get_by_role("button", name="Keep this design to compare").click()
+    before = view.change(lambda: type_in(view, "Pavilion, \u00b0", "44"))[0]
+    page.get_by_role("button", name="Both, with a divider").click()
+    kept = page.get_by_alt_text("The kept design")
+    kept.wait_for()  # that is seen
+    height, width, _ = before.pixels.shape
+    assert kept.evaluate("image => [image.naturalWidth, image.naturalHeight]") == [width, height]
+    divider = page.get_by_role("slider", name="Divider")
+    left = kept.evaluate("image => getComputedStyle(image).clipPath")
+    divider.press("ArrowRight")
+    assert divider.input_value() == "51"
+    assert kept.evaluate("image => getComputedStyle(image).clipPath") != left
+    assert violations(view) == []
+    view.change_by("o")  # as for any other picture
+    kept.wait_for()
+    page.keyboard.press("d")
+    assert divider.count() == 0
     assert view.problems == []
 
 

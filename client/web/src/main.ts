@@ -2,6 +2,7 @@
 
 import { Clips } from "./clip/clips";
 import { Comparison } from "./compare/comparison";
+import { Division } from "./compare/division";
 import { listenToDrops } from "./files/file-drop";
 import { chooseFile, MESH_TYPES, SCENE_TYPES, SKY_TYPES } from "./files/files";
 import { Opening } from "./files/opening";
@@ -81,6 +82,7 @@ const visit = new Visit(
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
       chosen.shown(frame.step, arrival.time);
       ray.shown();
+      division.shown();
       if (!seen) return;
       meter.take(frame, arrival);
       clips.take(frame, arrival.time);
@@ -176,10 +178,12 @@ const page = {
   hideAll: () => bareness.toggle(),
   traceRay: () => attempt(() => ray.toggle()),
   changeDesigns,
+  divide,
   moved: () => turntable.rest(performance.now()),
   note: (text: string) => void toasts.note(text),
 };
 const comparison = new Comparison();
+const division = new Division({ visit, canvas, comparison, complaints });
 const performing = new Performing({ visit, stones, saving, clips, page, complaints });
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
@@ -194,6 +198,7 @@ const panel = new Panel(element("panel", HTMLElement), {
   newSession: () => visit.startAnew(),
   keepDesign,
   changeDesigns,
+  divide,
   otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
   measure: (scene) => rest.proportions(scene),
@@ -228,6 +233,13 @@ function perform(action: Action): void {
 function keepDesign(): void {
   if (comparison.keep(visit.scene, visit.state.stone)) toasts.note(words.compare.kept);
   else complaints.tell(words.compare.noStone);
+  division.kept();
+}
+
+/** Show both designs with a divider, or the one alone; without a kept one keep this. */
+function divide(): void {
+  if (!comparison.keeps(visit.scene)) keepDesign();
+  attempt(() => division.toggle());
 }
 
 /** Show the design that is kept, and keep the one that is shown; the first time keep it. */

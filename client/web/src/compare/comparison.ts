@@ -5,7 +5,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import { text } from "../json";
-import { hasStone, stoneOf, withFirst } from "../stones/stones";
+import { hasStone, stoneOf, stonesOf, withFirst } from "../stones/stones";
 
 /** What a design is, of a stone; a merge patch takes a field away by null. */
 const FIELDS = ["cut", "mesh", "recut", "material"] as const;
@@ -33,6 +33,11 @@ export class Comparison {
     return true;
   }
 
+  /** Whether a design is kept of a stone that is there. */
+  keeps(scene: JsonObject | null): boolean {
+    return this.other !== null && this.among(scene) !== null;
+  }
+
   /** The merge patch that shows the other design and keeps the one that is shown; null if none is kept of a stone there. */
   change(scene: JsonObject | null): JsonObject | null {
     const now = this.among(scene);
@@ -52,6 +57,19 @@ export class Comparison {
     if (!this.other || !now) return null;
     const same = JSON.stringify(this.other.design) === JSON.stringify(only(FIELDS, now));
     return same ? null : { ...now, stones: [{ ...stoneOf(now), ...this.other.design }] };
+  }
+
+  /**
+   * What is shown of the scene, as the other design would have it, with all its stones; null if there is none to compare
+   * with. A stone that has been moved or has fallen lies as it is shown.
+   */
+  beside(shown: JsonObject, scene: JsonObject | null): JsonObject | null {
+    const [now, seen] = [this.among(scene), this.among(shown)];
+    if (!this.other || !now || !seen || !this.otherwise(scene)) return null;
+    const { design, pose } = this.other;
+    const places = [this.came ?? pose, only(POSE, now), only(POSE, seen)].map((place) => JSON.stringify(place));
+    const laid = new Set(places).size === 1 ? { ...design, ...pose } : design;
+    return { ...shown, stones: stonesOf(shown).map((each) => (each.id === this.stone ? { ...each, ...laid } : each)) };
   }
 
   /** The scene with the stone first that is compared; null if it has gone. */

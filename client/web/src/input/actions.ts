@@ -21,7 +21,7 @@ export type Effect =
   | { kind: "copy"; what: "picture" | "link" }
   | { kind: "clip"; of: "last" | "next" }
   | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
-  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" | "changeDesigns" };
+  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" | "changeDesigns" | "divide" };
 
 type Name = keyof Words["actions"];
 
@@ -110,6 +110,7 @@ export const ACTIONS: readonly Action[] = [
   letter("clip_next", "N", { kind: "clip", of: "next" }),
   letter("ray", "T", { kind: "page", command: "traceRay" }),
   letter("compare", "A", { kind: "page", command: "changeDesigns" }),
+  letter("divide", "D", { kind: "page", command: "divide" }),
   key("keys", "?", "F1", { kind: "page", command: "showKeys" }),
   letter("hide", "H", { kind: "page", command: "hideAll" }),
   letter("full", "E", { kind: "page", command: "fillScreen" }),

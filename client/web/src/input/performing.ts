@@ -18,11 +18,15 @@ export interface PageCommands {
   traceRay: () => void;
   /** Show the other of two designs that are compared; keep the first one. */
   changeDesigns: () => void;
+  /** Show both designs with a divider between them, or the one alone. */
+  divide: () => void;
   /** Something moves by hand. */
   moved: () => void;
   /** Tell the user something that passes. */
   note: (text: string) => void;
 }
+
+type Commanded = Pick<PageCommands, "showKeys" | "hideAll" | "traceRay" | "changeDesigns" | "divide">;
 
 export interface PerformingRooms {
   visit: Visit;
@@ -86,7 +90,7 @@ export class Performing {
     return of === "last" ? this.clips.last() : this.clips.record();
   }
 
-  private onPage(command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" | "changeDesigns"): void {
+  private onPage(command: keyof Commanded | "fillScreen"): void {
     if (command === "fillScreen") this.complaints.attempt(fillScreen);
     else this.page[command]();
   }

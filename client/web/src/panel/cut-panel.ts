@@ -22,6 +22,7 @@ export interface CutActions {
   measure: Measure;
   keepDesign: () => void;
   changeDesigns: () => void;
+  divide: () => void;
   /** The scene as the design that is kept would have it; null without another one. */
   otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
 }
@@ -57,6 +58,7 @@ export class CutPanel {
   private readonly list = new Choice<string>(words.cut.shape, [], "");
   private readonly usual: Command;
   private readonly change: Command;
+  private readonly both: Command;
   private readonly otherwise: CutActions["otherwise"];
   private readonly kinds = new Map<string, CutKind>();
   private readonly sliders = new Map<string, Sliders>();
@@ -66,7 +68,7 @@ export class CutPanel {
 
   constructor(
     section: Section,
-    { patch: send, clamped, openDiagram, measure, keepDesign, changeDesigns, otherwise }: CutActions,
+    { patch: send, clamped, openDiagram, measure, keepDesign, changeDesigns, divide, otherwise }: CutActions,
   ) {
     this.otherwise = otherwise;
     this.section = section.show(false);
@@ -84,6 +86,7 @@ export class CutPanel {
     this.usual = section.add(new Command(words.cut.usual, reset));
     section.add(new Command(words.compare.keep, keepDesign));
     this.change = section.add(new Command(words.compare.change, changeDesigns, "A")).show(false);
+    this.both = section.add(new Command(words.compare.divide, divide, "D")).show(false);
     section.add(new Command(words.grades.diagram, () => openDiagram(text(stoneOf(this.scene).id, ""))));
   }
 
@@ -97,7 +100,9 @@ export class CutPanel {
     for (const [name, sliders] of this.sliders) sliders.update(name === now);
     this.anew.update(scene, this.section.open);
     this.usual.show(kind !== undefined);
-    this.change.show(this.otherwise(scene) !== null);
+    const differs = this.otherwise(scene) !== null;
+    this.change.show(differs);
+    this.both.show(differs);
   }
 
   addCuts(cuts: readonly CutKind[], state: ViewState): void {

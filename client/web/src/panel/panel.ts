@@ -44,6 +44,8 @@ export interface PanelActions {
   keepDesign: () => void;
   /** Show the design that is kept, and keep the one that is shown. */
   changeDesigns: () => void;
+  /** Show both designs with a divider, or the one alone. */
+  divide: () => void;
   /** The scene as the design would have it that this one is compared with; null without one. */
   otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
   /** Ask for a stone's proportions. */

@@ -222,6 +222,17 @@ function parseUpload<Description extends { findings: string[] }>(
   return { id, findings: said.length > 0 ? said : [otherwise(description ?? {})] };
 }
 
+/** A still of a scene; `samples` of each pixel, or as many as a still takes by itself. */
+export async function still(
+  scene: JsonObject,
+  { width, height }: { width: number; height: number },
+  samples: number | null,
+  signal: AbortSignal,
+): Promise<Blob> {
+  const asked = post({ scene, width, height, format: "webp", ...(samples === null ? {} : { samples }) });
+  return (await request("api/render", { ...asked, signal })).blob();
+}
+
 /** The state of that number, rendered at full quality. */
 export async function picture(session: string, step: bigint, format: Format): Promise<Blob> {
   return (await request(`api/sessions/${session}/frame.${format}?step=${step}`)).blob();

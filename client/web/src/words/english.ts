@@ -59,6 +59,7 @@ export const actions = {
   clip_next: "Record a clip of the next 10 s",
   ray: "Draw one ray",
   compare: "Keep the design, or change it with the one that is kept",
+  divide: "Show the kept design beside this one, with a divider",
   keys: "All keys",
   hide: "Hide all but the picture",
   full: "Fill the screen",
@@ -348,9 +349,14 @@ export const cut = {
 export const compare = {
   keep: "Keep this design to compare",
   change: "Show the kept design",
+  divide: "Both, with a divider",
+  divider: "Divider between the kept design, at its left, and the one that is shown",
+  keptPicture: "The kept design, under the same camera and light",
+  keptSide: "kept",
+  shownSide: "shown",
   kept:
-    "This design is kept. Choose or change another one: the grades tell how they differ, and the key A changes the two " +
-    "over.",
+    "This design is kept. Choose or change another one: the grades tell how they differ, the key A changes the two " +
+    "over, and D shows both.",
   noStone: "There is no stone whose design could be kept.",
 };
 
