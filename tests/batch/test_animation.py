@@ -104,6 +104,7 @@ def test_a_film_has_every_frame_for_its_time(tmp_path: Path) -> None:
     write_film(asked, folder, out, 3, lambda part: None)
     with av.open(str(out)) as file:
         pictures = list(file.decode(video=0))
+        assert file.duration is not None
         assert float(file.duration / av.time_base) == pytest.approx(
             1, abs=0.03
         )  # measured 1.025: the end is a picture too
