@@ -11,7 +11,7 @@ import pytest
 from conftest import RendererOf
 from culet.errors import SceneError
 from culet.paths.asked import Pixel, Ray, answered
-from culet.paths.recorder import PathRecorder
+from culet.paths.recorder import GivenUpError, PathRecorder
 from culet.rendering.chains import first_sample
 from culet.rendering.device import Device
 from culet.rendering.features import features_of
@@ -183,6 +183,13 @@ def test_light_on_the_floor_that_takes_too_long_is_refused(device: Device) -> No
     with pytest.raises(SceneError, match="caustics_cutoff makes it end sooner"):
         answered(hasty, Stage.of(preset("matte")), Pixel(*PIXELS[0], *SIZE))
     assert answered(hasty, Stage.of(Scene()), Pixel(*PIXELS[0], *SIZE)).steps, "of a scene that needs no such light"
+
+
+def test_a_pixel_that_nobody_waits_for_any_more_is_given_up_between_launches(recorder: PathRecorder) -> None:
+    answers = iter([True, False])
+    with pytest.raises(GivenUpError):
+        answered(recorder, Stage.of(preset("matte")), Pixel(*PIXELS[0], *SIZE), waited_for=lambda: next(answers))
+    assert answered(recorder, Stage.of(Scene()), Pixel(*PIXELS[0], *SIZE)).steps, "the next one is not in its way"
 
 
 @pytest.mark.parametrize("pixel", [(96, 0), (0, 54), (-1, 0)])

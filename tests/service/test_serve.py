@@ -409,6 +409,20 @@ async def test_a_killed_gateway_comes_back_with_the_sessions_that_the_engine_kep
     assert unknown.status_code == 404, "and not 503: it knows all sessions now"
 
 
+async def test_a_gateway_that_is_told_to_end_by_itself_is_followed_by_another(served: Served) -> None:
+    session = (await served.http.post("/api/sessions")).json()["id"]
+    gateway, engine = served.gateway(), served.engine()
+    assert gateway
+    os.kill(gateway, signal.SIGTERM)
+
+    async def replaced() -> bool:
+        return served.gateway() not in (None, gateway)
+
+    await eventually(replaced)
+    assert (await served.http.get(f"/api/sessions/{session}")).status_code == 200, "the address answers all the time"
+    assert (served.process.poll(), served.engine()) == (None, engine)
+
+
 SPEAKER = """
 import sys, time
 from culet.notify import Notice, notify, notify_patience

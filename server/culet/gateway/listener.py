@@ -104,7 +104,6 @@ class Listener:
     async def _drain(self) -> None:
         sessions = self.gateway.sessions
         await sessions.drain.begun.wait()
-        notify(Notice.STOPPING)
         if sessions.drain.left > 0:
             log.info("draining: no new sessions; ending in %.0f s, or when nobody is left", sessions.drain.left)
             sessions.warn()

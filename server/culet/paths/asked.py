@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -39,20 +40,20 @@ def answered(
     *,
     wavelengths: Sequence[float] = (),
     effort: Effort = Effort.PATIENT,
+    waited_for: Callable[[], bool] = lambda: True,
 ) -> Path:
     """SceneError for a pixel that is not in the picture, a ray that points nowhere, and what `PathRecorder` refuses."""
+    record = partial(recorder.record, wavelengths=wavelengths, effort=effort, waited_for=waited_for)
     match asked:
         case Pixel(x, y, width, height):
             if not (0 <= x < width and 0 <= y < height):
                 raise SceneError(
                     f"pixel: expected x from 0 to {width - 1} and y from 0 to {height - 1}, got {x},{y}", "pixel"
                 )
-            record = recorder.record(stage, width, height, x, y, wavelengths=wavelengths, effort=effort)
-            return path_of(record)
+            return path_of(record(stage, width, height, x, y))
         case Ray(origin, direction):
             seen = stage.showing(stage.scene.model_copy(update={"camera": camera_along(origin, direction)}))
-            record = recorder.record(seen, 1, 1, 0, 0, wavelengths=wavelengths, effort=effort)
-            return path_of(record, pixel=False)
+            return path_of(record(seen, 1, 1, 0, 0), pixel=False)
 
 
 def camera_along(origin: Sequence[float], direction: Sequence[float]) -> Camera:

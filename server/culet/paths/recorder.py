@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.errors import SceneError
+from culet.errors import CuletError, SceneError
 from culet.paths.program import PathKernel, make_path, precompile_path
 from culet.rendering.build import Variant
 from culet.rendering.chains import GROUPS, first_sample, is_spectral, wavelengths_of
@@ -36,6 +36,12 @@ LAUNCHES = 64
 LIGHT_SECONDS = 0.05
 """s of a launch that makes a light map."""
 KINDS = constants("record.cl")
+
+
+class GivenUpError(CuletError):
+    """Nobody waits for the record any more."""
+
+    title = "given up"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +96,12 @@ class PathRecorder:
         *,
         wavelengths: Sequence[float] = (),
         effort: Effort = Effort.PATIENT,
+        waited_for: Callable[[], bool] = lambda: True,
     ) -> Record:
         """The first sample of a pixel of a picture of that size, or of `wavelengths` (nm) in place of the scene's own.
 
         SceneError for the classic estimator, which follows no chains, for light that has no end, and for a light map
-        that takes too long.
+        that takes too long; GivenUpError once it is not `waited_for`, which is asked before each launch.
         """
         needed = features_of(stage)
         if needed.estimator != ESTIMATOR["chain"]:
@@ -107,7 +114,7 @@ class PathRecorder:
         spectral = bool(wavelengths) or is_spectral(stage.scene)
         features = replace(needed.general, spectral=int(spectral), few_mirrors=needed.few_mirrors)
         try:
-            return self._record(stage, features, (width, height), (column, row), wavelengths, effort)
+            return self._record(stage, features, (width, height), (column, row), wavelengths, effort, waited_for)
         finally:
             self._lighting.forget()
             self._pool.free_held()
@@ -120,11 +127,13 @@ class PathRecorder:
         pixel: tuple[int, int],
         wavelengths: Sequence[float],
         effort: Effort,
+        waited_for: Callable[[], bool],
     ) -> Record:
         light = self._lighting.of(stage) if features_of(stage).light_map != 0 else None
         if light is not None:
             until = time.monotonic() + self._light_seconds
             for _ in light.pieces(stage.scene.optics.caustics_cutoff, effort, LIGHT_SECONDS, first=True):
+                _check(waited_for)
                 if time.monotonic() > until:
                     raise SceneError(
                         f"expected light on floor and walls that is found within {self._light_seconds:g} s, got more: "
@@ -143,6 +152,7 @@ class PathRecorder:
         record = cl.Buffer(self._device.context, flags.READ_WRITE | flags.COPY_HOST_PTR, hostbuf=head)
         events, kept = self._allocate(EVENTS * happening.itemsize), self._allocate(kept_bytes)
         for launch in range(LAUNCHES):
+            _check(waited_for)
             kernel(
                 queue, (1,), (1,), *(given[name] for name in buffers()), record, events, *map(np.int32, pixel),
                 np.float64(x), np.float64(y), kept, np.int32(launch == 0), np.int32(STEPS),
@@ -187,6 +197,11 @@ class PathRecorder:
                 precompile_path(features, variant)
             found = self._programs[features] = make_path(self._device, features, variant)
         return found
+
+
+def _check(waited_for: Callable[[], bool]) -> None:
+    if not waited_for():
+        raise GivenUpError("nobody waits for this light any more")
 
 
 def _wavelengths(stage: Stage, features: Features, given: Sequence[float]) -> tuple[float, ...] | None:

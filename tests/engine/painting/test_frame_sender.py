@@ -15,7 +15,7 @@ from culet.engine.painting.counters import Tally
 from culet.engine.painting.frame_sender import FrameSender, Outgoing
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.video import Packet, VideoEncoder, VideoError
-from culet.engine.painting.video_track import BYTES_PER_PIXEL, MOST_FAILURES, VideoTrack
+from culet.engine.painting.video_track import BYTES_PER_PIXEL, CHANGE_SECONDS, MOST_FAILURES, ROOM_SECONDS, VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
 from culet.scene import Scene
@@ -52,9 +52,12 @@ class Desk:
         self.now = 0.0
         self.sent: list[Frame] = []
         self.learnt: list[Coded] = []
+        self.room = math.inf
+        self.asked: list[int] = []
+        """Bytes for which there was to be room."""
         self.session = Session(NAME, Stage.of(Scene()))
         self.outgoing = Outgoing()
-        self.sender = FrameSender(self._take, self._fail, lambda: None, Tally(), lambda: self.now)
+        self.sender = FrameSender(self._take, self._fail, lambda: None, Tally(), lambda: self.now, self._has_room)
         shown = self.session.shown
         self.frame = LiveFrame(
             rgb=np.zeros((18, 32, 3), np.uint8), shown=shown, optics=shown.scene.optics, bands=3, samples=1,
@@ -65,6 +68,10 @@ class Desk:
 
     def _take(self, message: bytes) -> None:
         self.sent.append(Frame.unpack(message))
+
+    def _has_room(self, size: int) -> bool:
+        self.asked.append(size)
+        return size <= self.room
 
     def _fail(self, _: Session, error: CuletError) -> None:
         raise error
@@ -179,3 +186,33 @@ async def test_encoders_are_given_back_while_nothing_is_sent_and_video_goes_on_w
     assert (desk.outgoing.give_back(), desk.outgoing.nbytes) == (held, 0)
     await desk.publish()
     assert [frame.depends_on for frame in desk.sent] == [0, 1, 0]
+
+
+async def test_without_room_for_an_encoder_frames_are_pictures_until_there_is(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    needed = BYTES_PER_PIXEL[Codec.H264] * 32 * 18
+    desk.room = needed - 1
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.JPEG, 1)]
+    video = [desk.outgoing.is_video]
+    desk.room = needed
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.JPEG, 2)]
+    assert desk.asked == [needed], "others would have to give back what they need once a frame"
+    desk.now += ROOM_SECONDS
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 3)]
+    video.append(desk.outgoing.is_video)
+    assert video == [False, True], "the link's limits are those of what is sent"
+    desk.room = 0
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 4)], "it has what it needs"
+
+
+async def test_of_an_encoder_of_another_size_only_what_is_more_needs_room(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    await desk.publish()
+    desk.now += CHANGE_SECONDS
+    desk.frame = replace(desk.frame, rgb=np.zeros((36, 64, 3), np.uint8))
+    desk.room = 0
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.JPEG, 2)]
+    assert desk.asked[-1] == 3 * desk.asked[0]
+    desk.frame = replace(desk.frame, rgb=np.zeros((18, 32, 3), np.uint8))
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 3)]
+    assert desk.sent[-1].depends_on == 1, "of the encoder that was there all the time"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import threading
+from collections.abc import Callable
 from typing import Any, cast
 
 import pytest
@@ -11,9 +13,11 @@ from culet.engine.process.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.stone_requests import StoneRequests
 from culet.errors import MeshError
+from culet.paths.recorder import GivenUpError
 from culet.stage import NOTHING, Library
 from culet.study.extremes import ball
-from culet_protocol.engine import DrawDiagram, Grade
+from culet_protocol.engine import DrawDiagram, Grade, TracePath
+from engine.peer import PATIENCE
 
 DEFAULT: dict[str, Any] = {"stones": [{"id": "a"}]}
 LARGE = Grade(scene=DEFAULT, error=10, tilt=True)
@@ -50,3 +54,25 @@ async def test_a_stone_of_more_facets_than_fit_on_a_page_has_no_diagram() -> Non
     assert drawing.startswith(b"<")
     with pytest.raises(MeshError, match="expected a stone of at most 1500 facets to draw; got 1501"):
         await stones.diagram(DrawDiagram(scene={"stones": [{"id": "a", "mesh": "many"}]}))
+
+
+async def test_a_ray_that_nobody_waits_for_ends_with_its_launch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next one waits for the same thread."""
+    begun, ends = threading.Event(), threading.Event()
+
+    def endless(*_: object, waited_for: Callable[[], bool], **__: object) -> None:
+        begun.set()
+        while waited_for():
+            pass
+        ends.set()
+        raise GivenUpError("nobody waits")
+
+    monkeypatch.setattr("culet.engine.process.stone_requests.answered", endless)
+    ray = TracePath(scene=DEFAULT, pixel=(1, 1, 4, 4))
+    asked = asyncio.create_task(requests().path(ray))
+    assert await asyncio.to_thread(begun.wait, PATIENCE)
+    assert not ends.is_set()
+    asked.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await asked
+    assert await asyncio.to_thread(ends.wait, PATIENCE)

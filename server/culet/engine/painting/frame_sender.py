@@ -81,7 +81,7 @@ class Outgoing:
     @property
     def is_video(self) -> bool:
         """Whether what moves goes out as video alone."""
-        return Codec.JPEG not in self.codecs and any(track.works for track in self.tracks.values())
+        return Codec.JPEG not in self.codecs and any(track.works and track.has_room for track in self.tracks.values())
 
     @property
     def full(self) -> bool:
@@ -99,13 +99,16 @@ class FrameSender:
         wake: Callable[[], None],
         tally: Tally,
         clock: Callable[[], float],
+        has_room: Callable[[int], bool] = lambda _: True,
     ) -> None:
-        """`send` puts a message on the wire and does not wait, `wake` is called when a frame has left."""
+        """`send` puts a message on the wire and does not wait, `wake` is called when a frame has left, `has_room` tells
+        whether an encoder may take so many bytes."""
         self._send = send
         self._tell_problem = tell_problem
         self._wake = wake
         self._tally = tally
         self._now = clock
+        self._has_room = has_room
         self._threads = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2), "encode")
 
     def publish(
@@ -144,8 +147,9 @@ class FrameSender:
             if tracks and before is not None:
                 await asyncio.wait([before])  # each frame of video is encoded after the one before it
             for track in tracks:
-                codecs -= {track.codec} if track.works else set()
-                if track.works and not track.is_held(drawn_at):  # skipped before it is encoded, not after
+                works = track.works and track.find_room(frame.size, frame.crf, drawn_at, self._has_room)
+                codecs -= {track.codec} if works else set()
+                if works and not track.is_held(drawn_at):  # skipped before it is encoded, not after
                     packet = await self._in_thread(track.encode, frame.rgb, frame.crf, drawn_at)
                     if packet is None:
                         codecs |= {track.codec}  # as JPEG

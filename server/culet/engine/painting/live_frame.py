@@ -117,6 +117,11 @@ class LiveFrame:
         return Coded.of_jpeg(picture, thrifty=not self.shown.moving and picture.quality < jpeg.RESTING_QUALITY)
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Width and height, pixels."""
+        return self.rgb.shape[1], self.rgb.shape[0]
+
+    @property
     def crf(self) -> int:
         """Constant rate factor of it as video."""
         return BEST_CRF if self.encoding is None else self.encoding.crf

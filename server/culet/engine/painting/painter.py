@@ -45,11 +45,12 @@ class Painter:
         rest: Target,
         stepper: Stepping | None = None,
         clock: Callable[[], float] = time.monotonic,
+        has_room: Callable[[int], bool] = lambda _: True,
     ) -> None:
         """`send` puts a frame on the wire, `tell_problem` tells of a session that could not go on; neither waits.
 
         A still may take `still_seconds` of the render thread. Pictures at rest are refined to `rest`. `clock` is
-        a steady one, in seconds.
+        a steady one, in seconds. `has_room` tells whether an encoder of video may take so many bytes.
         """
         self.pictures: dict[str, LivePicture] = {}
         self._renderer = renderer
@@ -60,7 +61,7 @@ class Painter:
         self._tally = tally = Tally()
         self._changed = asyncio.Event()
         thread = RenderThread(render_thread, self._shares, tally, clock)
-        self._sender = FrameSender(send, self._tell_problem, self.wake, tally, clock)
+        self._sender = FrameSender(send, self._tell_problem, self.wake, tally, clock, has_room)
         self._still_painter = StillPainter(stills, renderer, thread, encode_still, still_seconds, tally, clock)
         self._live_painter = LivePainter(
             renderer, thread, self._shares, self._sender, stepper or Stepper(clock=clock), rest,

@@ -29,6 +29,8 @@ HOLD_SECONDS = 3.0
 """For which nothing is encoded because somebody says that what was sent is still under way: who says so may be gone."""
 BYTES_PER_PIXEL = {Codec.H264: 46, Codec.VP9: 98}
 """Of an encoder, measured at 1280x720 and 1920x1080."""
+ROOM_SECONDS = 1.0
+"""Between two times that memory is asked for once there was none: others give back what they have to make room."""
 MOST_FAILURES = 2
 """An encoder that fails is replaced; after so many failures the session's frames are JPEG."""
 
@@ -59,6 +61,9 @@ class VideoTrack:
         self._key_at = -float("inf")
         self._began_at = -float("inf")
         self._held_until = -float("inf")
+        self._roomless_until = -float("inf")
+        self.has_room = True
+        """Whether there was memory for the encoder that was needed last."""
 
     @property
     def nbytes(self) -> int:
@@ -82,6 +87,26 @@ class VideoTrack:
     def is_held(self, now: float) -> bool:
         """Whether the next frame is to be skipped."""
         return now < self._held_until
+
+    def lacks(self, size: tuple[int, int], crf: int, now: float) -> int:
+        """Bytes that the encoder of the next picture takes, (width, height) pixels large, besides those of the one that
+        there is; 0 if it is that one."""
+        width, height = size
+        if self._encoder is not None and not self._is_to_change(self._encoder, width, height, crf, now):
+            return 0
+        return max(0, BYTES_PER_PIXEL[self.codec] * width * height - self.nbytes)
+
+    def find_room(self, size: tuple[int, int], crf: int, now: float, has_room: Callable[[int], bool]) -> bool:
+        """Whether the next picture can be encoded, as far as memory goes; `has_room` is asked for bytes."""
+        lacking = self.lacks(size, crf, now)
+        if lacking == 0:
+            self.has_room = True
+        elif now >= self._roomless_until:
+            self.has_room = has_room(lacking)
+            self._roomless_until = -float("inf") if self.has_room else now + ROOM_SECONDS
+        else:
+            self.has_room = False
+        return self.has_room
 
     def encode(self, rgb: NDArray[np.uint8], crf: int, now: float) -> TrackedPacket | None:
         """The next packet, of a (height, width, 3) picture at that second of a steady clock; None if it failed."""

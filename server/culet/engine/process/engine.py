@@ -65,6 +65,10 @@ class Engine:
         """Requests that are not answered yet, by peer and number."""
         self._waited_for: set[tuple[bytes, bytes]] = set()
         """Those of them that are WAITED_FOR."""
+        memory = Memory(budget(limits.memory))
+        memory.count("pictures", lambda: renderer.held().get("pictures", 0))
+        memory.count("device_skies", lambda: renderer.held().get("device_skies", 0))
+        memory.give_back(lambda _: renderer.release())
         stills = StillQueue(limits.max_stills, limits.max_still_pixels)
         self._painter = Painter(
             renderer,
@@ -75,14 +79,11 @@ class Engine:
             encode_still=encode,
             still_seconds=limits.still_seconds,
             rest=limits.rest,
+            has_room=lambda size: memory.make_room(size) >= size,
         )
         self._encodes = tuple(VIDEO_NAMES[codec] for codec in video_codecs())
         self._watchdog = Watchdog(render_thread)
         self._orphan_seconds = limits.orphan_seconds
-        memory = Memory(budget(limits.memory))
-        memory.count("pictures", lambda: renderer.held().get("pictures", 0))
-        memory.count("device_skies", lambda: renderer.held().get("device_skies", 0))
-        memory.give_back(lambda _: renderer.release())
         self._requests = Requests(
             self._painter, stills, limits, dict(renderer.describe()), tell=self._tell, memory=memory,
             forget_sky=lambda sky: renderer.forget(sky.pixels),

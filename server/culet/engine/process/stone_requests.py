@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -45,7 +46,7 @@ LIGHT_SECONDS = 20.0
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
-    ends with its piece. Diagrams one at a time in another thread, and rays in a third."""
+    ends with its piece, and so does a ray's. Diagrams one at a time in another thread, and rays in a third."""
 
     def __init__(self, sessions: OpenSessions, library: Library, limits: Limits) -> None:
         """Sessions and uploads that requests name."""
@@ -91,12 +92,21 @@ class StoneRequests:
         asked = _asked(request)
         stage = await self._staged(request)
         effort = Effort.PATIENT if request.session is None else Effort.RESTING
-        return await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort)
+        given_up = threading.Event()
+        try:
+            return await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort, given_up)
+        finally:
+            given_up.set()
 
-    def _traced(self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort) -> bytes:
+    def _traced(
+        self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort, given_up: threading.Event
+    ) -> bytes:
         if self._recorder is None:
             self._recorder = PathRecorder(open_device(), apart=True, light_seconds=LIGHT_SECONDS)
-        path = answered(self._recorder, stage, asked, wavelengths=wavelengths, effort=effort)
+        path = answered(
+            self._recorder, stage, asked, wavelengths=wavelengths, effort=effort,
+            waited_for=lambda: not given_up.is_set(),
+        )  # fmt: skip
         return PATH.dump_json(path)  # not on a loop: of thousands of steps that takes longer than a frame
 
     def _light_sums(self) -> LightSums:
