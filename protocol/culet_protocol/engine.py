@@ -11,7 +11,7 @@ from __future__ import annotations
 import struct
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, TypeAdapter
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from culet_protocol.messages import Condition, Message, Question, Revision, SessionEvent, VideoCodec
 
@@ -78,6 +78,20 @@ class Ask(Message):
     question: Annotated[Question, Field(discriminator="type")]
 
 
+class LesserDemand(BaseModel):
+    """What viewers can take of lesser pictures of the same frames, which are made for who subscribes to them.
+
+    The pixels of their largest window, and the bytes for which the slowest of their links has room, as in `Demand`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    width: Annotated[int, Field(ge=16, le=8192)]
+    height: Annotated[int, Field(ge=16, le=8192)]
+    bytes_per_frame: Annotated[int, Field(ge=1)] | None = None
+    bytes_at_rest: Annotated[int, Field(ge=1)] | None = None
+
+
 class Demand(Message):
     """What the session's viewers can take: frames per second (0: none), and the size in pixels.
 
@@ -93,6 +107,7 @@ class Demand(Message):
     height: Annotated[int, Field(ge=16, le=8192)]
     bytes_per_frame: Annotated[int, Field(ge=1)] | None = None
     bytes_at_rest: Annotated[int, Field(ge=1)] | None = None
+    lesser: LesserDemand | None = None
 
 
 class HoldVideo(Message):

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import hmac
-from typing import Final
+from enum import Enum
+from typing import Final, Literal
 
 from culet_protocol.frame import Codec
 from culet_protocol.messages import VideoCodec
@@ -20,6 +21,20 @@ VIDEO_OF_NAME: Final[dict[VideoCodec, Codec]] = {"h264": Codec.H264, "vp9": Code
 VIDEO_NAMES: Final = {codec: name for name, codec in VIDEO_OF_NAME.items()}
 VIDEO: Final = tuple(VIDEO_NAMES)
 """Codecs of which a frame may need the one before it."""
+
+
+class Lesser(Enum):
+    """What a session's frames are besides what their codecs say."""
+
+    PICTURES = "lesser"
+    """Smaller, or encoded with more loss, for viewers whose link or window has much less room than others'."""
+
+
+LESSER: Final = Lesser.PICTURES
+Stream = Codec | Literal[Lesser.PICTURES]
+"""What one can subscribe to of a session: pictures of their own (JPEG), video of a codec, or lesser pictures."""
+STREAMS: Final[tuple[Stream, ...]] = (Codec.JPEG, *VIDEO, LESSER)
+LESSER_BIT = 0x80
 
 
 def watch_key(session: str) -> bytes:
@@ -39,3 +54,11 @@ def video_topic(watch: bytes, codec: Codec) -> bytes:
     subscribes once more for the next key frame. The engine sends stills there too, and JPEG where it has no encoder.
     """
     return watch[:-1] + bytes([watch[-1] ^ codec])
+
+
+def topic_of(watch: bytes, stream: Stream) -> bytes:
+    """The ZeroMQ topic by which a session's frames come, by its watch id: of lesser pictures the last byte is another
+    one too."""
+    if stream is LESSER:
+        return watch[:-1] + bytes([watch[-1] ^ LESSER_BIT])
+    return video_topic(watch, stream) if stream in VIDEO else watch

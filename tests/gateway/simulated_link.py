@@ -83,6 +83,11 @@ class SimulatedLink:
         self.made_last += 1
         self._waiting = self.made_last, self.now, size
 
+    def come(self, number: int, size: int) -> None:
+        """A frame that was made elsewhere; one that waits yet is forgotten."""
+        self.made_last = number
+        self._waiting = number, self.now, size
+
     def _send(self) -> None:
         if self._waiting is None or not self.credit.available(self._waiting[2], self.now):
             return

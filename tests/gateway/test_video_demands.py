@@ -14,7 +14,7 @@ from culet.gateway.viewer import Viewer
 from culet_protocol.engine import Demand, HoldVideo
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Message
-from culet_protocol.watch import VIDEO
+from culet_protocol.watch import VIDEO, Stream
 
 NAME = "0" * 32
 LARGE = 50_000
@@ -27,12 +27,12 @@ class Link(EngineLink):
     def __init__(self) -> None:
         super().__init__(GatewaySettings(control="ipc:///none", frames="ipc:///none"))
         self.ready.set()
-        self.heard: list[tuple[str, Codec]] = []
+        self.heard: list[tuple[str, Stream]] = []
         self.holds: list[bool] = []
         self.record = SessionRecord(NAME, {})
         self.demands = Demands(self, {NAME: self.record})
 
-    def _codec(self, topic: bytes) -> Codec:
+    def _codec(self, topic: bytes) -> Stream:
         return next(codec for codec, its in self.record.topics.items() if its == topic)
 
     def subscribe(self, session: bytes) -> None:
@@ -158,4 +158,4 @@ async def test_one_whose_link_is_full_is_not_waited_for_by_others_for_long() -> 
 
 def test_topics_are_all_different() -> None:
     record = SessionRecord(NAME, {})
-    assert len(set(record.topics.values())) == 1 + len(VIDEO)
+    assert len(set(record.topics.values())) == 2 + len(VIDEO)

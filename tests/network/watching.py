@@ -89,6 +89,8 @@ class Watcher:
     link: Link
     session: str
     size: Resize
+    near: bool = False
+    """It watches at the server's end, without a link between."""
     arrivals: list[Arrival] = field(default_factory=list)
     round_trips: list[tuple[float, float]] = field(default_factory=list)
     """When a ping was answered, and how long that took."""
@@ -140,7 +142,7 @@ class Watcher:
             time.sleep(0.05)  # between two looks at another thread
 
     def _run(self) -> None:
-        namespaces.enter(self.link.viewer)
+        namespaces.enter(self.link.server if self.near else self.link.viewer)
         try:
             asyncio.run(self._watch())
         except (OSError, ConnectionClosed) as error:

@@ -85,11 +85,15 @@ class Credit:
 
     def _fits(self, size: int, now: float) -> bool:
         """Whether all that is in flight, and a frame of that size behind it, make no long queue."""
-        rate = self._bytes_per_second(now)
+        rate = self.bytes_per_second(now)
         seconds = self._delays.least + QUEUE_SECONDS
         return rate is None or sum(sent.size for sent in self._in_flight) + size <= rate * seconds
 
-    def _bytes_per_second(self, now: float) -> float | None:
+    def was_short(self, now: float) -> bool:
+        """Whether a frame has had to wait lately."""
+        return now - self._last_short <= RATE_WINDOW_SECONDS
+
+    def bytes_per_second(self, now: float) -> float | None:
         """What the link carries: no more than what would have brought an acknowledgement that is missing."""
         rate = self._throughput.bytes_per_second
         if rate is None or not self._in_flight:
@@ -139,19 +143,19 @@ class Credit:
         self._forget(now)
         if self.stalled(now):
             return 0.0
-        if now - self._last_short > RATE_WINDOW_SECONDS:
+        if not self.was_short(now):
             return FULL_RATE
-        carried = (self._bytes_per_second(now) or 0.0) / max(1, self._last_size)
+        carried = (self.bytes_per_second(now) or 0.0) / max(1, self._last_size)
         return min(FULL_RATE, max(LEAST_RATE, HEADROOM * self._taken_rate, carried))
 
     def bytes_per_frame(self, frames_per_second: float, now: float) -> int:
         """That a frame may have if they come at that rate."""
-        rate = self._bytes_per_second(now)
+        rate = self.bytes_per_second(now)
         return FIRST_BYTES if rate is None else max(1, int(rate / frames_per_second))
 
     def bytes_at_rest(self, now: float) -> int:
         """That a picture at rest may have."""
-        rate = self._bytes_per_second(now)
+        rate = self.bytes_per_second(now)
         return FIRST_BYTES if rate is None else max(1, int(rate * REST_SECONDS))
 
     def _forget(self, now: float) -> None:

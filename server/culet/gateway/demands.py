@@ -9,11 +9,10 @@ from collections.abc import Container
 
 from culet.errors import CuletError, NotFoundError
 from culet.gateway.link import EngineLink
-from culet.gateway.session_record import NO_DEMAND, SessionRecord, Wanted
-from culet_protocol.engine import Demand, HoldVideo
-from culet_protocol.frame import Codec
+from culet.gateway.session_record import NO_DEMAND, LesserWanted, SessionRecord, Wanted
+from culet_protocol.engine import Demand, HoldVideo, LesserDemand
 from culet_protocol.sizes import LIVE_SIZE
-from culet_protocol.watch import VIDEO, VIDEO_NAMES
+from culet_protocol.watch import VIDEO, VIDEO_NAMES, Stream
 
 log = logging.getLogger(__name__)
 
@@ -44,6 +43,7 @@ class Demands:
         """Listen to the session's frames or not, and have the engine told what the viewers can take if it changed."""
         if session.id not in self._sessions or not self._link.ready.is_set():
             return
+        session.assign_tiers(time.monotonic())
         if session.subscribed and session.wanted(time.monotonic()).frames_per_second <= 0:
             self.forget(session)
         self._listen(session)
@@ -62,6 +62,7 @@ class Demands:
                 height=height,
                 bytes_per_frame=demand.bytes_per_frame,
                 bytes_at_rest=demand.bytes_at_rest,
+                lesser=_lesser(demand),
             )
             try:
                 await self._link.request(told)
@@ -109,9 +110,9 @@ class Demands:
                 for viewer in session.viewers:
                     viewer.feed.lacks_key = False
 
-    def _hold(self, session: SessionRecord, codecs: frozenset[Codec]) -> None:
+    def _hold(self, session: SessionRecord, codecs: frozenset[Stream]) -> None:
         """Have the engine hold video of those codecs, and no other."""
-        for codec in codecs ^ session.held:
+        for codec in [codec for codec in VIDEO if codec in codecs ^ session.held]:
             told = HoldVideo(session=session.id, codec=VIDEO_NAMES[codec], held=codec in codecs)
             task = asyncio.create_task(self._tell_hold(told))
             self._telling.add(task)
@@ -135,6 +136,7 @@ class Demands:
             and _is_close(demand.frames_per_second, told.frames_per_second, RATE_CHANGE)
             and _is_close(demand.bytes_per_frame, told.bytes_per_frame, BYTES_CHANGE)
             and _is_close(demand.bytes_at_rest, told.bytes_at_rest, BYTES_CHANGE)
+            and _is_alike(demand.lesser, told.lesser)
         )
         return None if close else demand
 
@@ -148,6 +150,24 @@ class Demands:
         """Another engine has the session, and was told no demand."""
         session.demand, session.held = NO_DEMAND, frozenset()
         self.update(session)
+
+
+def _lesser(demand: Wanted) -> LesserDemand | None:
+    if demand.lesser is None:
+        return None
+    (width, height), per_frame, at_rest = demand.lesser
+    return LesserDemand(width=width, height=height, bytes_per_frame=per_frame, bytes_at_rest=at_rest)
+
+
+def _is_alike(lesser: LesserWanted | None, told: LesserWanted | None) -> bool:
+    """Whether it is not worth a message: the engine needs no limits for pictures that nobody is to have."""
+    if lesser is None or told is None:
+        return lesser is None
+    return (
+        lesser.size == told.size
+        and _is_close(lesser.bytes_per_frame, told.bytes_per_frame, BYTES_CHANGE)
+        and _is_close(lesser.bytes_at_rest, told.bytes_at_rest, BYTES_CHANGE)
+    )
 
 
 def _is_close(value: float | None, told: float | None, share: float) -> bool:

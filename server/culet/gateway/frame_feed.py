@@ -10,7 +10,7 @@ from collections import deque
 from typing import NamedTuple
 
 from culet_protocol.frame import Codec, Flags, Frame
-from culet_protocol.watch import VIDEO
+from culet_protocol.watch import LESSER, VIDEO, Stream
 
 MOST_WAITING = 4
 """Packets: two that were under way when the engine was told to hold, and as many for a gateway that is busy."""
@@ -32,6 +32,8 @@ class FrameFeed:
     def __init__(self) -> None:
         self.codec: Codec | None = None
         """Of the video that the viewer decodes; None: it wants pictures of their own."""
+        self.lesser = False
+        """It is sent lesser pictures, and no video."""
         self.lacks_key = False
         """It was offered a packet that it cannot use: it needs a key frame."""
         self._waiting: deque[Waiting] = deque()
@@ -47,8 +49,10 @@ class FrameFeed:
         return self._follows is not None
 
     @property
-    def codecs(self) -> frozenset[Codec]:
+    def codecs(self) -> frozenset[Stream]:
         """Of frames that it needs to be offered; JPEG: pictures of their own."""
+        if self.lesser:
+            return frozenset({LESSER})
         video = frozenset() if self.codec is None else frozenset({self.codec})
         return video if self.in_step else video | {Codec.JPEG}
 
@@ -62,7 +66,14 @@ class FrameFeed:
         self.codec = codec
         self.fall_out()
 
-    def offer(self, frame: Frame, message: bytes, stream: Codec, now: float) -> None:
+    def follow_lesser(self, *, lesser: bool) -> None:
+        """From now on lesser pictures, or those of the first tier again."""
+        if lesser and not self.lesser:
+            self.fall_out()
+            self.lacks_key = False
+        self.lesser = lesser
+
+    def offer(self, frame: Frame, message: bytes, stream: Stream, now: float) -> None:
         """A frame came: of the session's pictures of their own (JPEG), or of its video in a codec, in which there are
         pictures of their own too. Of a number that it was sent as a picture it decodes no packet."""
         if stream not in self.codecs:

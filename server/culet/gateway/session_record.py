@@ -4,22 +4,34 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from culet.gateway.client_address import UNKNOWN
+from culet.gateway.tiers import Tiers
 from culet.gateway.viewer import Viewer
 from culet_protocol.engine import SessionChange
-from culet_protocol.frame import Codec, Frame
+from culet_protocol.frame import Frame
 from culet_protocol.messages import Condition, Notice, Snapshot, State, balance_rate
 from culet_protocol.parts import with_parts
 from culet_protocol.sizes import LIVE_SIZE
-from culet_protocol.watch import VIDEO, video_topic, watch_key
+from culet_protocol.watch import STREAMS, Stream, topic_of, watch_key
 
 SNAPSHOT_BYTES_PER_SECOND = 4000
 """To one viewer. A session of one stone has some 900 bytes, told once a second; larger ones are told more rarely."""
 EVENTS_UNDER_WAY = 8
 """Events of one session that the engine has not answered; more events wait with their senders."""
+
+
+class LesserWanted(NamedTuple):
+    """What those viewers can take who are sent lesser pictures."""
+
+    size: tuple[int, int]
+    """Pixels."""
+    bytes_per_frame: int
+    """Of a moving one, as for the others."""
+    bytes_at_rest: int
+    """Of a picture at rest."""
 
 
 class Wanted(NamedTuple):
@@ -33,6 +45,8 @@ class Wanted(NamedTuple):
     """Of a moving one, if frames come as often as the session's balance asks for; None: as many as one likes."""
     bytes_at_rest: int | None
     """Of a picture at rest."""
+    lesser: LesserWanted | None = None
+    """Of lesser pictures; None if nobody is to have any."""
 
 
 NO_DEMAND = Wanted(0.0, LIVE_SIZE, None, None)
@@ -47,8 +61,9 @@ class SessionRecord:
         """The client that opened it."""
         self.topic = watch_key(session)
         """Its watch id, by which frames come."""
-        self.topics = {Codec.JPEG: self.topic} | {codec: video_topic(self.topic, codec) for codec in VIDEO}
-        """By which frames come that are pictures of their own (JPEG), and video."""
+        self.topics: dict[Stream, bytes] = {stream: topic_of(self.topic, stream) for stream in STREAMS}
+        """By which frames come that are pictures of their own (JPEG), video, and lesser pictures."""
+        self.tiers = Tiers()
         self.scene = scene
         self.revision: int | None = None
         """Of the scene, by the engine's count; None until the engine has said so."""
@@ -67,9 +82,9 @@ class SessionRecord:
         self.viewer_left = -float("inf")
         self.viewers_told = 0
         """How many of them the viewers were last told of."""
-        self.subscribed: frozenset[Codec] = frozenset()
+        self.subscribed: frozenset[Stream] = frozenset()
         """Of whose topics frames are received."""
-        self.held: frozenset[Codec] = frozenset()
+        self.held: frozenset[Stream] = frozenset()
         """Video that the engine was told to hold."""
         self.key_asked_at = -float("inf")
         """s, when a key frame was asked for last."""
@@ -110,7 +125,7 @@ class SessionRecord:
         """The notice for viewers, of which each is told what is new to it."""
         return State(revision=self.revision or 0, scene=self.scene, **self.condition.model_dump())
 
-    def codecs_wanted(self, now: float) -> frozenset[Codec]:
+    def codecs_wanted(self, now: float) -> frozenset[Stream]:
         """Of frames that those who watch need; JPEG: pictures of their own."""
         watching = [viewer.feed.codecs for viewer in self.viewers if viewer.watches(now)]
         return frozenset().union(*watching)
@@ -125,11 +140,27 @@ class SessionRecord:
         those who steer if there are any, and the bytes for which that one's link has room."""
         watching = [viewer for viewer in self.viewers if viewer.watches(now)]
         rate = max((viewer.rate(now) for viewer in watching), default=0.0)
-        sized = [viewer for viewer in watching if viewer.size]
-        sized = [viewer for viewer in sized if viewer.steers] or sized
-        deciding = min(sized or watching, key=lambda viewer: viewer.watching_since, default=None)
+        deciding = self._deciding(watching)
         if deciding is None:
             return NO_DEMAND
-        credit = deciding.credit
-        per_frame = credit.bytes_per_frame(balance_rate(self.condition.exactness), now)
-        return Wanted(rate, deciding.size or self.demand.size, per_frame, credit.bytes_at_rest(now))
+        credit, size, asked = deciding.credit, deciding.size or self.demand.size, balance_rate(self.condition.exactness)
+        lesser = None
+        if least := [viewer for viewer in watching if viewer.feed.lesser]:
+            sizes = [viewer.size or size for viewer in least]
+            lesser = LesserWanted(
+                (max(width for width, _ in sizes), max(height for _, height in sizes)),
+                min(viewer.credit.bytes_per_frame(asked, now) for viewer in least),
+                min(viewer.credit.bytes_at_rest(now) for viewer in least),
+            )
+        return Wanted(rate, size, credit.bytes_per_frame(asked, now), credit.bytes_at_rest(now), lesser)
+
+    def assign_tiers(self, now: float) -> None:
+        """See to it that each viewer is sent frames for which it has room."""
+        watching = [viewer for viewer in self.viewers if viewer.watches(now)]
+        self.tiers.assign(watching, self._deciding(watching), self.demand.size, now)
+
+    @staticmethod
+    def _deciding(watching: Sequence[Viewer]) -> Viewer | None:
+        sized = [viewer for viewer in watching if viewer.size]
+        sized = [viewer for viewer in sized if viewer.steers] or sized
+        return min(sized or watching, key=lambda viewer: viewer.watching_since, default=None)

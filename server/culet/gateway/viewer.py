@@ -28,6 +28,7 @@ from culet_protocol.messages import (
     Viewers,
 )
 from culet_protocol.parts import changed_parts
+from culet_protocol.watch import Stream
 
 NOTICES_WAITING = 256
 """A viewer that has so many unread ones does not read at all."""
@@ -105,9 +106,9 @@ class Viewer:
         self.credit.acknowledge(sequence, now)
         self.wake.set()
 
-    def offer(self, frame: Frame, message: bytes, now: float, stream: Codec = Codec.JPEG) -> None:
+    def offer(self, frame: Frame, message: bytes, now: float, stream: Stream = Codec.JPEG) -> None:
         """The session's latest frame; a picture of its own that it was offered before and has not taken is forgotten.
-        `stream`: the codec by whose topic it came, JPEG being that of pictures of their own."""
+        `stream`: by whose topic it came, JPEG being that of pictures of their own."""
         self.feed.offer(frame, message, stream, now)
         self.wake.set()
 

@@ -15,12 +15,13 @@ from culet.engine.governing.thrift import NO_LIMITS, Allowance
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
+from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.video_track import VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
 from culet_protocol.frame import Codec
-from culet_protocol.watch import VIDEO, WATCH_BYTES, video_topic
+from culet_protocol.watch import LESSER, VIDEO, WATCH_BYTES, Stream, topic_of
 
 T = TypeVar("T")
 
@@ -32,8 +33,10 @@ UNSENT_FRAMES = 2
 class Outgoing:
     """Of one session."""
 
-    codecs: frozenset[Codec] = frozenset({Codec.JPEG})
-    """Of what somebody subscribes to: frames that are pictures of their own (JPEG), and video."""
+    codecs: frozenset[Stream] = frozenset({Codec.JPEG})
+    """Of what somebody subscribes to: frames that are pictures of their own (JPEG), video, and lesser pictures."""
+    lesser: LesserTier = field(default_factory=LesserTier)
+    """How lesser pictures are made, if somebody subscribes to them."""
     tracks: dict[Codec, VideoTrack] = field(default_factory=dict)
     """Of video that somebody subscribes to."""
     message: bytes | None = None
@@ -47,21 +50,29 @@ class Outgoing:
     latest: asyncio.Task[None] | None = None
     """Encodes and sends the frame that was drawn last."""
 
-    def watch(self, codec: Codec, *, subscribed: bool) -> None:
+    def watch(self, codec: Stream, *, subscribed: bool) -> None:
         """Somebody began, or the last one ceased, to receive frames in that codec. Whoever subscribes once more to
         video lacks a key frame."""
         if not subscribed:
             self.codecs -= {codec}
-            self.tracks.pop(codec, None)
+            if codec is LESSER:
+                self.lesser.message = None
+            else:
+                self.tracks.pop(codec, None)
             return
         self.codecs |= {codec}
-        if codec in VIDEO:
+        if codec is not LESSER and codec in VIDEO:
             self.tracks.setdefault(codec, VideoTrack(codec)).want_key()
 
     def hold(self, codec: Codec, now: float, *, held: bool) -> None:
         """Encode no more video of that codec for a while, or go on."""
         if codec in self.tracks:
             self.tracks[codec].hold(now, held=held)
+
+    @property
+    def kept_bytes(self) -> int:
+        """Of the frame sent last."""
+        return len(self.message or b"") + len(self.lesser.message or b"")
 
     @property
     def nbytes(self) -> int:
@@ -125,7 +136,9 @@ class FrameSender:
         if outgoing.message is not None:
             outgoing.sent_at = self._now()
             self._tally.counters.frames_repeated += 1
-            self._send_to(outgoing.codecs, outgoing.message)
+            self._send_to(outgoing.codecs - {LESSER}, outgoing.message)
+            if LESSER in outgoing.codecs:
+                self._send_to({LESSER}, outgoing.lesser.message or outgoing.message)
 
     def stop(self) -> None:
         """Encode nothing more."""
@@ -141,7 +154,8 @@ class FrameSender:
         before: asyncio.Task[None] | None,
     ) -> None:
         drawn_at, started = self._now(), time.perf_counter()
-        codecs, tracks = outgoing.codecs, list(outgoing.tracks.values()) if frame.planned else []
+        codecs, lesser = outgoing.codecs - {LESSER}, outgoing.lesser if LESSER in outgoing.codecs else None
+        tracks = list(outgoing.tracks.values()) if frame.planned else []
         video: dict[VideoTrack, Coded] = {}
         try:
             if tracks and before is not None:
@@ -157,16 +171,18 @@ class FrameSender:
                         video[track] = frame.coded(track.codec, packet, track.sequence)
             picture = await self._in_thread(frame.encoded, outgoing.allowance.at_rest or math.inf) if codecs else None
             encode_seconds = time.perf_counter() - started
+            less = None if lesser is None else await self._in_thread(lesser.encoded, frame)
             if frame.encoding is not None:
                 for coded in [*video.values(), *([] if picture is None else [picture])]:
                     learn(coded)
             if before is not None:
                 await asyncio.wait([before])  # so that frames leave in order
-            if picture is None and not video:
-                outgoing.message = None  # of something else than what is shown
+            if picture is None and less is None and not video:
+                outgoing.message = outgoing.lesser.message = None  # of something else than what is shown
                 return
             session.sequence += 1
             message = None if picture is None else frame.pack(session, picture, encode_seconds)
+            lesser_message = None if less is None else frame.pack(session, less, time.perf_counter() - started)
             packed = {track: frame.pack(session, coded, encode_seconds) for track, coded in video.items()}
         except Exception as error:  # one session's failure must not end the others'
             for track in video:
@@ -179,19 +195,21 @@ class FrameSender:
         now = self._now()
         self._tally.durations.encode_wait.add(max(0.0, now - drawn_at))
         self._tally.durations.frame.add(max(0.0, now - begun_at))
-        outgoing.message, outgoing.sent_at = message, now
+        outgoing.message, outgoing.lesser.message, outgoing.sent_at = message, lesser_message, now
         self._tally.counters.frames_sent += 1
         for track, sent in packed.items():
             track.sequence = session.sequence
             self._send_to({track.codec}, sent)
         if message is not None:  # after the packets: who is sent a frame as a picture cannot begin video with it
             self._send_to(codecs, message)
+        if lesser_message is not None:
+            self._send_to({LESSER}, lesser_message)
 
-    def _send_to(self, codecs: Collection[Codec], message: bytes) -> None:
+    def _send_to(self, codecs: Collection[Stream], message: bytes) -> None:
         """A message by the session's watch id to who subscribes to frames in those codecs."""
         for codec in codecs:
             watch, rest = message[:WATCH_BYTES], message[WATCH_BYTES:]
-            self._send(video_topic(watch, codec) + rest if codec in VIDEO else message)
+            self._send(topic_of(watch, codec) + rest)
 
     async def _in_thread(self, call: Callable[..., T], *arguments: object) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._threads, call, *arguments)

@@ -171,6 +171,7 @@ class LivePainter:
             governor.rendered(work.plan, seconds, work.spent - seconds, *asked)
         elif work.kind is Kind.FULL:
             governor.rested(work.shown.scene, work.wanted, seconds, *asked)
+        live.outgoing.lesser.room = live.quality.room(live.balance, live.outgoing.lesser.allowance)
         self._sender.publish(live.session, live.outgoing, live.quality.encoded, work.frame, work.begun_at)
 
     async def _prepare(self, live: LivePicture, work: FrameWork) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import assert_never
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
-from culet.engine.governing.thrift import Allowance, Thrift, read_byte_ladder, read_video_ladder
+from culet.engine.governing.thrift import Allowance, Room, Thrift, read_byte_ladder, read_video_ladder
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.frame_work import FrameWork, Kind
 from culet.scene import Scene
@@ -55,7 +55,7 @@ class Quality:
     ) -> Plan:
         """For the next moving frame: as good as there is time for, and as large as the link has room for; `video` has
         more pixels in as many bytes."""
-        room = allowance.room(balance_rate(balance.exactness), 1 / max(self._planned_seconds, 1e-3))
+        room = self.room(balance, allowance)
         if room is None or balance.pinned:
             return self.governor.plan(scene, size, balance)
         scale = (self.video_thrift if video else self.thrift).scale(size, room)
@@ -64,6 +64,10 @@ class Quality:
         smaller = plan.size == reduced != size
         encoding, crf = self.thrift.encoding(plan.size, room), self.video_thrift.encoding(plan.size, room).quality
         return replace(plan, encoding=replace(encoding, thrifty=encoding.thrifty or smaller, crf=crf, reduced=smaller))
+
+    def room(self, balance: Balance, allowance: Allowance) -> Room | None:
+        """That a link has for a moving frame; None: as much as one likes."""
+        return allowance.room(balance_rate(balance.exactness), 1 / max(self._planned_seconds, 1e-3))
 
     def encoded(self, coded: Coded) -> None:
         """What a moving frame for a link with limits has become. Key frames are few, and so do not count."""

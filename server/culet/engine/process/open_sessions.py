@@ -19,8 +19,7 @@ from culet.scene import Environment, Scene
 from culet.simulation.overlaps import overlaps
 from culet.stage import Library, Stage
 from culet_protocol.engine import OpenSession
-from culet_protocol.frame import Codec
-from culet_protocol.watch import VIDEO, video_topic
+from culet_protocol.watch import STREAMS, topic_of
 
 SUBSCRIPTIONS = 4096
 """Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
@@ -28,7 +27,6 @@ SESSION_BYTES = 2**20
 """Of a session: its scene, its simulation with the stone's hull, and its stone if that is a cut."""
 SHOWN_BYTES = 2**14
 """Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
-TOPICS = (Codec.JPEG, *VIDEO)
 AT_REST_SECONDS = 2.0
 """Without a frame, after which a session's encoders are given back where memory is needed."""
 HISTORY_SHARE = 1 / 8
@@ -103,8 +101,8 @@ class OpenSessions:
             self._clients[request.session] = request.client
         live = self._painter.pictures[request.session] = LivePicture(session)
         live.outgoing.codecs = frozenset()
-        for codec in TOPICS:
-            if topic(live, codec) in self._subscriptions:
+        for codec in STREAMS:
+            if topic_of(live.session.key, codec) in self._subscriptions:
                 live.outgoing.watch(codec, subscribed=True)
         live.watched = bool(live.outgoing.codecs)
         self._painter.wake()
@@ -131,7 +129,9 @@ class OpenSessions:
             self._subscriptions.add(key)
         elif not subscribed:
             self._subscriptions.discard(key)
-        found = next(((live, codec) for live in self for codec in TOPICS if topic(live, codec) == key), None)
+        found = next(
+            ((live, codec) for live in self for codec in STREAMS if topic_of(live.session.key, codec) == key), None
+        )
         if found is None:
             return
         live, codec = found
@@ -170,11 +170,6 @@ class OpenSessions:
         if snapshot is None:
             return Session(name, stage, sky=sky, history=self._history)
         return Session.restored(name, stage, snapshot, sky=sky, history=self._history)
-
-
-def topic(live: LivePicture, codec: Codec) -> bytes:
-    """By which frames of a session come in a codec, JPEG meaning pictures of their own."""
-    return video_topic(live.session.key, codec) if codec in VIDEO else live.session.key
 
 
 def history_length(limits: Limits, budget: int) -> int:

@@ -182,6 +182,9 @@ class Requests:
         others = [other for other in self.sessions if other is not live]
         live.rate = request.frames_per_second
         live.outgoing.allowance = Allowance(request.bytes_per_frame, request.bytes_at_rest)
+        if (less := request.lesser) is not None:
+            live.outgoing.lesser.allowance = Allowance(less.bytes_per_frame, less.bytes_at_rest)
+            live.outgoing.lesser.size = less.width, less.height
         live.size = size_within(
             self._memory,
             live_size(request.width, request.height, self._limits),
@@ -197,7 +200,7 @@ class Requests:
     def _session_bytes(self) -> int:
         """Of open sessions, and of what only they and their stills hold of skies."""
         kept = [sky.pixels for sky in self._skies.contents()]
-        own = sum(SESSION_BYTES + len(live.outgoing.message or b"") for live in self.sessions)
+        own = sum(SESSION_BYTES + live.outgoing.kept_bytes for live in self.sessions)
         return own + sky_bytes(self.sessions, self._stills, kept)
 
 

@@ -1,0 +1,68 @@
+"""The second picture of a session's frames, smaller or of less quality, for viewers whose link or window has much less
+room than that of the viewer who decides. It is made of the frame as it was rendered, and only while somebody asks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import PIL.Image
+from numpy.typing import NDArray
+
+from culet.engine.governing.thrift import NO_LIMITS, Allowance, Room, Thrift, read_byte_ladder
+from culet.engine.painting import jpeg
+from culet.engine.painting.coded import Coded
+from culet.engine.painting.live_frame import LiveFrame
+
+LEAST_SIDE = 16
+"""Pixels."""
+
+
+class LesserTier:
+    """Of one session. `encoded` runs on an encoding thread, one call at a time, the rest on the engine's loop."""
+
+    def __init__(self) -> None:
+        """Without limits, until some are told."""
+        self.allowance: Allowance = NO_LIMITS
+        self.size: tuple[int, int] | None = None
+        """Pixels into which the picture has to fit in one direction at least; None: of any size."""
+        self.room: Room | None = None
+        """That the link has for a moving frame, by the rate at which they are made."""
+        self.message: bytes | None = None
+        """The frame sent last, by the session's watch id."""
+        self._thrift = Thrift(read_byte_ladder())
+
+    def encoded(self, frame: LiveFrame) -> Coded:
+        """The frame as a JPEG within the limits. Takes milliseconds."""
+        width, height = self._fitting(frame.size)
+        if not frame.planned:
+            quality = jpeg.MOVING_QUALITY if frame.shown.moving else jpeg.RESTING_QUALITY
+            most = self.allowance.at_rest or math.inf
+            picture = jpeg.encode_within(_shrunk(frame.rgb, width, height), quality, most)
+            return Coded.of_jpeg(picture, thrifty=picture.quality < quality or picture.width < width)
+        best = jpeg.MOVING_QUALITY if frame.encoding is None else frame.encoding.quality
+        thrifty = frame.encoding is not None and frame.encoding.thrifty
+        if self.room is None:
+            return Coded.of_jpeg(jpeg.encode_within(_shrunk(frame.rgb, width, height), best, math.inf), thrifty=thrifty)
+        scale = self._thrift.scale((width, height), self.room)
+        size = max(LEAST_SIDE, round(scale * width)), max(LEAST_SIDE, round(scale * height))
+        how = self._thrift.encoding(size, self.room)
+        quality = min(best, how.quality)
+        picture = jpeg.encode_within(_shrunk(frame.rgb, *size), quality, how.most_bytes)
+        self._thrift.encoded((picture.width, picture.height), picture.quality, len(picture.data))
+        less = picture.quality < best or picture.width < width
+        return Coded.of_jpeg(picture, thrifty=thrifty or less)
+
+    def _fitting(self, size: tuple[int, int]) -> tuple[int, int]:
+        """A frame's size, or the smaller one that fills the viewers' windows."""
+        if self.size is None:
+            return size
+        scale = min(1.0, max(self.size[0] / size[0], self.size[1] / size[1]))
+        return max(LEAST_SIDE, round(scale * size[0])), max(LEAST_SIDE, round(scale * size[1]))
+
+
+def _shrunk(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+    if rgb.shape[:2] == (height, width):
+        return rgb
+    picture = PIL.Image.fromarray(np.ascontiguousarray(rgb))
+    return np.asarray(picture.resize((width, height), PIL.Image.Resampling.HAMMING))
