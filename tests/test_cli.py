@@ -16,6 +16,7 @@ import pytest
 from PIL import Image
 
 from command_line import Run, culet, invoke
+from culet.geometry.stone_file import shape_from_file
 from culet.rendering.features import RUNTIME, features_of
 from culet.scene import PRESETS
 from culet.study.cases import CASES, FEATURE_CASES, stage_of
@@ -128,6 +129,10 @@ def test_a_design_takes_the_place_of_the_stone_and_is_shown_and_converted(tmp_pa
     assert "40.04" in shown  # tan = 1.2 tan 35 degrees
     assert "0.5000" in shown
     assert invoke("design", "diagram", back, "-o", tmp_path / "stone.svg").returncode == 0
+    mesh = tmp_path / "stone.obj"
+    assert invoke("design", "mesh", back, mesh).stdout.endswith(" of 25 facets\n")
+    one, other = (shape_from_file(file.read_bytes(), file.suffix[1:]).planes for file in (back, mesh))
+    assert np.abs(one[:, None] - other).max(axis=-1).min(axis=-1).max() < 1e-12  # measured 7e-15
     assert (tmp_path / "stone.svg").read_text().count("<polygon") > 25
     for file in (there, back):
         run = invoke("render", "-o", f"{file}.npy", "--mesh", file, *TINY)

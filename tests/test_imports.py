@@ -39,6 +39,41 @@ def test_a_part_does_not_load_what_belongs_to_another(module: str) -> None:
     assert [name for name in loaded if f"{name}.".startswith(tuple(f"{each}." for each in NOT_LOADED[module]))] == []
 
 
+NOT_RENDERED_BY = (
+    *("culet.engine", "culet.gateway", "culet.simulation", "culet.study", "culet.grading", "culet.batch"),
+    *(
+        "fastapi",
+        "uvicorn",
+        "zmq",
+        "dask",
+        "distributed",
+        "pandas",
+        "matplotlib",
+        "trimesh",
+        "av",
+        "simplejpeg",
+        "OpenEXR",
+    ),
+    *("scipy.ndimage", "scipy.stats", "scipy.interpolate", "scipy.integrate", "scipy.signal"),
+)
+"""Packages that a picture of a stone needs nothing of."""
+PICTURE = """
+import sys
+from culet.cli import app
+app(["render", "--width", "8", "--height", "8", "--samples", "1", "-o", sys.argv[1]], standalone_mode=False)
+print(*sys.modules)
+"""
+
+
+def test_a_picture_loads_nothing_of_what_it_does_not_need(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", PICTURE, str(tmp_path / "stone.png")], capture_output=True, text=True, check=True
+    )
+    loaded = run.stdout.splitlines()[-1].split()
+    assert "culet.rendering.renderer" in loaded
+    assert [name for name in loaded if f"{name}.".startswith(tuple(f"{each}." for each in NOT_RENDERED_BY))] == []
+
+
 PACKAGES = ("culet", "culet_kernels", "culet_protocol", "culet_client")
 
 

@@ -150,7 +150,11 @@ def test_a_saved_picture_holds_what_a_screen_shows(tmp_path: Path, ending: str) 
 def test_a_saved_exr_holds_the_radiance(tmp_path: Path) -> None:
     picture = culet.render("white", *SIZE, samples=1)
     picture.save(str(tmp_path / "gem.EXR"))
-    assert (OpenEXR.File(str(tmp_path / "gem.EXR")).channels()["RGB"].pixels == picture.linear).all()
+    file = OpenEXR.File(str(tmp_path / "gem.EXR"))
+    assert (file.channels()["RGB"].pixels == picture.linear).all()
+    header = file.header()
+    assert culet.load_scene(json.loads(header["culet.scene"])) == picture.scene
+    assert (header["software"], header["comments"]) == (f"culet {culet.__version__}", picture.quality())
 
 
 def test_a_picture_is_not_saved_under_an_ending_that_it_does_not_know(tmp_path: Path) -> None:

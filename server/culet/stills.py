@@ -99,12 +99,23 @@ class Picture:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the file that the path's ending says, whole or not at all; returns the path.
 
-        `.png`, `.webp` and `.tga` hold `rgb` without loss, `.jpg` nearly so; `.exr` and `.npy` hold `linear`.
+        `.png`, `.webp` and `.tga` hold `rgb` without loss, `.jpg` nearly so; `.exr` and `.npy` hold `linear`. An
+        `.exr` has the scene as JSON (`culet.scene`), the version (`software`) and `quality()` (`comments`) beside it.
         InputError for another ending, and for a place that cannot be written to.
         """
         place = Path(path)
-        files.write(place, lambda: self.rgb, lambda: self.linear)
+        files.write(place, lambda: self.rgb, lambda: self.linear, self._about())
         return place
+
+    def _about(self) -> dict[str, str]:
+        """What it takes to make the picture again."""
+        from culet.version import __version__
+
+        return {
+            "culet.scene": self.scene.model_dump_json(),
+            "software": f"culet {__version__}",
+            "comments": self.quality(),
+        }
 
     def with_legend(self) -> Picture:
         """The picture with a legend in a corner of `rgb`: what the colours of ASET or Ideal-Scope mean, and the tilt.

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from culet.errors import InputError
-from culet.rendering.device import remedy
+from culet.errors import DeviceError, InputError
+from culet.rendering.device import open_device, open_in_advance, remedy
 from culet.rendering.driver_package import BY_SYSTEM, how_to_install
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
@@ -134,3 +134,15 @@ def test_where_the_system_is_not_known_all_packages_are_named(monkeypatch: pytes
     assert all(command in how_to_install() for command in BY_SYSTEM.values())
     monkeypatch.setattr("sys.platform", "darwin")
     assert how_to_install() == "brew install pocl"
+
+
+def test_what_was_opened_in_advance_is_what_is_opened_and_its_refusal_comes_then(
+    clean: pytest.MonkeyPatch,
+) -> None:
+    open_in_advance()
+    first = open_device()
+    assert open_device() is not first
+    clean.setenv("CULET_DEVICE", "no such device")
+    open_in_advance()
+    with pytest.raises(DeviceError, match="no such device"):
+        open_device()

@@ -83,6 +83,29 @@ def convert(
 
 
 @app.command()
+def mesh(
+    file: DesignFile,
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="Mesh to write: .obj, .ply or .stl, by its ending.")],
+) -> None:
+    """Write a design's stone as a mesh, for other programs.
+
+    It is as a scene has it: y up, the centre of mass at the origin, the farthest corner at 1. Of .obj the corners are
+    exact, of the others to single precision.
+    """
+    from culet.geometry.designs.solid import shape_of_design
+    from culet.geometry.mesh_files import ENDINGS, mesh_file
+
+    with errors_in_one_line():
+        check_place(out, "out", ENDINGS)
+        design = read(file)
+        with naming(str(file)):
+            shape = shape_of_design(design, out.stem)
+        write_whole(out, mesh_file(shape, out.suffix[1:].lower()), "out")
+        corners, triangles, facets = len(shape.vertices), len(shape.triangles), len(shape.planes)
+        typer.echo(f"{out}: {corners} corners, {triangles} triangles of {facets} facets")
+
+
+@app.command()
 def diagram(
     file: DesignFile,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Drawing: .svg")] = Path("diagram.svg"),

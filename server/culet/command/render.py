@@ -59,12 +59,16 @@ def render(
 ) -> None:
     """Render a still picture into a file."""
     from culet.rendering.files import FORMATS
-    from culet.stills import before, render_stage
 
     with errors_in_one_line():
         check_place(out, "out", FORMATS)
         if legend and out.suffix.lower() in (".exr", ".npy"):
             raise InputError(f"legend: expected a picture for a screen, got {out.name!r} of radiance", "legend")
+        from culet.rendering.device import open_in_advance
+
+        open_in_advance()
+        from culet.stills import before, render_stage
+
         stage = read_stage(scene, preset, mesh, sky, cut)
         if background is not None:
             stage = before(stage, background)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import threading
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from collections.abc import Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -87,13 +88,39 @@ class Device:
         return self.lanes if real is np.float32 else max(1, self.lanes // 2)
 
 
+_opening: deque[Future[Device]] = deque(maxlen=1)
+"""What was begun in advance, until it is asked for."""
+
+
+def open_in_advance() -> None:
+    """Begin to open the device in a thread of its own: a driver is at it without the interpreter, which imports modules
+    meanwhile. The next `open_device` waits for that one. The process does not end before it is open."""
+    opening: Future[Device] = Future()
+
+    def work() -> None:
+        try:
+            opening.set_result(_opened())
+        except BaseException as error:
+            opening.set_exception(error)
+
+    _opening.append(opening)
+    threading.Thread(target=work, name="open-device").start()
+
+
 def open_device() -> Device:
     """The first device, processors before others, that builds, runs and gets a small kernel right.
 
     CULET_DEVICE, a part of a device's or platform's name, narrows the choice. Listing platforms is not enough: a driver
     can be installed and yet fail to build anything. DeviceError says what was tried.
     """
+    try:
+        opening = _opening.pop()
+    except IndexError:
+        return _opened()
+    return opening.result()
 
+
+def _opened() -> Device:
     wanted = os.environ.get("CULET_DEVICE", "").lower()
     tried: list[str] = []
     limit_threads()

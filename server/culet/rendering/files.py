@@ -17,6 +17,7 @@ from culet.memory_file import path_in_memory
 from culet.places import check_place, write_whole
 
 JPEG_QUALITY = 95
+NOTHING: Mapping[str, str] = MappingProxyType({})
 
 Developed = NDArray[np.uint8]
 """(height, width, 3), as a screen shows it; of a transparent picture (height, width, 4), alpha last."""
@@ -52,12 +53,12 @@ def _webp(rgb: Developed) -> bytes:
     return _pillow(rgb, "WEBP", lossless=True, quality=40)  # of the effort, not of the picture
 
 
-def _exr(linear: Linear) -> bytes:
-    """Linear radiance, single precision. The library writes to paths only."""
+def _exr(linear: Linear, about: Mapping[str, str] = NOTHING) -> bytes:
+    """Linear radiance, single precision, with these attributes. The library writes to paths only."""
     import OpenEXR  # most pictures are no .exr, and importing this takes 15 ms
 
     pixels = np.ascontiguousarray(linear, np.float32)
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **about}
     with path_in_memory(ending="exr") as path:
         OpenEXR.File(header, {"RGBA"[: pixels.shape[-1]]: pixels}).write(str(path))
         return path.read_bytes()
@@ -90,10 +91,13 @@ def encode(format: str, rgb: Callable[[], Developed], linear: Callable[[], Linea
     raise InputError(f"expected a format of {', '.join(FORMATS)}; got {format!r}", "format")
 
 
-def write(path: Path, rgb: Callable[[], Developed], linear: Callable[[], Linear]) -> None:
-    """Encode by the path's ending and put the file there whole, or not at all.
+def write(
+    path: Path, rgb: Callable[[], Developed], linear: Callable[[], Linear], about: Mapping[str, str] = NOTHING
+) -> None:
+    """Encode by the path's ending and put the file there whole, or not at all. An .exr has the attributes of `about`.
 
     InputError for an ending that no format has, and for a place that cannot be written to.
     """
     check_place(path, "path", FORMATS)
-    write_whole(path, encode(path.suffix.lstrip(".").lower(), rgb, linear), "path")
+    ending = path.suffix.lstrip(".").lower()
+    write_whole(path, _exr(linear(), about) if ending == "exr" else encode(ending, rgb, linear), "path")
