@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -20,11 +23,11 @@ def patched(name: str, **change: object) -> Scene:
 
 def test_the_colours_of_an_instrument_are_told_with_the_head_that_the_scene_has() -> None:
     assert [line.text for line in legend_of(preset("aset"))] == [
-        "from above, 45\u00b0 to 75\u00b0", "from aside, 0\u00b0 to 45\u00b0", "from the head, 75\u00b0 to 90\u00b0",
-        "leak", "face up",
+        "From above, 45\u00b0 to 75\u00b0", "From aside, 0\u00b0 to 45\u00b0", "Your head, 75\u00b0 to 90\u00b0",
+        "Leak", "Face up",
     ]  # fmt: skip
     wide = patched("ideal-scope", environment={"head_degrees": 22.5})
-    assert "comes back, 0\u00b0 to 67.5\u00b0" in [line.text for line in legend_of(wide)]
+    assert "Comes back, 0\u00b0 to 67.5\u00b0" in [line.text for line in legend_of(wide)]
     assert legend_of(Scene()) == []
 
 
@@ -47,9 +50,9 @@ def test_a_head_that_nothing_said_is_the_instruments_own() -> None:
 
 
 def test_a_tilt_is_told_with_its_side() -> None:
-    assert tilt_words(Camera(position=(0, 10, 0), target=(0, 0, 0), up=(0, 0, -1))) == "face up"
-    assert tilt_words(Camera(position=(0, 1, 1), target=(0, 0, 0))) == "tilted 45.0\u00b0 toward 0\u00b0"
-    assert tilt_words(Camera(position=(1, 1, 0), target=(0, 0, 0))) == "tilted 45.0\u00b0 toward 90\u00b0"
+    assert tilt_words(Camera(position=(0, 10, 0), target=(0, 0, 0), up=(0, 0, -1))) == "Face up"
+    assert tilt_words(Camera(position=(0, 1, 1), target=(0, 0, 0))) == "Tilted 45.0\u00b0 toward 0\u00b0"
+    assert tilt_words(Camera(position=(1, 1, 0), target=(0, 0, 0))) == "Tilted 45.0\u00b0 toward 90\u00b0"
 
 
 def test_a_legend_is_drawn_in_a_corner_and_leaves_the_rest() -> None:
@@ -69,3 +72,14 @@ def test_a_picture_without_room_or_without_a_legend_is_refused() -> None:
         render("aset", 64, 36, samples=1).with_legend()
     with pytest.raises(InputError, match="expected an instrument's sky"):
         render("white", 64, 36, samples=1).with_legend()
+
+
+def test_the_words_are_the_pages() -> None:
+    """As the page's own list has them, numbers aside."""
+    page = Path("client/web/src/words/english.ts").read_text(encoding="utf-8")
+    said = page[page.index("export const legend") :].partition("};")[0]
+    lines = [*legend_of(preset("aset")), *legend_of(preset("ideal-scope"))]
+    texts = [line.text for line in lines] + [tilt_words(Camera(position=(0, 1, 1), target=(0, 0, 0)))]
+    for text in texts:
+        for words in re.findall(r"[A-Za-z][A-Za-z ,]*[a-z]", text):
+            assert words in said, text

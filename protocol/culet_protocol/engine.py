@@ -142,6 +142,8 @@ class Render(Message):
     samples: int | None = None
     error: float | None = None
     format: Format = "tga"
+    legend: bool = False
+    """In a corner what an instrument's colours mean, and the tilt; not of radiance (exr)."""
     part: Annotated[float, Field(gt=0, le=1)] = 1
     """Of the work and the time that one still may take: so many of these together take no more."""
     client: Annotated[str, Field(max_length=200)] = ""

@@ -122,14 +122,9 @@ class Picture:
 
         InputError if the scene has no legend, or the picture no room.
         """
-        from culet.legend import drawn, legend_of
+        from culet.legend import drawn, legend_for
 
-        lines = legend_of(self.scene)
-        if not lines:
-            raise InputError(
-                "legend: expected an instrument's sky (aset, ideal-scope) or parallel rays, got neither", "legend"
-            )
-        return replace(self, rgb=drawn(self.rgb, lines))
+        return replace(self, rgb=drawn(self.rgb, legend_for(self.scene, self.width, self.height)))
 
     def encoded(self, format: str) -> bytes:  # noqa: A002 - as Pillow calls it
         """The same file in memory, its format an ending without the dot."""

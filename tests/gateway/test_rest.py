@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from culet.scene import PRESETS
+from culet.scene import PRESETS, preset
 from culet.scene.cuts import CUTS
 from culet.scene.motion import Simulation
 from culet.scene.stone import MaterialName
@@ -105,6 +105,40 @@ async def test_an_address_ends_as_the_picture_that_it_answers_with(
     assert (frame.status_code, frame.headers["content-type"]) == (200, media_type)
     kind = "attachment" if ending == "tga" else "inline"
     assert frame.headers["content-disposition"] == f'{kind}; filename="culet-1.{ending}"'  # a new session is at step 1
+
+
+async def test_a_legend_is_drawn_into_stills_that_have_one(gateway: Gateway) -> None:
+    """In the lower left corner, of a preset, a scene and a session alike."""
+    size = {"width": 240, "height": 180, "samples": 1}
+    asked: dict[str, str | int] = {**size, "preset": "aset"}
+    plain, told = [
+        await gateway.http.get("/api/render.png", params=asked | {"legend": legend}) for legend in ("false", "true")
+    ]
+    pixels = [np.asarray(Image.open(io.BytesIO(each.content))) for each in (plain, told)]
+    changed = (pixels[0] != pixels[1]).any(axis=-1)
+    assert changed[-20:, :20].all()
+    assert not changed[:60].any()
+    assert not changed[:, -40:].any()
+    assert plain.headers["etag"] != told.headers["etag"]
+    scene = preset("aset").model_dump(mode="json")
+    of_scene = await gateway.http.post("/api/render", json={"scene": scene, **size, "legend": True, "format": "png"})
+    assert of_scene.content == told.content
+    session = (await gateway.http.post("/api/sessions", json={"preset": "aset"})).json()["id"]
+    of_session = await gateway.http.get(f"/api/sessions/{session}/frame.png", params=size | {"legend": "true"})
+    assert np.array_equal(np.asarray(Image.open(io.BytesIO(of_session.content)))[-20:, :20], pixels[1][-20:, :20])
+
+
+@pytest.mark.parametrize(
+    ("path", "query"),
+    [
+        ("/api/render.png", {"preset": "white"}),
+        ("/api/render.png", {"preset": "aset", "width": 64}),
+        ("/api/render.exr", {"preset": "aset"}),
+    ],
+)
+async def test_a_legend_that_cannot_be_is_refused(gateway: Gateway, path: str, query: dict[str, str]) -> None:
+    asked = {"width": "240", "height": "180", "samples": "1", "legend": "true"} | query
+    assert_problem(await gateway.http.get(path, params=asked), 422, "legend")
 
 
 async def test_another_sky_of_a_preset_is_seen(gateway: Gateway) -> None:

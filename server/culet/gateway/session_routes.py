@@ -17,7 +17,7 @@ from culet.gateway.problems import answers, check_numbers, finite
 from culet.gateway.quality import quality_headers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
-from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Error, Height, Samples, Width, response_class_of
+from culet.gateway.stills import ENDINGS, MEDIA_TYPES, Error, Height, Legend, Samples, Width, response_class_of
 from culet.scene import Scene, preset
 from culet.scene.fields import Model
 from culet_protocol import WATCH_SUBPROTOCOL
@@ -103,6 +103,7 @@ class FrameQuery(Model):
     height: Height | None = None
     samples: Samples | None = None
     error: Error | None = None
+    legend: Legend = False
 
 
 @router.post("/api/sessions", status_code=201, responses=answers(401, 404, 413, 422, 429, 503))
@@ -291,6 +292,7 @@ async def _frame(
         samples=query.samples,
         error=query.error,
         format=file_format,
+        legend=query.legend,
         client=client,
     )
     with gateway.stills.place(client):

@@ -59,6 +59,13 @@ Error = Annotated[
         "over pixels and colours. From 0.004 on no difference is seen. The answer's headers say what was reached.",
     ),
 ]
+Legend = Annotated[
+    bool,
+    Field(
+        description="In the lower left corner what the colours of ASET or Ideal-Scope mean, and how far the camera is "
+        "tilted, in the page's words: for scenes with such a sky or parallel rays, in formats for screens."
+    ),
+]
 Kind = Literal["none", "matte", "mirror"]
 
 
@@ -75,6 +82,7 @@ class StillQuery(Model):
     height: Height = DEFAULT_HEIGHT
     samples: Samples | None = None
     error: Error | None = None
+    legend: Legend = False
     material: MaterialName | None = None
     floor: Kind | None = None
     walls: Kind | None = None
@@ -120,6 +128,7 @@ class StillRequest(Model):
     height: Height = DEFAULT_HEIGHT
     samples: Samples | None = None
     error: Error | None = None
+    legend: Legend = False
     format: Annotated[Format, Field(description="EXR is linear radiance; the others are tone-mapped.")] = "tga"
 
     model_config = Model.model_config | {
@@ -141,13 +150,13 @@ def _offer(ending: str, file_format: Format) -> None:
 
     async def render_preset(http: Request, query: Annotated[StillQuery, Query()], gateway: ThisGateway) -> Response:
         scene = query.scene()
-        asked = f"{query.width}x{query.height} {file_format} {query.samples} {query.error}"
+        asked = f"{query.width}x{query.height} {file_format} {query.samples} {query.error} {query.legend}"
         headers = {"ETag": (tag := entity_tag(scene, asked)), "Cache-Control": FRESHNESS}
         if names(http.headers.get("If-None-Match"), tag):
             return Response(status_code=304, headers=headers)
         message = Render(
             scene=scene.model_dump(mode="json"), width=query.width, height=query.height, samples=query.samples,
-            error=query.error, format=file_format, client=client_of(http.scope),
+            error=query.error, format=file_format, legend=query.legend, client=client_of(http.scope),
         )  # fmt: skip
         picture = await _picture(http, gateway, message)
         if picture.headers.get(TARGET) != MISSED:  # for want of time, which there may be more of next time
@@ -185,7 +194,8 @@ async def render(http: Request, request: StillRequest, gateway: ThisGateway) -> 
     """Render a scene in the format asked for."""
     message = Render(
         scene=request.scene.model_dump(mode="json"), width=request.width, height=request.height,
-        samples=request.samples, error=request.error, format=request.format, client=client_of(http.scope),
+        samples=request.samples, error=request.error, format=request.format, legend=request.legend,
+        client=client_of(http.scope),
     )  # fmt: skip
     return await _picture(http, gateway, message)
 

@@ -252,7 +252,7 @@ async def play() -> AsyncIterator[Play]:
             if id(world) not in painters:
                 painter = Painter(
                     world, thread, StillQueue(1, 2**25),
-                    send=world.send, tell_problem=_fail, encode_still=lambda _, __: b"",
+                    send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
                     still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
                 )  # fmt: skip
                 painter.pictures["a"] = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
@@ -447,7 +447,7 @@ async def test_a_resting_picture_leaves_a_moving_one_nearly_all_the_time(
         with ThreadPoolExecutor(1) as thread:
             painter = Painter(
                 world, thread, StillQueue(1, 2**25),
-                send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"",
+                send=lambda _: None, tell_problem=_fail, encode_still=lambda *_: b"",
                 still_seconds=math.inf, rest=Target(10**4, 1e-6, least=16), stepper=AtOnce(world),
                 clock=partial(getattr, world, "now"),
             )  # fmt: skip
@@ -475,7 +475,7 @@ async def test_a_still_is_as_good_as_its_time_allows_if_an_error_was_asked_for_a
     world.needed = 10**6
     with ThreadPoolExecutor(1) as thread:
         painter = Painter(
-            world, thread, queue, send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"picture",
+            world, thread, queue, send=lambda _: None, tell_problem=_fail, encode_still=lambda *_: b"picture",
             still_seconds=1, rest=REST, stepper=AtOnce(world), clock=lambda: world.now,
         )  # fmt: skip
         for error in (1e-6, None):
@@ -583,7 +583,7 @@ async def test_no_frame_waits_for_a_step() -> None:
         with ThreadPoolExecutor(1) as thread:
             painter = Painter(
                 world, thread, StillQueue(1, 2**25),
-                send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"",
+                send=lambda _: None, tell_problem=_fail, encode_still=lambda *_: b"",
                 still_seconds=math.inf, rest=REST, stepper=stepper, clock=lambda: world.now,
             )  # fmt: skip
             live = painter.pictures["a"] = LivePicture(world.session, watched=True, rate=30, size=WANTED)
@@ -644,7 +644,7 @@ async def test_a_session_of_dear_frames_leaves_another_more_than_two_fifths_of_i
         with ThreadPoolExecutor(1) as thread:
             painter = Painter(
                 world, thread, StillQueue(1, 2**25),
-                send=lambda _: None, tell_problem=_fail, encode_still=lambda _, __: b"",
+                send=lambda _: None, tell_problem=_fail, encode_still=lambda *_: b"",
                 still_seconds=math.inf, rest=REST, stepper=AtOnce(world), clock=partial(getattr, world, "now"),
             )  # fmt: skip
             sessions = [cheap, world.session] if company else [cheap]

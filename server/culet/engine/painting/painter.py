@@ -18,9 +18,9 @@ from culet.engine.painting.live_painter import LivePainter, Stepping
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
-from culet.engine.painting.renderer import Picture, Renderer
+from culet.engine.painting.renderer import Renderer
 from culet.engine.painting.shares import Shares, share
-from culet.engine.painting.still import StillQueue
+from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.engine.painting.still_painter import StillPainter
 from culet.engine.session.session import Session
 from culet.engine.session.stepper import Stepper
@@ -40,7 +40,7 @@ class Painter:
         *,
         send: Callable[[bytes], None],
         tell_problem: Callable[[str, CuletError], None],
-        encode_still: Callable[[Picture, str], bytes],
+        encode_still: EncodeStill,
         still_seconds: float,
         rest: Target,
         stepper: Stepping | None = None,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
 from culet.engine.painting.shares import Account, Shares
@@ -14,6 +15,12 @@ from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.engine import Format
+
+if TYPE_CHECKING:
+    from culet.legend import Line
+
+EncodeStill = Callable[[Picture, str, Sequence["Line"]], bytes]
+"""A still that is rendered, its format, and the lines of its legend, as a file."""
 
 STILLS_WEIGHT = 0.5
 """Share of the render thread's time for all stills together beside a picture that moves."""
@@ -38,6 +45,8 @@ class Still:
     """On whose behalf."""
     part: float = 1.0
     """Of the time that a still may take, which this one may."""
+    legend: Sequence[Line] = ()
+    """For a corner of the picture."""
     asked_at: float = 0.0
     """s, steady clock."""
     done: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())

@@ -10,8 +10,8 @@ from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_work import proceed
 from culet.engine.painting.render_thread import RenderThread
-from culet.engine.painting.renderer import Picture, Renderer
-from culet.engine.painting.still import Still, StillQueue
+from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.still import EncodeStill, Still, StillQueue
 from culet.errors import TooLargeError
 from culet.rendering.chains import band_count
 
@@ -24,7 +24,7 @@ class StillPainter:
         queue: StillQueue,
         renderer: Renderer,
         thread: RenderThread,
-        encode: Callable[[Picture, str], bytes],
+        encode: EncodeStill,
         most_seconds: float,
         tally: Tally,
         clock: Callable[[], float],
@@ -82,7 +82,7 @@ class StillPainter:
         assert still.picture is not None  # noqa: S101 - it is rendered
         try:
             data = await asyncio.get_running_loop().run_in_executor(
-                self._encode_thread, self._encode, still.picture, still.format
+                self._encode_thread, self._encode, still.picture, still.format, still.legend
             )
         except Exception as error:  # as above
             self._fail(still, error)

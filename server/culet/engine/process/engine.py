@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import zmq.asyncio
 
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.renderer import Picture, Renderer
-from culet.engine.painting.still import StillQueue
+from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.engine.painting.video import video_codecs
 from culet.engine.process.limits import Limits
 from culet.engine.process.machine import budget
@@ -54,7 +54,7 @@ class Engine:
         limits: Limits,
         renderer: Renderer,
         render_thread: ThreadPoolExecutor,
-        encode: Callable[[Picture, str], bytes],
+        encode: EncodeStill,
         keys: EngineKeys | None = None,
     ) -> None:
         self._control = bind_control(context, control, limits.max_upload_bytes, keys)

@@ -10,15 +10,20 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
 
 import zmq.asyncio
 
 from culet.engine.painting.renderer import Picture, Renderer
+from culet.engine.painting.still import EncodeStill
 from culet.engine.process.engine import Engine
 from culet.engine.process.heap import return_large_blocks
 from culet.engine.process.limits import Limits
 from culet.engine.process.strangers import engine_keys, letting_in
 from culet.errors import CuletError
+
+if TYPE_CHECKING:
+    from culet.legend import Line
 
 log = logging.getLogger(__name__)
 
@@ -83,13 +88,17 @@ def open_renderer() -> Renderer:
     return renderer
 
 
-def encode_still(picture: Picture, file_format: str) -> bytes:
-    """A still in its file format."""
+def encode_still(picture: Picture, file_format: str, legend: Sequence[Line] = ()) -> bytes:
+    """A still in its file format, with those lines in a corner."""
     from culet.rendering.files import encode
     from culet.rendering.renderer import Picture as OpenClPicture
 
     assert isinstance(picture, OpenClPicture)  # noqa: S101 - made by `open_renderer`
-    return encode(file_format, picture.rgb, picture.linear)
+    if not legend:
+        return encode(file_format, picture.rgb, picture.linear)
+    from culet.legend import drawn
+
+    return encode(file_format, lambda: drawn(picture.rgb(), list(legend)), picture.linear)
 
 
 async def serve(
@@ -97,7 +106,7 @@ async def serve(
     frames: Sequence[str],
     limits: Limits,
     renderer_of: Callable[[], Renderer],
-    encode: Callable[[Picture, str], bytes],
+    encode: EncodeStill,
     start: asyncio.Event | None = None,
 ) -> None:
     """Serve with a renderer that is made and used on the render thread, once `start` is set."""

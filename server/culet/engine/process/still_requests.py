@@ -5,12 +5,12 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.still import Still, StillQueue, pictures_of
+from culet.engine.painting.still import LINEAR_FORMATS, Still, StillQueue, pictures_of
 from culet.engine.process.limits import Limits, check_still_size, check_still_work, most_samples
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
@@ -23,6 +23,9 @@ from culet.scene import Scene
 from culet.stage import Library, Stage
 from culet_protocol.engine import Render
 from culet_protocol.sizes import STILL_SIZE
+
+if TYPE_CHECKING:
+    from culet.legend import Line
 
 
 def quality(still: Still, *, promised: bool) -> dict[str, Any]:
@@ -68,7 +71,10 @@ class StillRequests:
         height = default_size[1] if request.height is None else request.height
         check_still_size(width, height, self._limits, pictures=pictures_of(scene))
         target = self._target(request, scene, width, height)
-        still = Still(stage, width, height, target, request.format, request.client, request.part, time.monotonic())
+        legend = self._legend(request, scene, width, height)
+        still = Still(
+            stage, width, height, target, request.format, request.client, request.part, legend, time.monotonic()
+        )
         for samples in range(min(2, target.samples)):  # the second sample may need another program than the first
             await self._painter.make_ready(stage, samples)
         self._make_room_for(still)
@@ -77,6 +83,16 @@ class StillRequests:
         reached = quality(still, promised=promised)
         reached |= {"width": width, "height": height, "step": step, "format": request.format}
         return reached, data
+
+    def _legend(self, request: Render, scene: Scene, width: int, height: int) -> Sequence[Line]:
+        """What is drawn into the picture; InputError where none can be."""
+        if not request.legend:
+            return ()
+        if request.format in LINEAR_FORMATS:
+            raise InputError(f"legend: expected a format for screens, got {request.format} of radiance", "legend")
+        from culet.legend import legend_for  # of the few that ask for it
+
+        return legend_for(scene, width, height)
 
     def _target(self, request: Render, scene: Scene, width: int, height: int) -> Target:
         """What is asked for, of a session by default what it has at rest. InputError if it is too much work."""
