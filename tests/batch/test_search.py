@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from culet.batch.angle_search import AngleSearch, turn_tiers
 from culet.batch.search import BRIGHTNESS, FIRE, Candidate, Search
 from culet.geometry.cuts.cut import shape_of_cut
+from culet.geometry.recut import recut_shape
 from culet.geometry.shape import Shape
 from culet.grading.grades import grade
 from culet.grading.number import Number
@@ -13,7 +17,8 @@ from culet.grading.optics import StoneOptics, optics_of
 from culet.grading.rules import Rules
 from culet.grading.sums import LightSums
 from culet.rendering.device import open_device
-from culet.scene.cuts import SingleCut
+from culet.scene.cuts import BrilliantCut, SingleCut
+from culet.scene.recut import Recut
 from culet.scene.stone import StoneSettings
 
 DIAMOND = optics_of(StoneSettings(), 3.25)
@@ -21,6 +26,12 @@ DIAMOND = optics_of(StoneSettings(), 3.25)
 
 def search(shape: Shape, evaluations: int, optics: StoneOptics = DIAMOND) -> Search:
     return Search(LightSums(open_device()), shape, optics, Rules(), {"iso": 1, "fire": 1}, evaluations)
+
+
+def graded(shape: Shape) -> Candidate:
+    """As it is, for ISO and fire."""
+    grades = next(grade(LightSums(open_device()), shape, DIAMOND, Rules()))
+    return Candidate(1, 1, {"iso": grades.iso, "fire": grades.fire}, grades.iso.value + grades.fire.value)
 
 
 def test_a_flat_pavilion_is_found_to_be_too_flat() -> None:
@@ -47,6 +58,22 @@ def test_a_design_has_in_the_search_the_grades_that_it_has_alone() -> None:
     alone = next(grade(LightSums(open_device()), shape, DIAMOND, Rules()))
     assert found.candidates[0].grades["iso"] == alone.iso
     assert found.candidates[0].total == pytest.approx(alone.iso.value + alone.fire.value)
+
+
+def test_angles_of_single_tiers_find_what_ratios_cannot() -> None:
+    """Lower halves as steep as the mains are too flat: no ratio changes the one without the other."""
+    shape = shape_of_cut(BrilliantCut(lower_half_percent=40))
+    found = search(shape, 1)
+    found.candidates.append(found_by_ratios := graded(shape))
+    angles = AngleSearch(LightSums(open_device()), shape, DIAMOND, Rules(), {"iso": 1, "fire": 1})
+    turn_tiers(found, angles, 3, 10)
+    assert len(found.candidates) <= 10
+    best = found.best()
+    assert best.total > found_by_ratios.total + 0.5
+    again = recut_shape(shape, Recut(angles=dict(best.angles)))
+    assert graded(again).total == pytest.approx(best.total, abs=1e-9)
+    nameless = AngleSearch(LightSums(open_device()), replace(shape, names=()), DIAMOND, Rules(), {})
+    assert nameless.run(found_by_ratios, lambda each: each.total, 3, 10) == []
 
 
 def test_the_front_has_each_design_once_and_none_that_another_beats() -> None:

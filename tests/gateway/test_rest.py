@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from culet.scene import PRESETS, preset
+from culet.scene import PRESETS
 from culet.scene.cuts import CUTS
 from culet.scene.motion import Simulation
 from culet.scene.stone import MaterialName
@@ -120,7 +120,7 @@ async def test_a_legend_is_drawn_into_stills_that_have_one(gateway: Gateway) -> 
     assert not changed[:60].any()
     assert not changed[:, -40:].any()
     assert plain.headers["etag"] != told.headers["etag"]
-    scene = preset("aset").model_dump(mode="json")
+    scene = PRESETS["aset"].scene.model_dump(mode="json")
     of_scene = await gateway.http.post("/api/render", json={"scene": scene, **size, "legend": True, "format": "png"})
     assert of_scene.content == told.content
     session = (await gateway.http.post("/api/sessions", json={"preset": "aset"})).json()["id"]

@@ -10,7 +10,7 @@ designs are graded by the same rays, so that their differences are better known 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,8 @@ class Candidate:
     grades: Mapping[str, Number]
     total: float
     """The weighted sum."""
+    angles: Mapping[int, float] = field(default_factory=dict)
+    """Degrees of tiers, by their numbers, besides the ratios."""
 
 
 class SpentError(Exception):

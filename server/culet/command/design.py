@@ -58,23 +58,31 @@ def convert(
     table: Annotated[
         float | None, typer.Option(metavar="PERCENT", help="Width of the table, of the stone's: the table is moved.")
     ] = None,
+    angle: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="TIER=DEGREES",
+            help="Angle of a tier, by its number or its name, all meets and the girdle kept; may be repeated.",
+        ),
+    ] = None,
 ) -> None:
     """Write a design as .asc: the same facets, tiers, names and notes. The file is read back and compared first.
 
-    With ratios, a girdle or a table the design is cut anew.
+    With ratios, a girdle, a table or angles the design is cut anew, and a heading says so.
     """
     from culet.geometry.designs.asc import read_asc
     from culet.geometry.designs.asc_writer import asc_of, planes_apart
-    from culet.geometry.designs.recut import recut_design
+    from culet.geometry.designs.recut import angles_of, angles_that_followed, recut_design
 
     with errors_in_one_line():
         check_place(out, "out", ["asc"])
-        recut = _recut(crown_ratio, pavilion_ratio, girdle, table)
-        design = read(file)
+        given = read(file)
+        recut = _recut(crown_ratio, pavilion_ratio, girdle, table, angles_of(given, angle or []))
         with naming(str(file)):
-            design = recut_design(design, recut)
+            design = recut_design(given, recut)
+            followed = angles_that_followed(given, design, recut)
             written, data, said = asc_of(design)
-        for finding in (*design.findings, *said):
+        for finding in (*design.findings, *followed, *said):
             typer.echo(f"{file}: {finding}", err=True)
         write_whole(out, data, "out")
         count = sum(len(tier.facets) for tier in design.tiers)
@@ -135,7 +143,18 @@ def optimise(
     ] = None,
     crown: Annotated[str, typer.Option(metavar="FROM:TO", help="Tangent ratios of the crown.")] = "0.8:1.25",
     pavilion: Annotated[str, typer.Option(metavar="FROM:TO", help="Tangent ratios of the pavilion.")] = "0.9:1.1",
-    evaluations: Annotated[int, typer.Option(min=10, max=100_000, help="Designs to grade, at most.")] = 200,
+    angles: Annotated[
+        float,
+        typer.Option(
+            min=0,
+            max=10,
+            metavar="DEGREES",
+            help="Then angles of single tiers by so much, meets kept; 0: ratios alone.",
+        ),
+    ] = 2.0,
+    evaluations: Annotated[
+        int, typer.Option(min=10, max=100_000, help="Designs to grade, at most; half of them of other angles.")
+    ] = 200,
     material: Material = None,
     index: Index = None,
     head: Head = None,
@@ -144,9 +163,10 @@ def optimise(
 ) -> None:
     """Search crown and pavilion for brightness and fire, all meets kept.
 
-    Prints the front: designs that no other beats in both, since there is no single best one. Each is cut by
-    culet design convert with its ratios.
+    First tangent ratios of crown and pavilion, then angles of single tiers. Prints the front: designs that no other
+    beats in both, since there is no single best one. Each is cut by culet design convert with its ratios and angles.
     """
+    from culet.batch.angle_search import AngleSearch, turn_tiers
     from culet.batch.search import Search
     from culet.command.search import front_csv, print_front, range_of, weights_of
     from culet.grading.optics import optics_of
@@ -163,15 +183,21 @@ def optimise(
         stone, shape = stage.scene.stones[0], stage.shapes[0]
         optics = optics_of(stone, stage.scene.millimetres)
         with progress_bar("searching") as advance:
-            search = Search(LightSums(open_device()), shape, optics, judged, weights, evaluations, advance)
+            first = evaluations // 2 if angles else evaluations
+            sums = LightSums(open_device())
+            search = Search(
+                sums, shape, optics, judged, weights, first, lambda part: advance(part * first / evaluations)
+            )
             search.run(*ends)
+            if angles:
+                turn_tiers(search, AngleSearch(sums, shape, optics, judged, weights), angles, evaluations, advance)
         print_front(report_console(), search, weights)
         if out is not None:
             write_whole(out, front_csv(search, weights), "out")
             typer.echo(f"{out}: {len(search.front())} designs of {len(search.candidates)} that were graded")
 
 
-def _recut(crown: float, pavilion: float, girdle: float | None, table: float | None) -> Recut:
+def _recut(crown: float, pavilion: float, girdle: float | None, table: float | None, angles: dict[int, float]) -> Recut:
     """SceneError names the proportion that is out of range."""
     from pydantic import ValidationError
 
@@ -179,7 +205,9 @@ def _recut(crown: float, pavilion: float, girdle: float | None, table: float | N
     from culet.scene.refusal import scene_error
 
     try:
-        return Recut(crown_ratio=crown, pavilion_ratio=pavilion, girdle_percent=girdle, table_percent=table)
+        return Recut(
+            crown_ratio=crown, pavilion_ratio=pavilion, girdle_percent=girdle, table_percent=table, angles=angles
+        )
     except ValidationError as error:
         raise scene_error(error, Recut) from error
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from culet.batch.search import BRIGHTNESS, FIRE, Range, Search
+from culet.batch.search import BRIGHTNESS, FIRE, Candidate, Range, Search
 from culet.errors import InputError
 from culet.grading.metrics import GRADES, LIGHT_RETURN
 from culet.scene.recut import LEAST_RATIO, MOST_RATIO
@@ -59,14 +59,18 @@ def print_front(console: Console, search: Search, weights: Mapping[str, float]) 
     names = _names(weights)
     best, given = search.best(), search.candidates[0]
     table = Table("", "crown ratio", "pavilion ratio", *names, "sum", box=None)
+    turned = any(each.angles for each in search.candidates)
+    if turned:
+        table.add_column("tiers at degrees", overflow="fold")
     front = search.front()
     marked = [*front] if best in front else [*front, best]
     for each in [given, *(one for one in marked if one is not given)]:
         of = ["as it is"] * (each is given) + ["largest sum"] * (each is best)
         values = (f"{each.grades[name].value:.2f}" for name in names)
         table.add_row(
-            ", ".join(of), f"{each.crown_ratio:.4f}", f"{each.pavilion_ratio:.4f}", *values, f"{each.total:.2f}"
-        )
+            ", ".join(of), f"{each.crown_ratio:.4f}", f"{each.pavilion_ratio:.4f}", *values, f"{each.total:.2f}",
+            *[angles_text(each)] * turned,
+        )  # fmt: skip
     console.print(table)
     error = max(number.error for each in front for number in each.grades.values())
     console.print(
@@ -81,12 +85,23 @@ def front_csv(search: Search, weights: Mapping[str, float]) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(
-        ["crown_ratio", "pavilion_ratio", *(part for name in names for part in (name, f"{name}_error")), "sum"]
+        [
+            "crown_ratio",
+            "pavilion_ratio",
+            *(part for name in names for part in (name, f"{name}_error")),
+            "sum",
+            "angles",
+        ]
     )
     for each in search.front():
         numbers = [part for name in names for part in (each.grades[name].value, each.grades[name].error)]
-        writer.writerow([each.crown_ratio, each.pavilion_ratio, *numbers, each.total])
+        writer.writerow([each.crown_ratio, each.pavilion_ratio, *numbers, each.total, angles_text(each)])
     return text.getvalue().encode()
+
+
+def angles_text(each: Candidate) -> str:
+    """As `culet design convert --angle` takes each."""
+    return " ".join(f"{tier}={degrees:g}" for tier, degrees in sorted(each.angles.items()))
 
 
 def _names(weights: Mapping[str, float]) -> list[str]:

@@ -1,4 +1,5 @@
-"""A convex stone cut anew: crown and pavilion by their tangent ratios, the girdle's height, the table's size.
+"""A convex stone cut anew: crown and pavilion by their tangent ratios, the girdle's height, angles, the table's
+size.
 
 A cutter's way to fit a design to another material without solving its meets again is the tangent ratio: a stretch of
 the crown, or of the pavilion, along the axis multiplies the tangent of each facet's angle by one number. As the stretch
@@ -7,6 +8,7 @@ maps planes to planes, facets that met in a point still do; places on the index 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -15,6 +17,7 @@ from scipy.optimize import linprog
 
 from culet.errors import MeshError
 from culet.geometry.half_spaces import Intersection, intersection
+from culet.geometry.meets import with_angles
 from culet.geometry.shape import FacetName, Shape
 from culet.scene.recut import Recut
 
@@ -39,8 +42,9 @@ def recut_shape(shape: Shape, recut: Recut) -> Shape:
         return shape
     if not shape.convex:
         raise MeshError(f"{shape.name}: expected a convex stone to cut anew; got one that is not")
-    planes, gone = recut_planes(shape.name, shape.planes @ OF_A_SHAPE.T, recut)
     names = list(shape.names)
+    tiers = [name.tier for name in names]
+    planes, gone = recut_planes(shape.name, shape.planes @ OF_A_SHAPE.T, recut, tiers)
     if names and len(planes) > len(names):
         names.append(FacetName(max(name.tier for name in names) + 1, TABLE))
     cut = intersection(shape.name, planes @ OF_A_SHAPE)
@@ -53,9 +57,10 @@ def said_of(gone: int) -> list[str]:
     return [f"Cut anew, {gone} of its facets bound nothing."] if gone else []
 
 
-def recut_planes(name: str, planes: Array, recut: Recut) -> tuple[Array, int]:
+def recut_planes(name: str, planes: Array, recut: Recut, tiers: Sequence[int]) -> tuple[Array, int]:
     """(F, 4) planes of a closed convex stone, z up, cut anew in their order, then a table if there was none; and how
-    many more of them than before bound nothing. MeshError names the proportion that cannot be."""
+    many more of them than before bound nothing. `tiers` has the number of each facet's, or nothing. MeshError names the
+    proportion that cannot be."""
     stone = _Stone(name, planes)
     before = len(stone.cut.used)
     for proportion in ("crown_ratio", "pavilion_ratio"):
@@ -66,6 +71,8 @@ def recut_planes(name: str, planes: Array, recut: Recut) -> tuple[Array, int]:
         stone = stone.with_girdle(recut.girdle_percent)
     if len(stone.cut.used) < before:
         raise MeshError(f"{name}: so cut, facets of the stone are lost", "crown_ratio")
+    if recut.angles:
+        stone = _Stone(name, with_angles(name, stone.cut.planes, tiers, recut.angles))
     if recut.table_percent is not None:
         before += len(stone.cut.planes) - len(planes)
         stone = stone.with_table(recut.table_percent)

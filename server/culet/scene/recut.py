@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from culet.scene.cuts import USUAL
 from culet.scene.fields import Model
 
 LEAST_RATIO, MOST_RATIO = 0.2, 5.0
+MOST_ANGLES = 64
+"""Tiers of sloping facets; designs have up to thirty."""
 
 
 def _ratio(of: str) -> Any:  # noqa: ANN401 - as pydantic's own
@@ -20,6 +22,17 @@ def _ratio(of: str) -> Any:  # noqa: ANN401 - as pydantic's own
         "all places on the index wheel and the girdle are kept.",
         json_schema_extra={USUAL: [0.8, 1.25]},
     )
+
+
+class TierAngles(dict[int, float]):
+    """Degrees by tier; like all of a scene it is not changed, and so has a hash."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(frozenset(self.items()))
+
+
+Degrees = Annotated[float, Field(gt=0, lt=90)]
+Tier = Annotated[int, Field(ge=1)]
 
 
 class Recut(Model):
@@ -36,6 +49,13 @@ class Recut(Model):
         None,
         description="The table's extent along the width, of the width: the table is cut higher or lower.",
         json_schema_extra={USUAL: [30, 80]},
+    )
+
+    angles: Annotated[dict[Tier, Degrees], Field(max_length=MOST_ANGLES), AfterValidator(TierAngles)] = Field(
+        TierAngles(),
+        description="Degrees from the horizontal of a tier's facets, by the tier's number as `culet design show` has "
+        "it, once ratios and girdle are changed. All points in which facets meet and the girdle are kept: distances "
+        "follow, and other angles where distances alone cannot.",
     )
 
     @property

@@ -32,7 +32,7 @@ def area(corners: np.ndarray) -> float:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_faces_that_are_seen_cover_the_stones_outline_once(name: str, side: Side) -> None:
     solid = Solid(design(name))
-    outline = outline_of(solid)
+    outline = outline_of(solid.cut)
     faces = faces_seen(solid, outline, side)
     assert np.cross(side.right, side.up).tolist() == list(side.toward)
     hull = ConvexHull(outline.corners @ np.array([side.right, side.up]).T)
@@ -45,7 +45,7 @@ def test_what_is_up_and_what_is_right() -> None:
     """A box whose crown leans to index 24, the right from above and from the front, the left from below."""
     walls = "a 90 2 96 n N\na 90 1 24 n E 48 n S 72 n W\n"
     solid = Solid(read_asc(f"g 96\na 0 1 n T\n{walls}a 45 1.2 24 n R\na 0 -1 n B\n".encode()))
-    outline = outline_of(solid)
+    outline = outline_of(solid.cut)
     seen = {side: {face.name: face for face in faces_seen(solid, outline, side)} for side in SIDES}
     assert {side: set(faces) for side, faces in seen.items()} == {
         ABOVE: {"T", "R"}, BELOW: {"B"}, FRONT: {"S"}, END: {"E", "R"},

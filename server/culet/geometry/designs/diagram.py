@@ -45,7 +45,7 @@ LABEL = 'class="label" text-anchor="middle" dominant-baseline="central"'
 
 def diagram_of(solid: Solid) -> str:
     """The page. A longer table makes the page longer, and what a printer fits onto its sheet smaller."""
-    design, outline = solid.design, outline_of(solid)
+    design, outline = solid.design, outline_of(solid.cut)
     parts: list[str] = []
     y = MARGIN + TEXT
     for place, heading in enumerate(design.headings or ("Design",)):

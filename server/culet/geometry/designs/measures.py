@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from culet.geometry.designs.solid import Solid
+from culet.geometry.half_spaces import Intersection
 from culet.geometry.mass import solid_integrals
 from culet.geometry.polygons import fan
 
@@ -71,20 +72,20 @@ class Proportions:
         return self.volume / self.width**3
 
 
-def outline_of(solid: Solid) -> Outline:
+def outline_of(cut: Intersection) -> Outline:
     """Corners that are nearer to each other than SAME_CORNER made one."""
-    points = solid.cut.vertices
+    points = cut.vertices
     near = KDTree(points).query_pairs(SAME_CORNER * float(np.ptp(points, axis=0).max()), output_type="ndarray")
     links = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(points), len(points)))
     number, label = connected_components(links, directed=False)
     weight = np.bincount(label, minlength=number)
     corners = np.column_stack([np.bincount(label, points[:, k], number) / weight for k in range(3)])
-    return Outline(corners, tuple(_without_repeats([int(label[k]) for k in polygon]) for polygon in solid.cut.polygons))
+    return Outline(corners, tuple(_without_repeats([int(label[k]) for k in polygon]) for polygon in cut.polygons))
 
 
 def proportions_of(solid: Solid) -> Proportions:
     """By the merged corners; the volume by the exact ones."""
-    outline, planes = outline_of(solid), solid.cut.planes
+    outline, planes = outline_of(solid.cut), solid.cut.planes
     points = outline.corners
     extent = np.ptp(points, axis=0)
     across = int(extent[1] < extent[0])

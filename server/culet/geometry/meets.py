@@ -1,0 +1,324 @@
+"""Angles of a convex stone's facets changed with its meets kept.
+
+A meet is a corner in which more than three facets come together: of three any angles will do. To keep it is a condition
+on angles and distances of its facets, linear in the distances; all conditions together are solved by Gauss and Newton's
+method from where the stone is, a degree at a time. Other angles stay if distances alone can follow; if not, they follow
+by the least that is possible. The outline of the girdle stays, and so do the mean heights of its upper and lower edge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import null_space, qr
+
+from culet.errors import MeshError
+from culet.geometry.designs.measures import Outline, outline_of
+from culet.geometry.half_spaces import Intersection, intersection
+
+Array = NDArray[np.float64]
+
+FIELD = "angles"
+STEP = 1.0
+"""Degrees that the angles are changed by at a time."""
+FARTHEST = 20.0
+"""Degrees that an angle may change; a cutter's changes are of a few."""
+MOST_FACETS, MOST_GROUPS = 400, 100
+"""Of a stone whose angles are changed. Public designs have up to 304 facets."""
+ITERATIONS = 12
+DONE = 1e-12
+"""Change of distances, in units of the stone's extent, and of angles, radians, at which a solution is one."""
+APART = 1e-8
+"""In units of the stone's extent, how much further apart the facets of a meet may be than before."""
+RANK = 1e-6
+"""Of singular values, relative to the largest, below which nothing is said: designs have 0.03 or more, or rounding."""
+SAME_TIER = 1e-6
+"""Slopes, radians, and distances, of the stone's extent, nearer than this are one: files have 8 decimals."""
+LEVEL = 1e-9
+HALVINGS = 8
+"""Of the way from where meets are kept to where they are not, to say how far angles may go."""
+
+
+def with_angles(name: str, planes: Array, tiers: Sequence[int], degrees: Mapping[int, float]) -> Array:
+    """(F, 4) planes of a closed convex stone, z up, in their order, the tiers named at so many degrees from the
+    horizontal. MeshError, its field `angles`, for what is no tier of sloping facets of one angle, and for meets that
+    cannot be kept, with how far they could."""
+    stone = _tiers_of(name, planes, tiers)
+    wanted = {stone.group(tier): math.radians(angle) for tier, angle in degrees.items()}
+    return stone.turned(wanted)
+
+
+def independent_tiers(name: str, planes: Array, tiers: Sequence[int]) -> list[int]:
+    """The most tiers whose angles can all be changed at once, each for itself, with all meets kept; the angles of the
+    other tiers follow from theirs. MeshError for a stone of no tiers, or of too many facets."""
+    stone = _tiers_of(name, planes, tiers)
+    turnable = [
+        group for group, tier in enumerate(stone.tier_of_group)
+        if stone.sloping[group] and stone.tier_of_group.count(tier) == 1
+    ]  # fmt: skip
+    return [stone.tier_of_group[group] for group in stone.independent(turnable)]
+
+
+def angle_of_tiers(planes: Array, tiers: Sequence[int]) -> dict[int, float]:
+    """Degrees from the horizontal of the tiers that `with_angles` can change."""
+    found: dict[int, list[float]] = {}
+    for (_, _, rise, _), tier in zip(planes.tolist(), tiers, strict=True):
+        found.setdefault(tier, []).append(rise)
+    return {
+        tier: math.degrees(math.acos(abs(rises[0])))
+        for tier, rises in sorted(found.items())
+        if LEVEL < abs(rises[0]) < 1 - LEVEL and max(rises) - min(rises) < SAME_TIER
+    }
+
+
+def _tiers_of(name: str, planes: Array, tiers: Sequence[int]) -> _Tiers:
+    """MeshError for a stone of no tiers, or of too many facets."""
+    if not tiers:
+        raise MeshError(f"{name}: {FIELD}: expected a stone whose facets have tiers, as designs and cuts have", FIELD)
+    if len(planes) > MOST_FACETS:
+        raise MeshError(
+            f"{name}: {FIELD}: expected at most {MOST_FACETS} facets to change angles of, got {len(planes)}",
+            FIELD,
+        )
+    return _Tiers(name, planes, tiers)
+
+
+@dataclass(frozen=True, eq=False)
+class _Setting:
+    """Of each group of facets its slope, radians from the vertical axis' upper end, and its distance."""
+
+    slope: Array
+    distance: Array
+
+
+class _Tiers:
+    """A stone by its groups of facets of one tier, slope and distance, and its meets."""
+
+    def __init__(self, name: str, planes: Array, tiers: Sequence[int]) -> None:
+        self.name = name
+        cut = intersection(name, planes)
+        self.planes, self.used = cut.planes, cut.used
+        self.outline: Outline = outline_of(cut)
+        self.extent = float(np.ptp(self.outline.corners, axis=0).max())
+        level = np.hypot(cut.planes[:, 0], cut.planes[:, 1])
+        self.facing = np.divide(
+            cut.planes[:, :2], level[:, None], out=np.zeros((len(level), 2)), where=level[:, None] > LEVEL
+        )
+        """(F, 2) of each facet the level direction that it faces; nothing of a level one."""
+        slope = np.arctan2(np.where(level > LEVEL, level, 0), cut.planes[:, 2])
+        self.members = _grouped(tiers, slope, cut.planes[:, 3] / self.extent)
+        if len(self.members) > MOST_GROUPS:
+            raise MeshError(
+                f"{name}: {FIELD}: expected facets of at most {MOST_GROUPS} angles and distances, got "
+                f"{len(self.members)}", FIELD,
+            )  # fmt: skip
+        self.tier_of_group = [tiers[members[0]] for members in self.members]
+        self.of_facet = np.empty(len(slope), int)
+        for group, members in enumerate(self.members):
+            self.of_facet[members] = group
+        first = [members[0] for members in self.members]
+        self.start = _Setting(slope[first], cut.planes[first, 3])
+        self.upright = abs(cut.planes[first, 2]) < LEVEL
+        self.sloping = (level[first] > LEVEL) & ~self.upright
+        self.corners = self._facets_of_corners()
+        self.edges = self._edges(cut)
+        self.on_edges = {corner for edge in self.edges for corner in edge}
+        self.kept, _ = self._evaluated(self.start)
+        """Distances of meets' facets, which files' decimals leave somewhat apart, and heights, as they came."""
+
+    def group(self, tier: int) -> int:
+        """Of a tier that can be turned."""
+        groups = [k for k, number in enumerate(self.tier_of_group) if number == tier]
+        if not groups:
+            known = sorted(set(self.tier_of_group))
+            raise MeshError(f"{self.name}: {FIELD}: expected a tier of {known[0]} to {known[-1]}, got {tier}", FIELD)
+        if len(groups) > 1 or not self.sloping[groups[0]]:
+            what = "facets of several angles or distances" if len(groups) > 1 else "level or upright facets"
+            raise MeshError(f"{self.name}: {FIELD}: expected a tier of sloping facets; tier {tier} is {what}", FIELD)
+        return groups[0]
+
+    def independent(self, groups: Sequence[int]) -> list[int]:
+        """Of those groups the most whose slopes can be chosen: where the settings that keep all meets lead, at first,
+        by pivots of a QR decomposition."""
+        _, by = self._evaluated(self.start)
+        free = np.concatenate([self.sloping, ~self.upright])
+        kernel = null_space(by[:, free], rcond=RANK)
+        ways = np.zeros((len(free), kernel.shape[1]))
+        ways[free] = kernel
+        chosen = ways[list(groups)]
+        if not chosen.size:
+            return []
+        _, triangle, order = qr(chosen.T, mode="economic", pivoting=True)
+        size = abs(np.diagonal(triangle))
+        return sorted(groups[k] for k, length in zip(order, size, strict=False) if length > RANK * size.max())
+
+    def turned(self, wanted: Mapping[int, float]) -> Array:
+        """Planes with the groups at angles from the horizontal, radians."""
+        turned = np.array(sorted(wanted))
+        up = self.start.slope[turned] < math.pi / 2
+        ends = np.array([wanted[group] for group in turned.tolist()])
+        begin, end = self.start.slope[turned], np.where(up, ends, math.pi - ends)
+        far = np.degrees(abs(end - begin))
+        if far.max() > FARTHEST:
+            most = int(far.argmax())
+            own, tier = math.degrees(_level(begin[most])), self.tier_of_group[turned[most]]
+            raise MeshError(
+                f"{self.name}: {FIELD}: expected tier {tier} within {FARTHEST:g} degrees of {own:.2f}, got "
+                f"{math.degrees(_level(end[most])):g}", FIELD,
+            )  # fmt: skip
+        steps = max(1, math.ceil(far.max() / STEP))
+        setting, kept = self.start, 0.0
+        for step in range(1, steps + 1):
+            part = step / steps
+            further = self._kept(setting, turned, begin + part * (end - begin))
+            if further is None:
+                raise self._refusal(setting, turned, begin, end, kept, part)
+            setting, kept = further, part
+        return self._planes(setting)
+
+    def _refusal(
+        self, setting: _Setting, turned: NDArray[np.int64], begin: Array, end: Array, kept: float, lost: float
+    ) -> MeshError:
+        for _ in range(HALVINGS):
+            middle = (kept + lost) / 2
+            further = self._kept(setting, turned, begin + middle * (end - begin))
+            if further is None:
+                lost = middle
+            else:
+                setting, kept = further, middle
+        reached = begin + kept * (end - begin)
+
+        def said(slopes: Array) -> str:
+            return ", ".join(
+                f"tier {self.tier_of_group[group]} at {math.degrees(_level(slope)):.2f}"
+                for group, slope in zip(turned.tolist(), slopes.tolist(), strict=True)
+            )
+
+        return MeshError(
+            f"{self.name}: {FIELD}: expected angles that keep all meets and facets, as far as {said(reached)}; got "
+            f"{said(end)}", FIELD,
+        )  # fmt: skip
+
+    def _kept(self, setting: _Setting, turned: NDArray[np.int64], slopes: Array) -> _Setting | None:
+        """The nearest setting with those slopes, other angles as they are if that can be; None if it loses a meet or a
+        facet."""
+        for others in (False, True):
+            found = self._solved(setting, turned, slopes, others)
+            if found is not None and self._is_whole(found):
+                return found
+        return None
+
+    def _solved(self, setting: _Setting, turned: NDArray[np.int64], slopes: Array, others: bool) -> _Setting | None:
+        slope, distance = setting.slope.copy(), setting.distance.copy()
+        slope[turned] = slopes
+        free_slope = self.sloping.copy() if others else np.zeros(len(slope), bool)
+        free_slope[turned] = False
+        free = np.concatenate([free_slope, ~self.upright])
+        for _ in range(ITERATIONS):
+            values, by = self._evaluated(_Setting(slope, distance))
+            step = np.zeros(len(free))
+            step[free] = np.linalg.lstsq(by[:, free], self.kept - values, rcond=RANK)[0]
+            slope, distance = slope + step[: len(slope)], distance + step[len(slope) :] * self.extent
+            if not np.isfinite(step).all() or abs(step).max() > 1:
+                return None
+            if abs(step).max() < DONE:
+                break
+        found = _Setting(slope, distance)
+        return found if abs(self._evaluated(found)[0] - self.kept).max(initial=0) < APART else None
+
+    def _is_whole(self, setting: _Setting) -> bool:
+        """Whether the solid has the same facets, and of each the same corners."""
+        if not (setting.slope[self.sloping] > 0).all() or not (setting.slope[self.sloping] < math.pi).all():
+            return False
+        try:
+            cut = intersection(self.name, self._planes(setting))
+        except MeshError:
+            return False
+        return cut.used == self.used and _facets_of_corners(outline_of(cut)) == set(map(frozenset, self.corners))
+
+    def _planes(self, setting: _Setting) -> Array:
+        slope, distance = setting.slope[self.of_facet], setting.distance[self.of_facet]
+        rise = np.where(self.upright[self.of_facet], 0, np.cos(slope))
+        planes = np.column_stack([np.sin(slope)[:, None] * self.facing, rise, distance])
+        moved = abs(setting.slope - self.start.slope) + abs(setting.distance - self.start.distance) / self.extent
+        return np.where((moved > DONE)[self.of_facet, None], planes, self.planes)  # who stays does so to the last bit
+
+    def _evaluated(self, setting: _Setting) -> tuple[Array, Array]:
+        """Of each facet in a meet its distance from the point nearest to all of them, then the mean heights of the
+        girdle's edges; and the derivatives by slopes and distances. Lengths are in units of the extent."""
+        width = 2 * len(setting.slope)
+        values, rows = [np.zeros(0)], [np.zeros((0, width))]
+        height, height_by = np.zeros(len(self.corners)), np.zeros((len(self.corners), width))
+        for corner, facets in enumerate(self.corners):
+            if len(facets) <= 3 and corner not in self.on_edges:
+                continue
+            group = self.of_facet[facets]
+            slope, distance, facing = setting.slope[group], setting.distance[group], self.facing[facets]
+            normals = np.column_stack([np.sin(slope)[:, None] * facing, np.cos(slope)])
+            inverse = np.linalg.pinv(normals)
+            point = inverse @ distance
+            turning = np.column_stack([np.cos(slope)[:, None] * facing, -np.sin(slope)])
+            by = np.zeros((len(facets), width))
+            by[np.arange(len(facets)), group] = turning @ point / self.extent
+            by[np.arange(len(facets)), len(setting.slope) + group] = -1
+            height[corner], height_by[corner] = point[2] / self.extent, -inverse[2] @ by
+            if len(facets) > 3:
+                values.append((normals @ point - distance) / self.extent)
+                rows.append(by - normals @ (inverse @ by))
+        for edge in self.edges:
+            values.append(height[edge].mean(keepdims=True))
+            rows.append(height_by[edge].mean(axis=0, keepdims=True))
+        return np.concatenate(values), np.vstack(rows)
+
+    def _facets_of_corners(self) -> list[list[int]]:
+        found: list[list[int]] = [[] for _ in self.outline.corners]
+        for facet, face in enumerate(self.outline.faces):
+            for corner in face:
+                found[corner].append(facet)
+        return [facets for facets in found if facets]
+
+    def _edges(self, cut: Intersection) -> list[list[int]]:
+        """Corners of the girdle's upper and lower edge; where there is none, those in which crown and pavilion meet."""
+        rise = cut.planes[:, 2]
+        upper, lower, keen = list[int](), list[int](), list[int]()
+        for corner, facets in enumerate(self.corners):
+            above, below = (rise[facets] > LEVEL).any(), (rise[facets] < -LEVEL).any()
+            upright = (abs(rise[facets]) <= LEVEL).any()
+            if above and below:
+                keen.append(corner)
+            elif upright:
+                (upper if above else lower).append(corner)
+        return [edge for edge in (upper, lower) if edge] or [keen] * bool(keen)
+
+
+def _level(slope: float) -> float:
+    """From the horizontal, of a slope from the upper end of the axis; radians."""
+    return min(slope, math.pi - slope)
+
+
+def _facets_of_corners(outline: Outline) -> set[frozenset[int]]:
+    found: list[set[int]] = [set() for _ in outline.corners]
+    for facet, face in enumerate(outline.faces):
+        for corner in face:
+            found[corner].add(facet)
+    return {frozenset(facets) for facets in found if facets}
+
+
+def _grouped(tiers: Sequence[int], slope: Array, distance: Array) -> list[list[int]]:
+    """Facets of one tier, slope and distance."""
+    groups: list[list[int]] = []
+    by_tier: dict[int, list[int]] = {}
+    for facet, tier in enumerate(tiers):
+        for group in by_tier.setdefault(tier, []):
+            first = groups[group][0]
+            if max(abs(slope[facet] - slope[first]), abs(distance[facet] - distance[first])) < SAME_TIER:
+                groups[group].append(facet)
+                break
+        else:
+            by_tier[tier].append(len(groups))
+            groups.append([facet])
+    return groups
