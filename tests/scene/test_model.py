@@ -114,7 +114,7 @@ BAD: dict[str, tuple[Any, str | None, str]] = {
     "scale 1e-9": ({"stones": [{"scale": 1e-9}]}, "stones.0.scale", "at least 0.01; got 1e-09"),
     "scale 1e9": ({"stones": [{"scale": 1e9}]}, "stones.0.scale", "at most 100; got 1000000000.0"),
     "density and mass": ({"stones": [{"density": 1, "mass": 1}]}, "stones.0", "a density or a mass, got both"),
-    "unknown material": ({"stones": [{"material": "glass"}]}, "stones.0.material", "'classic'; got 'glass'"),
+    "unknown material": ({"stones": [{"material": "gold"}]}, "stones.0.material", "'classic'; got 'gold'"),
     "no material": ({"stones": [{"material": 5}]}, "stones.0.material", "`ior` or one with `sellmeier`; got 5"),
     "index below 1": ({"stones": [{"material": {"ior": [0.9, 1, 1]}}]}, "stones.0.material.ior.0", "1; got 0.9"),
     "index above 10": ({"stones": [{"material": {"ior": [1, 1, 11]}}]}, "stones.0.material.ior.2", "10; got 11"),
@@ -272,3 +272,8 @@ def test_moving_the_stone_moves_nothing_else() -> None:
     assert [*moved.stones[0].position, *moved.stones[0].orientation] == [1, 2, 3, 0, 1, 0, 0]
     assert moved.moved((scene.stones[0].position, scene.stones[0].orientation)) == scene
     assert Scene(stones=()).moved() == Scene(stones=())
+
+
+@pytest.mark.parametrize(("called", "name"), [("glass", "bk7"), ("CZ", "cubic-zirconia"), ("Diamond", "diamond")])
+def test_a_material_is_found_by_what_people_call_it(called: str, name: str) -> None:
+    assert Scene.read({"stones": [{"material": called}]}).stones[0].material == name

@@ -20,7 +20,7 @@ from culet.scene.fields import Model
 from culet.scene.film import MOST_SAMPLES, STILL_ERROR, STILL_LEAST, STILL_SAMPLES, is_background
 from culet.scene.patch import patched
 from culet.scene.sky_seen import under
-from culet.scene.stone import MaterialName
+from culet.scene.stone import NamedMaterial
 from culet_protocol.engine import Format, Render
 from culet_protocol.sizes import STILL_SIZE
 
@@ -83,7 +83,7 @@ class StillQuery(Model):
     samples: Samples | None = None
     error: Error | None = None
     legend: Legend = False
-    material: MaterialName | None = None
+    material: NamedMaterial | None = None
     floor: Kind | None = None
     walls: Kind | None = None
     environment: Literal["dark", "light", "studio"] | None = None

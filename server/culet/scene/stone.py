@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Annotated, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from pydantic.config import JsonDict
 
 from culet.scene.cuts import Cut
@@ -48,8 +48,22 @@ MaterialName = Literal[
 ]  # fmt: skip
 """Those of optics/materials.py, which has their sources."""
 
+NICKNAMES = {"glass": "bk7", "cz": "cubic-zirconia"}
+"""What people call them, in any case of letters."""
+
+
+def material_named(value: object) -> object:
+    """A material's own name, of what it is called; anything else as it is."""
+    if not isinstance(value, str):
+        return value
+    name = value.lower()
+    return NICKNAMES.get(name, name)
+
+
+NamedMaterial = Annotated[MaterialName, BeforeValidator(material_named)]
+
 Material = Annotated[
-    Annotated[MaterialName, Tag("<name>")]
+    Annotated[NamedMaterial, Tag("<name>")]
     | Annotated[IndexMaterial, Tag("<ior>")]
     | Annotated[SellmeierMaterial, Tag("<sellmeier>")],
     Discriminator(
