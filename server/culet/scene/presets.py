@@ -15,7 +15,7 @@ from culet.scene.model import Scene
 from culet.scene.optics import SPECTRAL_AT_REST
 from culet.scene.report_scenes import CLASSIC, classic, tinted
 
-Group = Literal["diamonds", "instruments", "coloured stones", "several stones", "the report"]
+Group = Literal["diamonds", "instruments", "coloured stones", "other cuts", "several stones", "the report"]
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,22 @@ _ALL = (
     ),
     Preset(
         "emerald", "Emerald", "An emerald in a cut of its own, green by chromium.", "coloured stones", showcase.EMERALD
+    ),
+    Preset(
+        "princess",
+        "Princess",
+        "A square diamond whose pavilion fans out in chevrons.",
+        "other cuts",
+        showcase.PRINCESS,
+    ),
+    Preset("oval", "Oval", "A sapphire with a brilliant's facets on an ellipse.", "other cuts", showcase.OVAL),
+    Preset("emerald-cut", "Emerald cut", "An emerald in steps with cut corners.", "other cuts", showcase.EMERALD_CUT),
+    Preset(
+        "portuguese",
+        "Portuguese",
+        "Rock crystal in nine rows of rhombs: 161 facets.",
+        "other cuts",
+        showcase.PORTUGUESE,
     ),
     Preset("trio", "Trio", "A diamond between a ruby and a sapphire that touch it.", "several stones", piles.TRIO),
     Preset("heap", "Heap", "A dozen stones that have fallen into a corner.", "several stones", piles.HEAP),

@@ -52,7 +52,7 @@ class Recut(Model):
     )
 
     angles: Annotated[dict[Tier, Degrees], Field(max_length=MOST_ANGLES), AfterValidator(TierAngles)] = Field(
-        TierAngles(),
+        default_factory=TierAngles,
         description="Degrees from the horizontal of a tier's facets, by the tier's number as `culet design show` has "
         "it, once ratios and girdle are changed. All points in which facets meet and the girdle are kept: distances "
         "follow, and other angles where distances alone cannot.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from culet.scene.atelier import AMBIENT, boxes, grey, low_boxes, small_lamps, towards
 from culet.scene.backdrop import GradientBackdrop, NoBackdrop
 from culet.scene.camera import Camera, Head
-from culet.scene.cuts import BrilliantCut
+from culet.scene.cuts import BrilliantCut, EmeraldCut, OvalCut, PortugueseCut, PrincessCut
 from culet.scene.emitters import AnyEmitter, BoxLamp
 from culet.scene.fields import Colour
 from culet.scene.film import Film
@@ -82,15 +82,12 @@ ASET = _instrument("aset")
 IDEAL_SCOPE = _instrument("ideal-scope")
 
 
-def _coloured(
-    material: MaterialName, millimetres: float, crown: float, pavilion: float, resting_y: float, exposure: float
-) -> Scene:
-    """Brilliant's angles of a diamond would leave a window in it: a steeper cut of its own, on white."""
-    cut = BrilliantCut(table_percent=55, crown_degrees=crown, pavilion_degrees=pavilion)
+def _coloured(material: MaterialName, millimetres: float, exposure: float, **stone: object) -> Scene:
+    """On white."""
     ground: Colour = grey(0.2)
     return Scene(
         millimetres=millimetres,
-        stones=(StoneSettings(material=material, cut=cut, position=(0, resting_y, 0), spin=SPIN),),
+        stones=(StoneSettings.model_validate({"material": material, "spin": SPIN} | stone),),
         floor=StudioFloor(kind="studio", colour=grey(0.5), reflectance=0.1, shadow=0.6),
         backdrop=GradientBackdrop(kind="gradient", centre=(0.86, 0.865, 0.88), edge=(0.5, 0.51, 0.53)),
         environment=StudioEnvironment(ambient=ground),
@@ -100,6 +97,28 @@ def _coloured(
     )
 
 
-RUBY = _coloured("ruby", 1.5, 38, 42.5, -0.338769, 1.2)
-SAPPHIRE = _coloured("sapphire", 4, 40, 43, -0.323153, 1)
-EMERALD = _coloured("emerald", 4.5, 40, 43.5, -0.314927, 1.1)
+def _steep(crown: float, pavilion: float) -> BrilliantCut:
+    """Angles of a diamond would leave a window in a coloured stone."""
+    return BrilliantCut(table_percent=55, crown_degrees=crown, pavilion_degrees=pavilion)
+
+
+RUBY = _coloured("ruby", 1.5, 1.2, cut=_steep(38, 42.5), position=(0, -0.338769, 0))
+SAPPHIRE = _coloured("sapphire", 4, 1, cut=_steep(40, 43), position=(0, -0.323153, 0))
+EMERALD = _coloured("emerald", 4.5, 1.1, cut=_steep(40, 43.5), position=(0, -0.314927, 0))
+
+PRINCESS = Scene(
+    stones=(StoneSettings(cut=PrincessCut(), position=(0, -0.449614, 0), spin=SPIN),), optics=SPECTRAL_AT_REST
+)
+PORTUGUESE = Scene(
+    stones=(StoneSettings(cut=PortugueseCut(), material="quartz", position=(0, -0.292772, 0), spin=SPIN),),
+    optics=SPECTRAL_AT_REST,
+)
+OVAL = _coloured(
+    "sapphire", 4, 1, cut=OvalCut(crown_degrees=40, pavilion_degrees=43), position=(0, -0.532682, 0),
+    orientation=(0.929570, 0.366168, -0.039696, 0.015637),
+)  # fmt: skip
+EMERALD_CUT = _coloured(
+    "emerald", 4.5, 1.1, cut=EmeraldCut(), position=(0, -0.536143, 0),
+    orientation=(0.908894, 0.414207, -0.044061, 0.020080),
+)  # fmt: skip
+"""As they lie on the floor, of which `with_cut` tells."""

@@ -319,7 +319,7 @@ export interface Pose {
 export interface Preset {
   name: string;
   summary: string;
-  group: "diamonds" | "instruments" | "coloured stones" | "several stones" | "the report";
+  group: "diamonds" | "instruments" | "coloured stones" | "other cuts" | "several stones" | "the report";
   thumbnail: string;
   scene: Scene;
   title: string;
