@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import faulthandler
+import threading
 from concurrent.futures import Executor
 
 from culet.notify import Notice, notify, notify_patience
@@ -27,18 +28,20 @@ class Watchdog:
     def __init__(self, render_thread: Executor) -> None:
         self._render_thread = render_thread
         self._running = False
+        self._compiling = False
+        self._lock = threading.Lock()
 
     async def run(self) -> None:
         """See that the render thread answers, for ever; this task shows that the loop does."""
         loop = asyncio.get_running_loop()
         self._running = True
         compiling.listen(self._have_patience)
-        self._arm(HANG_SECONDS)
+        self._arm()
         notify(Notice.READY)
         try:
             while True:
                 await loop.run_in_executor(self._render_thread, _nothing)
-                self._arm(HANG_SECONDS)
+                self._arm()
                 notify(Notice.ALIVE)
                 await asyncio.sleep(BEAT_SECONDS)
         finally:
@@ -46,14 +49,18 @@ class Watchdog:
             faulthandler.cancel_dump_traceback_later()
 
     def _have_patience(self, compiler_at_work: bool) -> None:
-        if not self._running:
-            return
-        seconds = COMPILER_SECONDS if compiler_at_work else HANG_SECONDS
-        self._arm(seconds)
-        notify_patience(seconds)
+        if self._running:
+            notify_patience(self._arm(compiler_at_work))
 
-    def _arm(self, seconds: float) -> None:
-        faulthandler.dump_traceback_later(seconds, exit=True)
+    def _arm(self, compiling: bool | None = None) -> float:
+        """From now on; s until it ends the process. A compiler may begin, in the render thread, just as the
+        loop sees that this thread answered: what is known of compilers stays until they tell."""
+        with self._lock:
+            if compiling is not None:
+                self._compiling = compiling
+            seconds = COMPILER_SECONDS if self._compiling else HANG_SECONDS
+            faulthandler.dump_traceback_later(seconds, exit=True)
+        return seconds
 
 
 def _nothing() -> None:
