@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+from shared.patience import PATIENCE
+
 CHILD = """
 import os, time
 from culet.parent import ending_with
@@ -26,7 +28,7 @@ os._exit(0)
 def child_of(parent_off_by: int) -> str:
     """What a child said once it had asked: its process id, or nothing if it ended at once."""
     command = [sys.executable, "-c", PARENT, CHILD, str(parent_off_by)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout.strip()
+    return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=True).stdout.strip()
 
 
 def lives(pid: int) -> bool:
@@ -38,7 +40,7 @@ def lives(pid: int) -> bool:
 
 def test_it_is_killed_when_its_parent_ends() -> None:
     child = int(child_of(0))
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + PATIENCE
     while lives(child):
         assert time.monotonic() < deadline, "it outlived its parent"
 

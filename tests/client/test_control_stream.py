@@ -25,8 +25,9 @@ from culet_protocol import SUBPROTOCOL
 from culet_protocol.frame import Codec, Frame
 from culet_protocol.messages import Ack, Hello, Orbit, PatchScene, Ping, Pong, Problem, Resize, State, ToggleFall
 from culet_protocol.watch import watch_id
+from shared import patience
 
-PATIENCE = 30
+PATIENCE = patience.PATIENCE
 T = TypeVar("T")
 
 

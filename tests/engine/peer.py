@@ -19,9 +19,9 @@ import zmq.asyncio
 from culet_protocol.engine import REQUEST_NUMBER
 from culet_protocol.frame import Frame
 from culet_protocol.watch import watch_key
+from shared import patience
 
-PATIENCE = 30.0
-"""s; an upper limit for what takes a fraction of a second, or some seconds while kernels compile for the first time."""
+PATIENCE = patience.PATIENCE
 SIZE: dict[str, Any] = {"width": 64, "height": 36}
 
 TETRAHEDRON = b"OFF\n4 4 0\n1 1 1\n1 -1 -1\n-1 1 -1\n-1 -1 1\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n"

@@ -25,9 +25,9 @@ from culet_protocol import SUBPROTOCOL
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Message, Resize
 from culet_protocol.parts import with_parts
+from shared import patience
 
-PATIENCE = 30.0
-"""Seconds until a condition that should come true counts as failed; machines can be slow, kernels must be built."""
+PATIENCE = patience.PATIENCE
 SIZE = Resize(width=64, height=36)
 
 TETRAHEDRON = b"v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"

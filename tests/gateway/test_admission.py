@@ -14,6 +14,7 @@ from websockets.exceptions import InvalidStatus
 
 from culet.gateway.admission import Bodies
 from gateway.running import FOREIGN, Gateway, gateway_alone
+from shared.patience import PATIENCE
 
 SHOP = "https://shop.example"
 
@@ -174,7 +175,7 @@ async def test_an_announced_length_over_the_limit_is_refused_before_anything_is_
         url = httpx.URL(gateway.url)
         reader, writer = await asyncio.open_connection(url.host, url.port)
         writer.write(f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9999999999\r\n\r\n".encode())
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(PATIENCE):
             assert b" 413 " in await reader.readline()
         writer.close()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from culet.gateway.client_turns import ClientTurns
+from shared.patience import PATIENCE
 
 
 async def test_a_client_has_one_turn_at_a_time_and_another_client_its_own() -> None:
@@ -42,5 +43,5 @@ async def test_a_turn_that_is_given_up_holds_up_nobody() -> None:
         await asyncio.sleep(0)
         waiting.cancel()
         await asyncio.gather(waiting, return_exceptions=True)
-    async with asyncio.timeout(5), turns.turn("a"):
+    async with asyncio.timeout(PATIENCE), turns.turn("a"):
         pass

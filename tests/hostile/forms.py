@@ -11,11 +11,12 @@ import sys
 from collections.abc import Callable, Mapping
 
 from hostile.serving import MIB
+from shared import patience
 
 TYPE = "multipart/form-data; boundary=a"
 FILE = b'--a\r\nContent-Disposition: form-data; name="file"; filename="sky.png"\r\n\r\n'
 END = b"\r\n--a--\r\n"
-PATIENCE = 90.0
+PATIENCE = patience.PATIENCE
 AT_ONCE = MIB
 """Bytes."""
 

@@ -18,12 +18,11 @@ from typing import Any, TypeVar
 import httpx
 import psutil
 
+from shared import patience
+
 T = TypeVar("T")
 
-PATIENCE = 90.0
-"""s until what should come true counts as failed; machines can be slow, kernels must be compiled."""
-OUTLIVING = 60.0
-"""s that a compiler or a reader under way may take to see that nobody waits for it."""
+PATIENCE = patience.PATIENCE
 MIB = 2**20
 
 FALLING: Mapping[str, Any] = {
@@ -74,7 +73,7 @@ class Serving:
         assert self._process.stdout
         self._process.stdout.close()
         outlived = []
-        for process in psutil.wait_procs(children, timeout=OUTLIVING)[1]:
+        for process in psutil.wait_procs(children, timeout=PATIENCE)[1]:
             with contextlib.suppress(psutil.NoSuchProcess):
                 outlived.append(" ".join(process.cmdline()))
                 process.kill()
@@ -150,7 +149,7 @@ class Serving:
 
     def _is_ready(self) -> bool:
         try:
-            return self.http.get("/readyz", timeout=5).status_code == 200
+            return self.http.get("/readyz").status_code == 200
         except httpx.HTTPError:
             return False
 

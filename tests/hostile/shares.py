@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import AbstractAsyncContextManager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -223,7 +224,7 @@ async def half_sent_requests(serving: Serving, connections: int, within: float) 
     held: list[socket.socket] = []
     for _ in range(connections):
         with contextlib.suppress(OSError):
-            one = socket.create_connection(("127.0.0.1", serving.port), timeout=2)
+            one = socket.create_connection(("127.0.0.1", serving.port), timeout=PATIENCE)
             held.append(one)
             one.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ")
     began = time.monotonic()
@@ -245,16 +246,35 @@ async def half_sent_requests(serving: Serving, connections: int, within: float) 
     )
 
 
-async def form(serving: Serving, shape: str, mebibytes: int, within: float) -> Finding:
-    """An upload form of that shape, while others ask for something small again and again, as they did before."""
-    before = max(await _waits(serving, asyncio.create_task(asyncio.sleep(BEFORE_SECONDS))))
+@dataclass(frozen=True)
+class SentForm:
+    """What became of a form, and of others meanwhile."""
+
+    status: int
+    """Of its answer."""
+    seconds: float
+    """From before its sender starts to its answer."""
+    waits: list[float]
+    """s of each small request of others."""
+
+
+async def sent_form(serving: Serving, shape: str, mebibytes: int) -> SentForm:
+    """By a process of its own, while others ask for something small again and again."""
+    began = time.monotonic()
     sender = await asyncio.create_subprocess_exec(
         sys.executable, "-m", "hostile.forms", str(serving.port), shape, str(mebibytes),
         env=os.environ | {"PYTHONPATH": TESTS}, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip
     answered = asyncio.create_task(sender.communicate())
-    during = max(await _waits(serving, answered))
-    status = int((await answered)[0])
+    waits = await _waits(serving, answered)
+    return SentForm(int((await answered)[0]), time.monotonic() - began, waits)
+
+
+async def form(serving: Serving, shape: str, mebibytes: int, within: float) -> Finding:
+    """An upload form of that shape, while others ask for something small again and again, as they did before."""
+    before = max(await _waits(serving, asyncio.create_task(asyncio.sleep(BEFORE_SECONDS))))
+    sent = await sent_form(serving, shape, mebibytes)
+    status, during = sent.status, max(sent.waits)
     return Finding(
         Group.SHARES,
         f"an upload form of {mebibytes} MiB: {shape}",

@@ -10,9 +10,9 @@ import socket
 import struct
 
 from culet_protocol import SUBPROTOCOL
+from shared import patience
 
-PATIENCE = 20.0
-"""s for an answer."""
+PATIENCE = patience.PATIENCE
 
 
 def opened(port: int, session: str) -> socket.socket:

@@ -29,6 +29,7 @@ from pathlib import Path
 if __package__ in (None, ""):
     sys.path.insert(0, str(Path(__file__).parent.parent))
 from network import namespaces
+from shared.patience import PATIENCE
 
 SERVER, VIEWER = "10.77.0.1", "10.77.0.2"
 """Addresses of the two ends."""
@@ -175,7 +176,7 @@ def missing() -> str | None:
     if not Path(DEVICE).exists():
         return f"shaped links need {DEVICE}"
     tried = subprocess.run(
-        [sys.executable, str(Path(__file__))], check=False, input="", capture_output=True, text=True, timeout=30
+        [sys.executable, str(Path(__file__))], check=False, input="", capture_output=True, text=True, timeout=PATIENCE
     )
     if tried.returncode == 0:
         return None
@@ -196,7 +197,7 @@ def running_link(shape: Shape) -> Iterator[Link]:
             yield link
         finally:
             process.stdin.close()
-            process.wait(10)
+            process.wait(PATIENCE)
 
 
 if __name__ == "__main__":

@@ -210,7 +210,7 @@ def _ended(process: subprocess.Popen[bytes]) -> Iterator[None]:
     finally:
         process.terminate()
         try:
-            process.wait(15)
+            process.wait(PATIENCE)
         finally:
             process.kill()
             process.wait()

@@ -17,6 +17,7 @@ from culet.rendering.build import Variant
 from culet.rendering.device import open_device
 from culet.rendering.features import Features
 from culet.rendering.program import Programs
+from shared.patience import PATIENCE
 
 REMOVED = """
 import shutil, sys
@@ -79,7 +80,7 @@ def test_the_general_program_serves_until_there_is_room_again(monkeypatch: pytes
 
     monkeypatch.setattr(program, "precompile", refuse)
     monkeypatch.setattr(program, "RETRY_SECONDS", 0)
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + PATIENCE
     while len(asked) < 3:
         assert programs.best(special, variant) is general
         assert time.monotonic() < deadline, "it was not tried again"

@@ -9,9 +9,9 @@ import threading
 from pathlib import Path
 
 from culet.rendering.making import alone
+from shared import patience
 
-PATIENCE = 60.0
-"""s; an upper limit for what takes three."""
+PATIENCE = patience.PATIENCE
 MAKE = """
 import time
 from culet.rendering.device import open_device

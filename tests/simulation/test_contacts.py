@@ -122,7 +122,6 @@ def test_five_larger_heaps_come_to_rest(count: int) -> None:
 
 
 @pytest.mark.soak
-@pytest.mark.timed
 @pytest.mark.parametrize("count", [12, 32, 64])
 def test_a_heap_costs_no_more_than_so_many_stones_alone(count: int) -> None:
     assert failures(heaps.costs(count)) == []

@@ -171,7 +171,6 @@ def test_a_file_that_cannot_be_written_is_refused_before_anything_is_measured(tm
     assert "cannot write" in line
 
 
-@pytest.mark.timed
 async def test_a_stone_falls_again_and_again_and_every_change_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(governor, "WARM_SECONDS", 0.2)
     monkeypatch.setattr(governor, "CHANGE_SECONDS", 0.5)

@@ -16,11 +16,11 @@ import pytest
 from playwright.sync_api import sync_playwright
 
 from culet.simulation.solver.build import library_name
+from shared import patience
 
 REPOSITORY = Path(__file__).parents[2]
 PAGE = REPOSITORY / "client" / "web" / "dist" / "index.html"
-PATIENCE = 120.0
-"""Seconds: kernels are compiled anew."""
+PATIENCE = patience.PATIENCE
 ARGUMENTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking")
 
 pytestmark = [

@@ -16,6 +16,7 @@ from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene.stone import MOST_STONES
 from engine.peer import TETRAHEDRON
+from shared.patience import PATIENCE
 
 
 async def test_a_mesh_becomes_a_stone_and_is_described() -> None:
@@ -124,7 +125,7 @@ async def test_readers_of_both_kinds_at_once_share_the_memory(monkeypatch: pytes
 
     monkeypatch.setattr(upload_store, "read_upload", read)
     mesh, sky = UploadStore(MESH, Limits(), memory), UploadStore(SKY, Limits(), memory)
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(PATIENCE):
         results = await asyncio.gather(mesh.put("a", "off", b"1"), sky.put("b", "png", b"2"), return_exceptions=True)
     assert [str(result) for result in results] == ["none", "none"]
     assert sum(rooms) <= memory.budget

@@ -33,6 +33,7 @@ from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Balance
+from shared import patience
 
 WANTED = 1280, 800
 REST = Target(16, 0.004, least=16)
@@ -44,8 +45,7 @@ POINTER_RATE = 60
 """Events per second of a drag."""
 QUICKEST = min(rung.cost for rung in read_ladder() if rung.scale >= 0.5)
 """Cost of the quickest rung at the least size, over the first's."""
-PATIENCE = 30.0
-"""s, after which a test gives up."""
+PATIENCE = patience.PATIENCE
 IDLE = 0.005
 """s that pass when there is nothing to draw."""
 
@@ -319,7 +319,7 @@ async def test_what_moves_does_not_wait_for_the_program_that_refines(play: Play)
     assert sum(not drawn.full for drawn in world.drawn) > 29
     assert (world.drawn[-1].full, world.samples) == (True, 1)
     world.compiled.set()
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE):
         while world.samples == 1:
             await play(world, 0.1)
             await asyncio.sleep(0.001)  # the thread that waits for the compiler is a real one

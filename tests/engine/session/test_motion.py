@@ -14,11 +14,11 @@ from culet.scene import Scene
 from culet.scene.legacy import legacy
 from culet.simulation.clock import MAX_CATCH_UP
 from culet.stage import Stage
+from shared import patience
 
 HIGH = legacy({"stones": [{"position": [0, 100, 0]}]})
 STEP = Scene().simulation.time_step
-PATIENCE = 30.0
-"""s, after which a test gives up."""
+PATIENCE = patience.PATIENCE
 
 
 def falling(scene: Scene = HIGH) -> Motion:

@@ -88,7 +88,7 @@ WORST: dict[str, Callable[[], bytes]] = {
 def test_the_worst_designs_known_take_little_time(name: str) -> None:
     start = time.process_time()
     is_a_stone_or_refused(WORST[name](), "asc")
-    assert time.process_time() - start < 5  # measured up to 0.5 s
+    assert time.process_time() - start < 20  # measured up to 0.5 s
 
 
 def test_another_ending_is_refused_with_those_that_there_are() -> None:

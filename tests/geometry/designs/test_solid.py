@@ -121,7 +121,7 @@ def test_designs_of_any_public_size_run_by_half_spaces_and_are_read_at_once(coun
     shape_from_file(data, "asc")
     start = time.process_time()
     stone = shape_from_file(data, "asc")
-    assert time.process_time() - start < 0.5  # measured 4 to 15 ms
+    assert time.process_time() - start < 1  # measured 4 to 15 ms
     assert len(stone.planes) == count
     assert by_half_spaces(stone)
 
