@@ -69,7 +69,7 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 
 # pytest ends with 5 if it has found no test.
 validate: $(DONE)/validation opencl $(DONE)/solver compilers
-	$(BIN)/pytest -m "validation and not soak" $(ARGS) || [ $$? -eq 5 ]
+	$(BIN)/pytest -m "validation and not soak" --numprocesses 2 --dist loadfile --no-loadscope-reorder $(ARGS) || [ $$? -eq 5 ]
 
 # What is long by nature, and bounded: load, chaos, whole searches. Not part of .ci/run.
 soak: $(DONE)/soak opencl $(DONE)/solver

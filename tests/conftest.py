@@ -19,8 +19,8 @@ from culet.scene.stone import StoneSettings
 RendererOf = Callable[[int, type[np.floating[Any]]], Renderer]
 
 LONG_FIRST = (
-    "tests/e2e/", "tests/test_cli.py", "tests/service/", "tests/rendering/", "tests/documents/", "tests/study/",
-    "tests/simulation/", "tests/engine/", "tests/gateway/", "tests/hostile/", "tests/geometry/",
+    "tests/validation/", "tests/e2e/", "tests/test_cli.py", "tests/service/", "tests/rendering/", "tests/documents/",
+    "tests/study/", "tests/simulation/", "tests/engine/", "tests/gateway/", "tests/hostile/", "tests/geometry/",
 )  # fmt: skip
 """What takes long is handed out first, by what its name begins with, so that the workers end together."""
 

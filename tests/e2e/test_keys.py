@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 from e2e.conftest import WITH_PANEL, ViewOf
@@ -53,48 +52,49 @@ def meaning_of(key: str) -> tuple[list[dict[str, Any]], str]:
     return ([], meaning) if isinstance(meaning, str) else ([meaning], "camera")
 
 
-@pytest.mark.parametrize(
-    "place_and_letter",
-    [
-        pytest.param(lambda key, code: (code, key), id="qwerty"),
-        pytest.param(lambda key, code: (code, key.upper() if len(key) == 1 else key), id="caps-lock"),
-        pytest.param(lambda key, code: (code, NO_LETTER_OF_OURS), id="by-place-alone"),
-        pytest.param(lambda key, code: ("Unidentified", key), id="by-letter-alone"),
-    ],
-)
-def test_every_key_acts_once_by_its_place_or_by_its_letter(
-    view: View, place_and_letter: Callable[[str, str], tuple[str, str]]
-) -> None:
-    for key, (code, _) in KEYS.items():
-        messages, target = meaning_of(key)
-        if key == "c":
-            view.press("Digit2", "2")  # another target, so that the choice is seen
-        view.press(*place_and_letter(key, code))
-        assert view.sent == messages, key
-        assert view.state["target"] == target, key
-        view.sent.clear()
-        view.press("KeyC", "c")
+BY_PLACE_AND_LETTER: dict[str, Callable[[str, str], tuple[str, str]]] = {
+    "qwerty": lambda key, code: (code, key),
+    "caps-lock": lambda key, code: (code, key.upper() if len(key) == 1 else key),
+    "by-place-alone": lambda key, code: (code, NO_LETTER_OF_OURS),
+    "by-letter-alone": lambda key, code: ("Unidentified", key),
+}
+
+
+def test_every_key_acts_once_by_its_place_or_by_its_letter(view: View) -> None:
+    for layout, place_and_letter in BY_PLACE_AND_LETTER.items():
+        for key, (code, _) in KEYS.items():
+            messages, target = meaning_of(key)
+            if key == "c":
+                view.press("Digit2", "2")  # another target, so that the choice is seen
+            view.press(*place_and_letter(key, code))
+            assert view.sent == messages, (layout, key)
+            assert view.state["target"] == target, (layout, key)
+            view.sent.clear()
+            view.press("KeyC", "c")
     assert view.problems == []
 
 
-@pytest.mark.parametrize(
-    ("code", "key", "meant"),
-    [
-        pytest.param("KeyM", ",", "m", id="azerty-place-of-m"),
-        pytest.param("Semicolon", "m", "m", id="azerty-letter-m"),
-        pytest.param("KeyW", "z", "w", id="azerty-place-of-w"),
-        pytest.param("KeyZ", "w", "w", id="azerty-letter-w"),
-        pytest.param("Digit1", "&", "1", id="azerty-place-of-1"),
-        pytest.param("KeyR", "p", "p", id="dvorak-letter-p-at-the-place-of-r"),
-        pytest.param("KeyL", "\u0434", "l", id="russian-place-of-l"),
-        pytest.param("Numpad2", "2", "2", id="number-pad"),
-    ],
-)
-def test_another_layout_means_what_is_printed_or_else_the_place(view: View, code: str, key: str, meant: str) -> None:
-    messages, target = meaning_of(meant)
-    view.press(code, key)
-    assert view.sent == messages
-    assert view.state["target"] == target
+OTHER_LAYOUTS = {
+    "azerty-place-of-m": ("KeyM", ",", "m"),
+    "azerty-letter-m": ("Semicolon", "m", "m"),
+    "azerty-place-of-w": ("KeyW", "z", "w"),
+    "azerty-letter-w": ("KeyZ", "w", "w"),
+    "azerty-place-of-1": ("Digit1", "&", "1"),
+    "dvorak-letter-p-at-the-place-of-r": ("KeyR", "p", "p"),
+    "russian-place-of-l": ("KeyL", "\u0434", "l"),
+    "number-pad": ("Numpad2", "2", "2"),
+}
+"""The place that is pressed, what is printed there, and which of our keys is meant."""
+
+
+def test_another_layout_means_what_is_printed_or_else_the_place(view: View) -> None:
+    for layout, (code, key, meant) in OTHER_LAYOUTS.items():
+        messages, target = meaning_of(meant)
+        view.press(code, key)
+        assert view.sent == messages, layout
+        assert view.state["target"] == target, layout
+        view.sent.clear()
+        view.press("KeyC", "c")
 
 
 def test_a_key_held_down_moves_again_but_does_not_switch_again(view: View) -> None:
@@ -173,39 +173,39 @@ PLACES: dict[str, Callable[[Scene], Any]] = {
 }
 
 
-@pytest.mark.parametrize(("target", "chosen_by"), [("camera", "c"), ("light_1", "1"), ("light_2", "2")])
-def test_moves_go_half_r_along_the_axes_of_the_picture(view: View, server: Server, target: str, chosen_by: str) -> None:
-    view.page.keyboard.press(chosen_by)
-    for key, (axis, length) in MOVES.items():
-        start = view.scene
-        before, after = view.change_by(key)
-        scene = server.session(view.session)["scene"]
-        assert scene == view.scene, "the page knows what the engine has"
-        for name, place in PLACES.items():
-            shift = length * axes(start)[axis] if name == target else np.zeros(3)
-            np.testing.assert_allclose(place(scene), place(start) + shift, atol=1e-9, err_msg=f"{name} by {key}")
-        assert difference(before.pixels, after.pixels) > SEEN, key
+def test_moves_go_half_r_along_the_axes_of_the_picture(view: View, server: Server) -> None:
+    """The camera's, each way; the lights', one way along each axis."""
+    for target, chosen_by, keys in (
+        ("camera", "c", tuple(MOVES)),
+        ("light_1", "1", ("ArrowLeft", "ArrowUp", "i")),
+        ("light_2", "2", ("ArrowRight", "ArrowDown", "o")),
+    ):
+        view.page.keyboard.press(chosen_by)
+        for key in keys:
+            axis, length = MOVES[key]
+            start = view.scene
+            before, after = view.change_by(key)
+            scene = server.session(view.session)["scene"]
+            assert scene == view.scene, "the page knows what the engine has"
+            for name, place in PLACES.items():
+                shift = length * axes(start)[axis] if name == target else np.zeros(3)
+                np.testing.assert_allclose(place(scene), place(start) + shift, atol=1e-9, err_msg=f"{name} by {key}")
+            assert difference(before.pixels, after.pixels) > SEEN, (target, key)
 
 
-@pytest.mark.parametrize(
-    ("key", "part", "kinds"),
-    [
-        pytest.param("m", "floor", ["mirror", "matte"], id="M"),
-        pytest.param("w", "walls", ["matte", "none"], id="W"),
-        pytest.param("l", "environment", ["light", "studio"], id="L"),
-    ],
-)
-def test_switches_go_there_and_back(view: View, server: Server, key: str, part: str, kinds: list[str]) -> None:
+def test_switches_go_there_and_back_and_walls_and_floor_become_mirrors_together(view: View, server: Server) -> None:
     start = view.at_rest()
-    for kind in kinds:
-        before, after = view.change_by(key)
-        assert server.session(view.session)["scene"][part]["kind"] == kind
-        assert view.scene[part]["kind"] == kind
-        assert difference(before.pixels, after.pixels) > SEEN
-    assert_same(view.look().pixels, start.pixels)
-
-
-def test_walls_and_floor_become_mirrors_together(view: View) -> None:
+    for key, part, kinds in (
+        ("m", "floor", ["mirror", "matte"]),
+        ("l", "environment", ["light", "studio"]),
+        ("w", "walls", ["matte", "none"]),
+    ):
+        for kind in kinds:
+            before, after = view.change_by(key)
+            assert server.session(view.session)["scene"][part]["kind"] == kind
+            assert view.scene[part]["kind"] == kind
+            assert difference(before.pixels, after.pixels) > SEEN
+        assert_same(view.look().pixels, start.pixels)
     view.change_by("w")
     view.change_by("m")
     assert (view.scene["floor"]["kind"], view.scene["walls"]["kind"]) == ("mirror", "mirror")

@@ -114,7 +114,7 @@ def test_a_light_inside_a_stone_shines_out_of_it(beams: Beams) -> None:
 def test_a_light_inside_a_stone_that_it_may_not_leave_lights_nothing(beams: Beams) -> None:
     light = Ray((1, 1, 1), position=(0.1, 0.1, 0.2), follows=False)
     made = thrown(beams, [light], exact_box(), stones=[UPRIGHT])
-    assert made.map[0, 0, :, :, 0] == pytest.approx(-unshaded(made, light, 0, 0), abs=1e-6)
+    assert abs(made.map[0, 0, :, :, 0] + unshaded(made, light, 0, 0)).max() < 1e-6
 
 
 def test_random_stones_in_random_places_lose_nothing(beams: Beams) -> None:

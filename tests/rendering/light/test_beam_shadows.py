@@ -83,7 +83,7 @@ def test_what_several_stones_hide_is_dark_once(beams: Beams, brilliant: Shape, r
     expected, clear = np.any(alone, axis=0), abs(shade - 0.5) > 0.499
     assert clear.mean() > 0.96
     assert (shade[clear] > 0.5).tolist() == expected[clear].tolist()
-    assert shade[clear & expected] == pytest.approx(1, abs=1e-3)
+    assert abs(shade[clear & expected] - 1).max() < 1e-3
 
 
 def disc(middle: Array, degrees: float, count: int) -> Array:

@@ -200,7 +200,7 @@ def test_single_precision_agrees_with_double(beams: Beams, exact: Beams) -> None
 def test_bands_of_one_index_make_the_same_map_as_three_channels(beams: Beams) -> None:
     three = thrown(beams, [sun()], skew_block(), stones=[glass(1.6)], cutoff=1e-4)
     bands = thrown(beams, [sun()], skew_block(), stones=[glass(1.6)], cutoff=1e-4, optics={"bands": 8}, number=3)
-    assert bands.map == pytest.approx(three.map, abs=2e-4)
+    assert abs(bands.map - three.map).max() < 2e-4  # pytest.approx takes 4 us a number, of millions
 
 
 def test_polarised_light_passes_a_plate_as_two_plates_worth(beams: Beams) -> None:
@@ -229,11 +229,11 @@ def test_pieces_of_a_pass_make_the_map_of_a_whole_one(beams: Beams) -> None:
     assert len(parts) > 3
     assert parts == sorted(parts)
     cl.enqueue_copy(beams.device.queue, made, target)
-    assert made == pytest.approx(whole.map, abs=1e-4)
+    assert abs(made - whole.map).max() < 1e-4
     beams.make(stage, [sun((1, 2, 0))], frame, target, cutoff=1e-3, keep=0.75, gain=0.25)
     cl.enqueue_copy(beams.device.queue, made, target)
     other = thrown(beams, [sun((1, 2, 0))], cutoff=1e-3)
-    assert made == pytest.approx(0.75 * whole.map + 0.25 * other.map, abs=1e-4)
+    assert abs(made - (0.75 * whole.map + 0.25 * other.map)).max() < 1e-4
 
 
 def test_a_pass_of_more_stones_begins_with_few_jobs_for_nobody_knows_how_long_they_take(device: Device) -> None:
