@@ -52,8 +52,9 @@ static inline void advance(world_t world, tile_t *tile, pools_t *pools, task_t t
     }
     packet.direction = reflect_inside(stone, packet.direction, cos_s, crossing.normal);
     packet.tag += ONE_BOUNCE;
+    const maskL changed = POLARISED ? alive : ABSORPTION != 0 ? alive : leaves; // in weight
     const maskL used_up = !crossing.hit | widen((packet.tag >> BOUNCE_SHIFT) >= (intL)(world.scene->max_bounces));
-    alive = settle(world, tile, task, &packet, INSIDE, alive, used_up);
+    alive = settle(world, tile, task, &packet, INSIDE, alive, used_up, changed);
   }
   if (any_lane(alive)) push_to_shape(&pools->inside, shape, alive, &packet);
 }

@@ -114,6 +114,7 @@ typedef double doubleL;
 static inline doubleL to_double(realL value) { return value; }
 static inline realL ints_to_real(intL value) { return (real)value; }
 static inline intL reals_to_int(realL value) { return (int)value; }
+static inline intL exponent_of(intL value) { return as_int((float)value) >> 23 & 255; }
 static inline doubleL ints_to_double(intL value) { return value; }
 static inline realL from_double(doubleL value) { return (real)value; }
 #else
@@ -121,9 +122,28 @@ typedef JOIN(double, LANES) doubleL;
 static inline doubleL to_double(realL value) { return JOIN(convert_double, LANES)(value); }
 static inline realL ints_to_real(intL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 static inline intL reals_to_int(realL value) { return JOIN(convert_int, LANES)(value); }
+static inline intL exponent_of(intL value) {
+  return JOIN(as_int, LANES)(JOIN(convert_float, LANES)(value)) >> 23 & 255;
+}
 static inline doubleL ints_to_double(intL value) { return JOIN(convert_double, LANES)(value); }
 static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 #endif
+
+// Which bit it is that is set, if one is.
+static inline intL bit_number(intL bit) { return exponent_of(bit) - 127; }
+
+// Numbers that lie anywhere, by their places.
+static inline realL gather_lanes(const real *from, intL place) {
+#if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
+  return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(real));
+#else
+  int own[LANES];
+  real found[LANES];
+  store_ints(place, own);
+  for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];
+  return load_lanes(found);
+#endif
+}
 
 // The lanes that a mask names, in order and without gaps (stream compaction). A whole packet is written, of which `count` lanes are meant.
 #if LANES == 16 && AVX512

@@ -9,11 +9,12 @@
 typedef struct {
   inside_t inside;
 #if STONES == MANY
-  pool_t leaving; // stones, still in the axes of light inside
+  pool_t leaving;                  // stones, still in the axes of light inside
+  int near[NEAR_WORDS][POOL_SIZE]; // which stones those of `towards` may meet
 #endif
-  pool_t towards; // may meet a stone
-  pool_t away;    // can meet the room and the sky only, by way of mirrors a stone again
-  pool_t up;      // can meet the sky only
+  pool_t towards;                  // may meet a stone
+  pool_t away;                     // can meet the room and the sky only, by way of mirrors a stone again
+  pool_t up;                       // can meet the sky only
 } pools_t;
 
 static inline void clear_pools(pools_t *pools) {
@@ -44,12 +45,19 @@ static inline void put_away(world_t world, pools_t *pools, maskL mask, const pac
   push(&pools->away, parted ? mask & !up : mask, packet);
 }
 
+#if STONES != MANY
+typedef int nearL; // there is one
+#endif
+
 // Puts off a packet that may meet a stone. What finds no room is counted as cut.
-static inline void put_off(world_t world, tile_t *tile, pools_t *pools, task_t task, maskL mask,
-                           const packetL *packet) {
-  if (has_room(&pools->towards))
+static inline void put_off(world_t world, tile_t *tile, pools_t *pools, task_t task, maskL mask, const packetL *packet,
+                           const nearL *near) {
+  if (has_room(&pools->towards)) {
+#if STONES == MANY
+    EACH (k, NEAR_WORDS) pack_ints(packing_of(mask), near->word[k], pools->near[k] + pools->towards.count);
+#endif
     push(&pools->towards, mask, packet);
-  else {
+  } else {
 #if RECORDED
     if (mask) tell_end(world, task, packet, ABROAD, black());
 #endif
@@ -60,12 +68,13 @@ static inline void put_off(world_t world, tile_t *tile, pools_t *pools, task_t t
 // Puts off a packet that is outside the stones, by what it may meet.
 static inline void let_go(world_t world, tile_t *tile, pools_t *pools, task_t task, maskL mask, const packetL *packet) {
 #if STONES == MANY
-  const maskL towards = mask & passes_others(world, packet->origin, packet->direction, packet->stone);
-  if (any_lane(towards)) put_off(world, tile, pools, task, towards, packet);
+  const nearL near = near_stones(world, packet->origin, packet->direction, splat(0), packet->stone);
+  const maskL towards = mask & any_near(&near);
+  if (any_lane(towards)) put_off(world, tile, pools, task, towards, packet, &near);
   put_away(world, pools, mask & !towards, packet);
 #else
   if (EXCHANGE)
-    put_off(world, tile, pools, task, mask, packet);
+    put_off(world, tile, pools, task, mask, packet, 0);
   else
     put_away(world, pools, mask, packet);
 #endif
@@ -108,7 +117,7 @@ static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t tas
   inner.polarisation = parts.transmitted;
   scale_weights(&inner, (real)1 - parts.kept);
   inner.tag = packet->tag & (ONE_BOUNCE - 1);
-  const maskL goes_on = settle(world, tile, task, &inner, ENTERING, mask, mask & !mask);
+  const maskL goes_on = settle(world, tile, task, &inner, ENTERING, mask, mask & !mask, mask);
   if (has_room_inside(&pools->inside))
     push_inside(world, &pools->inside, goes_on, &inner);
   else {
@@ -151,7 +160,12 @@ static inline void look_away(world_t world, tile_t *tile, pools_t *pools, pool_t
 #endif
     packet.stone = (intL)(NOBODY);
     scale_weights(&packet, ray.weight);
-    put_off(world, tile, pools, task, towards, &packet);
+#if STONES == MANY
+    const nearL near = near_stones(world, packet.origin, packet.direction, splat(0), packet.stone);
+    put_off(world, tile, pools, task, towards, &packet, &near);
+#else
+    put_off(world, tile, pools, task, towards, &packet, 0);
+#endif
   }
 }
 
@@ -172,14 +186,26 @@ static inline void turn_out(world_t world, tile_t *tile, pools_t *pools, task_t 
 static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task_t task) {
   maskL taken;
   packetL packet = pop(&pools->towards, &taken);
+#if STONES == MANY
+  nearL near;
+  EACH (k, NEAR_WORDS) near.word[k] = load_ints(pools->near[k] + pools->towards.count);
+  meetingL met = nobody(packet.origin, packet.direction);
+  meet_next(world, &near, packet.origin, packet.direction, splat(0), taken, packet.stone, &met);
+  const maskL more = taken & any_near(&near), waits = more & !met.hit;
+  if (any_lane(waits)) put_off(world, tile, pools, task, waits, &packet, &near); // for a full packet
+  taken &= !waits;
+  for (maskL asking = more & met.hit; any_lane(asking); asking &= any_near(&near))
+    meet_next(world, &near, packet.origin, packet.direction, splat(0), asking, packet.stone, &met);
+#else
   meetingL met = stone_entry(world, packet.origin, packet.direction, splat(0), taken, packet.stone);
+#endif
   const rayL ray = {packet.origin, packet.direction, splat(0), splat(1), packet.polarisation};
   const maskL meets = met.hit & !hidden_by_room(world, ray, met.t);
   const maskL misses = taken & !meets;
   if (any_lane(misses)) put_away(world, pools, misses, &packet);
   // Between stones that overlap light could be reflected for ever; so only what is worth it meets another one.
   maskL hits = taken & meets;
-  if (STONES == MANY) hits = settle(world, tile, task, &packet, ABROAD, hits, misses & !misses);
+  if (STONES == MANY) hits = settle(world, tile, task, &packet, ABROAD, hits, misses & !misses, hits);
   if (any_lane(hits)) {
     const vec3L point = along(packet.origin, met.t, packet.direction);
     met.stone = blend_ints_by(hits, met.stone, (intL)(0)); // no lane names a stone that is not there

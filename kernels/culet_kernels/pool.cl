@@ -89,7 +89,8 @@ static inline int has_full(const inside_t *inside) { return inside->ripe != 0 ||
 // Whether a packet has room, whatever stones its lanes are in.
 static inline int has_room_inside(const inside_t *inside) { return inside->full <= PILE - LANES; }
 
-static inline void push_to_shape(inside_t *inside, int shape, maskL mask, const packetL *packet) {
+__attribute__((always_inline)) static inline void push_to_shape(inside_t *inside, int shape, maskL mask,
+                                                                const packetL *packet) {
   gathering_t *own = inside->of_shape + shape;
   const packing_t packing = packing_of(mask);
   pack_packet(packing, packet, own->number[0] + own->count, own->whole[0] + own->count, GATHERING_SIZE);
@@ -116,15 +117,9 @@ static inline void push_inside(world_t world, inside_t *inside, maskL mask, cons
   }
 }
 
-// Takes a packet of one shape: the one on top of the pile, which is the latest that came, so that the pile stays small; else of a pool that
-// holds one, else the largest pool.
-__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *shape) {
-  if (inside->full > 0) {
-    inside->full--;
-    *mask = widen(LANE_INDEX < (intL)(LANES));
-    *shape = inside->shape[inside->full];
-    return load_packet(inside->number[inside->full][0], inside->whole[inside->full][0], LANES);
-  }
+// Takes a packet of a pool that holds one, else what the largest pool holds: which shape it is of, how many rays, and where
+// they begin.
+static inline const gathering_t *take_gathered(inside_t *inside, int *shape, int *taken) {
   int from = 0;
   if (inside->ripe != 0)
     from = (int)popcount((inside->ripe & -inside->ripe) - 1);
@@ -132,19 +127,39 @@ __attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside
     for (int i = 1; i < MAX_STONES; i++)
       if (inside->of_shape[i].count > inside->of_shape[from].count) from = i;
   gathering_t *own = inside->of_shape + from;
-  const int taken = min(own->count, LANES);
-  if (taken < LANES) { // no lane holds what was never written
+  *shape = from;
+  *taken = min(own->count, LANES);
+  if (*taken < LANES) { // no lane holds what was never written
     EACH (k, NUMBERS)
-      for (int lane = taken; lane < LANES; lane++) own->number[k][lane] = own->number[k][0];
+      for (int lane = *taken; lane < LANES; lane++) own->number[k][lane] = own->number[k][0];
     EACH (k, WHOLES)
-      for (int lane = taken; lane < LANES; lane++) own->whole[k][lane] = own->whole[k][0];
+      for (int lane = *taken; lane < LANES; lane++) own->whole[k][lane] = own->whole[k][0];
+  }
+  inside->gathering -= *taken;
+  own->count -= *taken;
+  if (own->count < LANES) inside->ripe &= ~(1ul << from);
+  return own;
+}
+
+// Takes a packet of one shape: the one on top of the pile, which is the latest that came, so that the pile
+// stays small; else what gathered.
+__attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *shape) {
+  const real *rows;
+  const int *wholes;
+  int stride = LANES, taken = LANES;
+  if (inside->full > 0) {
+    inside->full--;
+    *shape = inside->shape[inside->full];
+    rows = inside->number[inside->full][0];
+    wholes = inside->whole[inside->full][0];
+  } else {
+    const gathering_t *own = take_gathered(inside, shape, &taken);
+    rows = own->number[0] + own->count;
+    wholes = own->whole[0] + own->count;
+    stride = GATHERING_SIZE;
   }
   *mask = widen(LANE_INDEX < (intL)(taken));
-  *shape = from;
-  inside->gathering -= taken;
-  own->count -= taken;
-  if (own->count < LANES) inside->ripe &= ~(1ul << from);
-  return load_packet(own->number[0] + own->count, own->whole[0] + own->count, GATHERING_SIZE);
+  return load_packet(rows, wholes, stride);
 }
 #else
 typedef pool_t inside_t;

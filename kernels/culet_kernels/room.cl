@@ -140,7 +140,11 @@ static inline realL past_stones(world_t world, vec3L point) {
     const vec3L apart = vec3(point.x - group->centre[0], point.y - group->centre[1], point.z - group->centre[2]);
     if (!any_lane(dot3(apart, apart) < group->shade_reach * group->shade_reach)) continue;
     for (int number = group->first; number < group->last; number++) {
-      const realL shade = contact_shadow(world.stones + number, to_own(world, number, point));
+      __constant const stone_t *stone = world.stones + number;
+      const vec3L own = to_own(world, number, point);
+      const real reach = stone->shade_reach * stone->inverse_radius;
+      if (!any_lane(dot3(own, own) < reach * reach)) continue;
+      const realL shade = contact_shadow(stone, own);
       part *= 1 - fmax(shade - world.scene->least_shade, splat(0));
     }
   }

@@ -23,11 +23,13 @@ typedef struct {
 
 // R of a stone's own radius by which a ray may start inside it, or end there again, and count as one that passes it by.
 #define TOUCH ((real)2e-6)
+// Radii of a sphere that surely holds a stone.
+#define SPHERE ((real)1.0001)
 // R of a stone's own radius by which a ray may start inside a stone of triangles and still enter it there.
 #define DEPTH ((real)1e-4)
-// Lanes up to which the rays of a packet are quicker one by one: a packet's facets cost some 12 operations each, those of one
-// ray as much for TREE_WIDTH of them, and some 50 more.
-#define FEW_LANES (LANES == 16 ? 6 : LANES == 8 ? 3 : LANES == 4 ? 2 : 1)
+// Lanes up to which the rays of a packet are quicker one by one: a packet takes some four approaches (rows_entry), each of some 100
+// instructions for a brilliant; one ray a third of all that.
+#define FEW_LANES (LANES == 16 ? 3 : LANES == 8 ? 3 : LANES == 4 ? 2 : 1)
 
 #if STONES == MANY
 // Positions in a stone's measure.
@@ -154,7 +156,18 @@ static inline crossingL enter_shape(world_t world, __constant const stone_t *sto
   if (packing_of(mask).count <= FEW_LANES)
     return enter_one_by_one(world.blocks + stone->first_block * 4 * TREE_WIDTH, stone->blocks, origin, direction, t_min,
                             mask);
-  return hull_entry_from(world.facets + stone->first_facet, stone->facets, origin, direction, t_min, TOUCH);
+  const realL begin = fmax(t_min, splat(-SPHERE)); // rays go on from their feet, so none is in the sphere before
+  maskL within;
+  crossingL crossing =
+      rows_entry(rows_of(world.rows + stone->first_row, stone->row_end), origin, direction, begin, mask, &within);
+  if (any_lane(within)) {
+    const crossingL from =
+        hull_entry_from(world.facets + stone->first_facet, stone->facets, origin, direction, t_min, TOUCH);
+    crossing.hit |= within & from.hit;
+    crossing.t = blend(within, from.t, crossing.t);
+    crossing.normal = blend3(within, from.normal, crossing.normal);
+  }
+  return crossing;
 }
 
 // Takes up where rays cross stones, if that comes before what they met so far. Those go on from a foot along a way, which their own
@@ -203,56 +216,52 @@ static inline meetingL nobody(vec3L origin, vec3L direction) {
 #endif
 
 #if STONES == MANY
-// Whether rays pass the sphere of a stone that they can meet, coming from this one or from NOBODY.
-static inline maskL passes_others(world_t world, vec3L origin, vec3L direction, intL from) {
-  maskL passes = origin.x < origin.x;
+// The stones that each ray may meet, a bit each.
+#define NEAR_WORDS (MAX_STONES / 32)
+typedef struct {
+  intL word[NEAR_WORDS];
+} nearL;
+
+static inline maskL any_near(const nearL *near) {
+  intL all = near->word[0];
+  for (int k = 1; k < NEAR_WORDS; k++) all |= near->word[k];
+  return widen(all != 0);
+}
+
+// The stones whose spheres rays pass after t_min, coming from this one or from NOBODY.
+static inline nearL near_stones(world_t world, vec3L origin, vec3L direction, realL t_min, intL from) {
+  nearL near;
+  EACH (k, NEAR_WORDS) near.word[k] = (intL)(0);
   for (int i = 0; i < world.scene->groups; i++) {
     __constant const group_t *group = world.groups + i;
-    if (!any_lane(
-            passage(origin, direction, splat(0), group->centre[0], group->centre[1], group->centre[2], group->reach)
-                .passes))
-      continue;
+    const maskL passes =
+        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach).passes;
+    if (!any_lane(passes)) continue;
+    intL bits = (intL)(0);
     for (int number = group->first; number < group->last; number++) {
       __constant const stone_t *stone = world.stones + number;
       const maskL past =
-          passage(origin, direction, splat(0), stone->centre[0], stone->centre[1], stone->centre[2], stone->reach)
-              .passes;
-      passes |= past & (stone->convex ? !widen(from == (intL)(number)) : (origin.x == origin.x));
+          passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach).passes;
+      const maskL back = GEOMETRY == HULL || stone->convex ? widen(from == (intL)(number)) : passes & !passes;
+      bits |= blend_ints_by(past & !back, (intL)(1 << number % 32), (intL)(0));
     }
+    EACH (k, NEAR_WORDS)
+      if (group->first / 32 == k) near.word[k] |= bits;
   }
-  return passes;
+  return near;
 }
 
-// Of the stones whose spheres rays pass before they meet the one that they met so far: for each ray the one whose sphere comes
-// first, of those that it was not `asked` for (a bit for each stone, 32 in each word).
-#define ASKED_WORDS 2
-typedef struct {
-  intL word[ASKED_WORDS];
-} askedL;
-
-static inline intL next_stone(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask, intL from,
-                              const askedL *asked, realL t_max) {
-  intL next = (intL)(NOBODY);
-  for (int i = 0; i < world.scene->groups; i++) {
-    __constant const group_t *group = world.groups + i;
-    const passageL way =
-        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach);
-    const maskL near = mask & way.passes & (way.middle - group->reach < t_max);
-    if (!any_lane(near)) continue;
-    for (int number = group->first; number < group->last; number++) {
-      __constant const stone_t *stone = world.stones + number;
-      const passageL past =
-          passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach);
-      const intL was_asked = (number < 32 ? asked->word[0] : asked->word[1]) & (intL)(1 << number % 32),
-                 comes_from = (from == (intL)(number)) & (intL)(-(stone->convex != 0)),
-                 barred = (was_asked != 0) | comes_from;
-      const realL t = past.middle - stone->reach;
-      const maskL sooner = near & past.passes & (t < t_max) & !widen(barred);
-      t_max = blend(sooner, t, t_max);
-      next = blend_ints_by(sooner, (intL)(number), next);
-    }
+// Takes one of them for each ray; NOBODY where there is none.
+static inline intL take_near(nearL *near) {
+  intL number = (intL)(NOBODY), none_yet = (intL)(-1);
+  EACH (k, NEAR_WORDS) {
+    const intL word = near->word[k];
+    const intL here = none_yet & (intL)(blend_ints(word != 0, (intL)(-1), (intL)(0)));
+    number = blend_ints(here != 0, bit_number(word & -word) + (intL)(32 * k), number);
+    near->word[k] = blend_ints(here != 0, word & (word - 1), word);
+    none_yet &= ~here;
   }
-  return next;
+  return number;
 }
 
 // Looks whether rays enter this stone before the one that they met so far, each ray another one of the same shape. `stone` is any
@@ -264,6 +273,8 @@ static inline void meet_alike(world_t world, __constant const stone_t *stone, in
   const vec3L centre = vector_by_stone(world, COLUMN_CENTRE, number);
   const vec3L apart = vec3(origin.x - centre.x, origin.y - centre.y, origin.z - centre.z);
   const realL middle = -dot3(apart, direction);
+  mask &= middle - SPHERE * radius < first->t;
+  if (!any_lane(mask)) return;
   const vec3L foot = into_axes_of(axes, scale3(inverse, along(apart, middle, direction))),
               way = into_axes_of(axes, direction);
   const crossingL crossing = enter_shape(world, stone, foot, way, (t_min - middle) * inverse, mask);
@@ -287,18 +298,25 @@ static inline void meet_each(world_t world, intL number, vec3L origin, vec3L dir
 }
 #endif
 
+#if STONES == MANY
+// Looks whether each of these rays enters one of the stones that it is near, before the one that it met so far.
+static inline void meet_next(world_t world, nearL *near, vec3L origin, vec3L direction, realL t_min, maskL mask,
+                             intL from, meetingL *first) {
+  const intL number = take_near(near);
+  meet_each(world, blend_ints(number < 0, (intL)(0), number), origin, direction, t_min, mask & widen(number >= 0), from,
+            first);
+}
+#endif
+
 // The stone that a ray from outside enters first. `from` is the stone that it comes from, or NOBODY.
 static inline meetingL stone_entry(world_t world, vec3L origin, vec3L direction, realL t_min, maskL mask, intL from) {
 #if STONES == MANY
   meetingL first = nobody(origin, direction);
-  askedL asked;
-  EACH (k, ASKED_WORDS) asked.word[k] = (intL)(0);
+  nearL near = near_stones(world, origin, direction, t_min, from);
   for (;;) {
-    const intL next = next_stone(world, origin, direction, t_min, mask, from, &asked, first.t);
-    mask &= widen(next >= 0);
-    if (!any_lane(mask)) return first;
-    EACH (k, ASKED_WORDS) asked.word[k] |= blend_ints(next >> 5 == (intL)(k), (intL)(1) << (next & 31), (intL)(0));
-    meet_each(world, next, origin, direction, t_min, mask, from, &first);
+    const maskL asking = mask & any_near(&near);
+    if (!any_lane(asking)) return first;
+    meet_next(world, &near, origin, direction, t_min, asking, from, &first);
   }
 #else
   const crossingL crossing =
