@@ -88,7 +88,8 @@ def test_a_divider_has_the_kept_design_at_its_left_until_the_picture_changes(wid
     kept = page.get_by_alt_text("The kept design")
     kept.wait_for()  # that is seen
     height, width, _ = before.pixels.shape
-    assert kept.evaluate("image => [image.naturalWidth, image.naturalHeight]") == [width, height]
+    size = kept.evaluate("image => [image.naturalWidth, image.naturalHeight]")
+    assert size == pytest.approx([width, height], abs=3)  # of the shape that a frame in motion may have
     divider = page.get_by_role("slider", name="Divider")
     left = kept.evaluate("image => getComputedStyle(image).clipPath")
     divider.press("ArrowRight")
