@@ -60,6 +60,7 @@ def test_a_design_has_in_the_search_the_grades_that_it_has_alone() -> None:
     assert found.candidates[0].total == pytest.approx(alone.iso.value + alone.fire.value)
 
 
+@pytest.mark.validation
 def test_angles_of_single_tiers_find_what_ratios_cannot() -> None:
     """Lower halves as steep as the mains are too flat: no ratio changes the one without the other."""
     shape = shape_of_cut(BrilliantCut(lower_half_percent=40))
