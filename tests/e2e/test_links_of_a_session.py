@@ -50,6 +50,35 @@ def test_whoever_opens_the_watching_link_sees_what_others_do_and_does_nothing(vi
     assert np.abs(after.pixels - before.pixels).mean() > 1
 
 
+def test_a_phone_that_watches_shows_all_of_the_picture_or_fills_its_window_with_it(
+    view_of: ViewOf, view: View, tmp_path: Path
+) -> None:
+    view.at_rest()
+    phone = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
+    guest = view_of(**phone).open(f"?watch={watch_id(view.session)}")
+    edges = guest.at_rest().pixels[[0, -1]]
+    assert edges.max() == 0, "black above and below a picture that lies"
+    guest.page.screenshot(path=tmp_path / "whole.png")
+    guest.page.get_by_role("button", name="Fill the window").tap()
+    edges = guest.look().pixels[[0, -1]]
+    assert edges.max(axis=2).min() > 0, "and nothing is black any more"
+    guest.page.screenshot(path=tmp_path / "filled.png")
+    guest.page.reload()
+    guest.page.get_by_role("button", name="Show all of the picture").wait_for()
+    guest.page.keyboard.press("g")
+    guest.page.get_by_role("button", name="Fill the window").wait_for()
+    assert guest.look().pixels[[0, -1]].max() == 0
+    assert guest.sent == []
+
+
+def test_a_window_of_the_pictures_shape_has_nothing_to_choose(view_of: ViewOf, view: View) -> None:
+    guest = view_of().open(f"?watch={watch_id(view.session)}")
+    guest.at_rest()
+    assert not guest.page.locator("#fit").is_visible()
+    view.page.keyboard.press("g")
+    view.page.get_by_text("Only a window that watches").wait_for()
+
+
 @pytest.fixture
 def guarded(built_client: None, tmp_path: Path) -> Server:
     return Server(tmp_path, "--token", TOKEN, "--no-spare")

@@ -26,6 +26,7 @@ import { OutlineView } from "./picture/outline-view";
 import { afterPainting, Screen } from "./picture/screen";
 import { ShownPicture } from "./picture/shown-picture";
 import { Whereabouts } from "./picture/whereabouts";
+import { WindowFit } from "./picture/window-fit";
 import { exposeVisit } from "./probe";
 import { RayMode } from "./ray/ray-mode";
 import { SceneStrip } from "./scenes/scene-strip";
@@ -48,7 +49,7 @@ import { worded } from "./words/wording";
 import { words } from "./words/words";
 
 /** What is left to do, beside moves, where a page shows nothing but the picture. */
-const VIEWING: ReadonlySet<Action["name"]> = new Set(["reset_camera", "look", "full"]);
+const VIEWING: ReadonlySet<Action["name"]> = new Set(["reset_camera", "look", "full", "fit"]);
 
 /** A first picture that takes longer, or never comes, keeps the lists of what there is waiting no more. */
 const PATIENCE_MS = 1500;
@@ -67,7 +68,10 @@ const signs = new Signs(
   () => visit.startAnew(),
   (text, passes) => tellAround({ culet: "obstacle", text, passes }),
 );
-const screen = new Screen(canvas, (size) => visit.viewer?.resize(size));
+const screen = new Screen(canvas, (size) => {
+  visit.viewer?.resize(size);
+  windowFit?.offer(offersFit());
+});
 const shown = new ShownPicture(screen);
 const aspect = () => canvas.clientWidth / Math.max(canvas.clientHeight, 1);
 const whereabouts = new Whereabouts();
@@ -78,6 +82,7 @@ const visit = new Visit(
     show: (picture, frame, arrival) => {
       const seen = shown.show(picture, frame);
       if (visit.viewer?.player.shown === 0) firstShown();
+      windowFit?.offer(offersFit());
       signs.arrived();
       signs.stones(whereabouts.after(frame, arrival.time, visit.scene));
       chosen.shown(frame.step, arrival.time);
@@ -102,12 +107,19 @@ const visit = new Visit(
   embedding,
 );
 const outline = new OutlineView(element("outline", SVGSVGElement), canvas);
+/** Whoever steers sees what the session's picture is; whoever watches may want a full window of it. */
+const windowFit = watchesOnly()
+  ? new WindowFit(element("fit", HTMLButtonElement), (fit) => {
+      screen.fill(fit);
+      outline.refit(fit);
+    })
+  : null;
 const legend = new Legend(element("legend", HTMLElement));
 const chosen = new ChosenStone({
   ask: (question) => visit.viewer?.ask(question),
   chosen: (id) => visit.viewer?.choose(id),
   outline: (points) => {
-    if (points && visit.lastFrame) outline.show(points, visit.lastFrame);
+    if (points && visit.lastFrame) outline.show(points, visit.lastFrame, screen.fits);
     else outline.hide();
   },
 });
@@ -179,6 +191,7 @@ const page = {
   traceRay: () => attempt(() => ray.toggle()),
   changeDesigns,
   divide,
+  fit: () => (windowFit ? windowFit.toggle() : void toasts.note(words.fit.own)),
   moved: () => turntable.rest(performance.now()),
   note: (text: string) => void toasts.note(text),
 };
@@ -264,6 +277,19 @@ function embeddingAsked(): Embedding {
     complaints.tell(reasonOf(error));
     return embeddingOf("");
   }
+}
+
+function watchesOnly(): boolean {
+  try {
+    return wantedSession(location.search).kind === "watch";
+  } catch {
+    return false;
+  }
+}
+
+/** In another page's frame the key alone changes it. */
+function offersFit(): boolean {
+  return screen.differs && window.parent === window;
 }
 
 function stateChanged(before: ViewState, after: ViewState): void {

@@ -21,7 +21,7 @@ export type Effect =
   | { kind: "copy"; what: "picture" | "link" }
   | { kind: "clip"; of: "last" | "next" }
   | { kind: "stones"; command: "lookAround" | "remove" | "putBack" }
-  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" | "changeDesigns" | "divide" };
+  | { kind: "page"; command: "showKeys" | "hideAll" | "fillScreen" | "traceRay" | "changeDesigns" | "divide" | "fit" };
 
 type Name = keyof Words["actions"];
 
@@ -113,6 +113,7 @@ export const ACTIONS: readonly Action[] = [
   letter("divide", "D", { kind: "page", command: "divide" }),
   key("keys", "?", "F1", { kind: "page", command: "showKeys" }),
   letter("hide", "H", { kind: "page", command: "hideAll" }),
+  letter("fit", "G", { kind: "page", command: "fit" }),
   letter("full", "E", { kind: "page", command: "fillScreen" }),
 ];
 

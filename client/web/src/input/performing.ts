@@ -20,13 +20,15 @@ export interface PageCommands {
   changeDesigns: () => void;
   /** Show both designs with a divider between them, or the one alone. */
   divide: () => void;
+  /** Show all of a picture of another shape than the window, or fill the window with it. */
+  fit: () => void;
   /** Something moves by hand. */
   moved: () => void;
   /** Tell the user something that passes. */
   note: (text: string) => void;
 }
 
-type Commanded = Pick<PageCommands, "showKeys" | "hideAll" | "traceRay" | "changeDesigns" | "divide">;
+type Commanded = Pick<PageCommands, "showKeys" | "hideAll" | "traceRay" | "changeDesigns" | "divide" | "fit">;
 
 export interface PerformingRooms {
   visit: Visit;

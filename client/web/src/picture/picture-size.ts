@@ -41,9 +41,18 @@ export interface Rectangle extends Size {
   y: number;
 }
 
+/** All of a picture is seen, or it fills the canvas and what does not fit is cut off. */
+export type Fit = "whole" | "filled";
+
 /** The largest centred rectangle of the picture's aspect that fits the canvas. */
 export function letterbox(picture: Size, canvas: Size): Rectangle {
-  const scale = Math.min(canvas.width / picture.width, canvas.height / picture.height);
+  return placed(picture, canvas, "whole");
+}
+
+/** That rectangle, or the smallest one that covers the canvas. */
+export function placed(picture: Size, canvas: Size, fit: Fit): Rectangle {
+  const across = [canvas.width / picture.width, canvas.height / picture.height];
+  const scale = fit === "whole" ? Math.min(...across) : Math.max(...across);
   const width = Math.round(picture.width * scale);
   const height = Math.round(picture.height * scale);
   return { x: Math.floor((canvas.width - width) / 2), y: Math.floor((canvas.height - height) / 2), width, height };

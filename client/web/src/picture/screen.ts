@@ -1,7 +1,16 @@
 /** The canvas: as many device pixels as it covers, and the picture last shown. */
 
 import { coveredAfter } from "./fade";
-import { deviceLength, letterbox, pictureSize, type Rectangle, SHARP, type Size } from "./picture-size";
+import {
+  deviceLength,
+  type Fit,
+  letterbox,
+  pictureSize,
+  placed,
+  type Rectangle,
+  SHARP,
+  type Size,
+} from "./picture-size";
 
 /** Device pixels. */
 const SLACK = 3;
@@ -18,6 +27,7 @@ export class Screen {
   /** What the canvas showed when the picture that comes up began to, and when, ms of the page's clock. */
   private fade: { under: HTMLCanvasElement; since: number } | null = null;
   private next = 0;
+  private fit: Fit = "whole";
 
   constructor(canvas: HTMLCanvasElement, onResize: (size: Size) => void) {
     this.canvas = canvas;
@@ -39,6 +49,24 @@ export class Screen {
     return this.asked;
   }
 
+  /** From now on pictures of another shape are shown so. */
+  fill(fit: Fit): void {
+    this.fit = fit;
+    this.draw();
+  }
+
+  /** How it is with pictures of another shape. */
+  get fits(): Fit {
+    return this.fit;
+  }
+
+  /** Whether the picture has another shape than the canvas. */
+  get differs(): boolean {
+    if (!this.picture) return false;
+    const { x, y } = letterbox(this.picture, this.canvas);
+    return x > SLACK || y > SLACK;
+  }
+
   /** The quick picture is finished: on a screen of more pixels than full HD has, ask for one that has them too. */
   sharpen(): void {
     this.ask(this.sharp);
@@ -51,7 +79,7 @@ export class Screen {
 
   /** Where the picture is on the canvas, css pixels: another viewer's picture may have another shape. */
   get area(): Rectangle {
-    const { x, y, width, height } = letterbox(this.picture ?? this.canvas, this.canvas);
+    const { x, y, width, height } = this.place(this.picture ?? this.canvas);
     const css = this.canvas.clientWidth / this.canvas.width;
     return { x: x * css, y: y * css, width: width * css, height: height * css };
   }
@@ -84,8 +112,8 @@ export class Screen {
   /** Whether it lies where the last one lies, but for the pixel by which rounded sizes differ. */
   private covers(picture: ImageBitmap): boolean {
     if (!this.picture) return false;
-    const before = letterbox(this.picture, this.canvas);
-    const after = letterbox(picture, this.canvas);
+    const before = this.place(this.picture);
+    const after = this.place(picture);
     return Math.abs(before.width - after.width) <= SLACK && Math.abs(before.height - after.height) <= SLACK;
   }
 
@@ -122,19 +150,23 @@ export class Screen {
     this.onResize(size);
   }
 
+  private place(picture: Size): Rectangle {
+    return placed(picture, this.canvas, this.fit);
+  }
+
   /** All of it, at once. */
   private draw(): void {
     this.fade = null;
     cancelAnimationFrame(this.next);
     if (!this.picture) return;
-    const { x, y } = letterbox(this.picture, this.canvas);
+    const { x, y } = this.place(this.picture);
     if (x > 0 || y > 0) this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.paint(1);
   }
 
   private paint(alpha: number): void {
     if (!this.picture) return;
-    const { x, y, width, height } = letterbox(this.picture, this.canvas);
+    const { x, y, width, height } = this.place(this.picture);
     this.context.globalAlpha = alpha;
     this.context.imageSmoothingQuality = "high";
     this.context.drawImage(this.picture, x, y, width, height);

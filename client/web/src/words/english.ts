@@ -62,6 +62,7 @@ export const actions = {
   divide: "Show the kept design beside this one, with a divider",
   keys: "All keys",
   hide: "Hide all but the picture",
+  fit: "Where you only watch: fill the window with the picture, or show all of it",
   full: "Fill the screen",
 } satisfies Record<string, string | Wording>;
 
@@ -78,6 +79,13 @@ export const keyNames: Record<string, string> = {
   "shift+arrowright": "Shift \u2192",
   "shift+arrowup": "Shift \u2191",
   "shift+arrowdown": "Shift \u2193",
+};
+
+/** How a picture of another shape than the window is shown to who only watches. */
+export const fit = {
+  fill: "Fill the window",
+  whole: "Show all of the picture",
+  own: "Only a window that watches by a watching link can be filled.",
 };
 
 /** What is done without a key: how, and what it does. */
