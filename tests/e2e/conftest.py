@@ -112,8 +112,9 @@ def view(view_of: ViewOf) -> View:
 
 @pytest.fixture
 def bouncing(view_of: ViewOf, server: Server) -> View:
-    """A page on a stone that falls, and bounces for long; the default one lies still after two seconds."""
-    scene: dict[str, Any] = {"floor": {"kind": "matte"}, "simulation": {"restitution": 0.97}}
+    """A page on a stone that falls, and bounces for ever; the default one lies still after two seconds."""
+    lively = {"restitution": 1, "friction": 0, "rolling_resistance": 0, "tangential_damping": 1}
+    scene: dict[str, Any] = {"floor": {"kind": "matte"}, "simulation": lively}
     answer = server.http.post("/api/sessions", json={"scene": scene})
     view = view_of().open(f"?session={answer.json()['id']}")
     view.page.keyboard.press("p")

@@ -24,7 +24,7 @@ MOVING_STATUS = " \u00b7 ".join(
 def test_frames_are_shown_in_order_while_the_stone_falls(bouncing: View) -> None:
     view = bouncing
     view.record()
-    view.until("() => culet.framesShown > 60 && culet.lastFrame.simulationTime > 1.5")
+    view.until("() => culet.framesShown > 20 && culet.lastFrame.simulationTime > 1.5")
     record = view.recorded
     assert len(record) > 5
     for before, after in pairwise(record):
