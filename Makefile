@@ -17,7 +17,7 @@ export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 # Kernels compiled for tests are kept here, apart from the user's own.
 test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench delay study compose-test compilers opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench delay study compose-test lock digests compilers opencl browser node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(DONE)/solver $(WEB_BUILD)
@@ -91,6 +91,21 @@ study: $(DONE)/study opencl
 
 compose-test: $(DONE)/dev
 	.ci/compose-test
+
+# What the images install of the Python index, by hashes. `make lock` follows pyproject.toml, `make lock ARGS=--upgrade` takes the newest.
+LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --custom-compile-command "make lock"
+
+lock: $(DONE)/base
+	$(BIN)/pip install --quiet uv
+	$(LOCK) $(ARGS) --output-file docker/requirements.txt pyproject.toml
+	$(LOCK) $(ARGS) --extra batch --constraint docker/requirements.txt --output-file docker/requirements-batch.txt pyproject.toml
+	$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"], sep="\n")' | \
+	$(LOCK) $(ARGS) --output-file docker/requirements-build.txt -
+
+# The digests of the images that others are built from: what to write behind their names in docker/Dockerfile.
+digests:
+	@sed -n 's/^FROM \([^ ]*:[^ ]*\).*/\1/p' docker/Dockerfile | sort -u | while read -r image; do \
+	echo "$$image@$$(docker buildx imagetools inspect --format '{{.Manifest.Digest}}' "$$image")" || exit 1; done
 
 $(DONE)/venv:
 	@PYTHON=$(PYTHON) .ci/need venv

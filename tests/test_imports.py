@@ -168,6 +168,8 @@ def declared(requirements: list[str]) -> set[str]:
 
 OF_VIDEO = {"culet.engine.painting.video", "culet_client.film", "culet_client.video"}
 """Nothing else needs PyAV, and these do without until they are asked for video."""
+OF_WORKERS = {"culet.batch.cluster"}
+"""Nothing else needs Dask."""
 
 
 def test_whatever_is_imported_is_declared() -> None:
@@ -175,12 +177,14 @@ def test_whatever_is_imported_is_declared() -> None:
     project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
     always = declared(project["dependencies"])
     for_studies = always | declared(project["optional-dependencies"]["study"] + ["mitsuba"])
+    for_workers = always | declared([*project["optional-dependencies"]["batch"], "dask"])  # distributed needs its dask
     for_video = always | declared(project["optional-dependencies"]["video"])
     own = {*PACKAGES, *sys.stdlib_module_names}
     distributions = importlib.metadata.packages_distributions()
     missing = set()
     for module, file in [item for package in PACKAGES for item in sources(package).items()]:
         allowed = for_studies if room(module) == "culet.study" else for_video if module in OF_VIDEO else always
+        allowed = for_workers if module in OF_WORKERS else allowed
         for name in {of.partition(".")[0] for of, _ in imported(file.read_text(encoding="utf-8"))} - own:
             if not declared(distributions.get(name, [name])) & allowed:
                 missing.add((name, module))

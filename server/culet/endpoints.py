@@ -46,7 +46,7 @@ REACHED = {
 def check_trusted(endpoint: str, option: str, *, trusted: bool) -> None:
     """InputError for an endpoint of REACHED that other machines can reach too, unless their network is trusted."""
     parts = _TCP.fullmatch(endpoint)
-    if trusted or parts is None or _is_loopback(parts["address"]):
+    if trusted or parts is None or is_loopback(parts["address"]):
         return
     raise InputError(
         f"--{option}: other machines reach {endpoint!r}, and whoever does {REACHED[option]}; --keys lets in those "
@@ -61,7 +61,8 @@ def tcp_address(endpoint: str) -> str | None:
     return None if parts is None else parts["address"]
 
 
-def _is_loopback(address: str) -> bool:
+def is_loopback(address: str) -> bool:
+    """Whether only this machine reaches it."""
     if address in ("localhost", "lo"):
         return True
     try:

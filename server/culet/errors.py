@@ -10,6 +10,7 @@
     ├── BusyError               a queue or a number of sessions is at its limit
     ├── EngineUnavailableError  the render process does not answer
     ├── LeavingError            the server is about to be stopped
+    ├── WorkersError            workers of a batch that are lost, of another version, or not to be reached
     ├── SolverUnavailableError  no compiled solver, and no compiler to make one
     └── DeviceError             no OpenCL device that works, or a kernel that does not build
         └── KernelCacheError    the driver cannot write the programs that it compiles
@@ -88,6 +89,13 @@ class LeavingError(CuletError):
 
     status = 503
     title = "server is being stopped"
+
+
+class WorkersError(CuletError):
+    """Workers of a batch, or their scheduler, that are lost, of another version, or not to be reached; says which."""
+
+    status = 503
+    title = "workers unavailable"
 
 
 class SolverUnavailableError(CuletError):

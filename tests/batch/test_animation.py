@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from culet.batch import animation
-from culet.batch.animation import JOURNAL, Animation, fall, render_frames, times_of, turntable
+from culet.batch.animation import JOURNAL, Animation, Frame, FrameTask, fall, render_frames, times_of, turntable
 from culet.batch.film import check_film, write_film
 from culet.errors import InputError
 from culet.scene import Scene
@@ -46,15 +45,15 @@ def test_an_animation_that_was_interrupted_goes_on_and_renders_no_frame_twice(
 ) -> None:
     list(render_frames(film(4), tmp_path / "whole"))
     rendered = []
-    render = animation.render_frame
+    render = FrameTask.__call__
 
-    def counting(asked: Animation, folder: Path, number: int) -> dict[str, object]:
-        rendered.append(number)
+    def counting(task: FrameTask, item: tuple[int, Scene]) -> Frame:
+        rendered.append(item[0])
         if rendered == [0, 1, 2]:
             raise KeyboardInterrupt
-        return render(asked, folder, number)
+        return render(task, item)
 
-    monkeypatch.setattr(animation, "render_frame", counting)
+    monkeypatch.setattr(FrameTask, "__call__", counting)
     folder = tmp_path / "f"
     with pytest.raises(KeyboardInterrupt):
         list(render_frames(film(4), folder))

@@ -5,17 +5,20 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from culet.batch.cameras import Way, along
+from culet.batch.crew import IN_PROCESS, Crew
 from culet.batch.digest import digest_of
 from culet.errors import InputError
 from culet.falls import simulate_stage
 from culet.journal import Journal
 from culet.places import write_whole
 from culet.rendering.files import FORMATS
+from culet.scene import Scene
 from culet.scene.turntable import around
 from culet.stage import Stage
 from culet.stills import Progress, render_stage
@@ -44,6 +47,10 @@ class Animation:
             "animation": __version__, "frames": len(self.stages), "scenes": frames, "width": self.width,
             "height": self.height, "samples": self.samples, "error": self.error, "format": self.format,
         }  # fmt: skip
+
+    def task(self) -> FrameTask:
+        """Renders them."""
+        return FrameTask(self.stages[0], self.width, self.height, self.samples, self.error, self.format)
 
     def file(self, folder: Path, number: int) -> Path:
         """Of a frame, counted from 0."""
@@ -79,8 +86,40 @@ def on_a_way(stage: Stage, way: Way, seconds: float, times: Sequence[float]) -> 
     return tuple(stage.showing(stage.scene.model_copy(update={"camera": camera})) for camera in cameras)
 
 
-def render_frames(animation: Animation, folder: Path, *, fresh: bool = False) -> Generator[float, None, None]:
-    """Render every frame into the folder; the part done, now and then.
+@dataclass(frozen=True)
+class Frame:
+    """A rendered frame."""
+
+    data: bytes
+    """Its file."""
+    samples: int
+    seconds: float
+    """s of rendering."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameTask:
+    """Renders frames of an animation, by their numbers and scenes."""
+
+    stage: Stage
+    """Whose shapes and sky all have."""
+    width: int
+    height: int
+    samples: int | None
+    error: float | None
+    format: str
+
+    def __call__(self, item: tuple[int, Scene]) -> Frame:
+        """The still of that scene."""
+        stage = self.stage.showing(item[1])
+        picture = render_stage(stage, self.width, self.height, samples=self.samples, error=self.error)
+        return Frame(picture.encoded(self.format), picture.cost.samples, picture.cost.seconds)
+
+
+def render_frames(
+    animation: Animation, folder: Path, *, fresh: bool = False, crew: Crew = IN_PROCESS
+) -> Generator[float, None, None]:
+    """Have every frame rendered into the folder; the part done, now and then.
 
     Frames that the journal of the same animation has, and that are there as they were written, are kept. InputError for
     a folder that cannot be written to, or that has another animation.
@@ -95,12 +134,12 @@ def render_frames(animation: Animation, folder: Path, *, fresh: bool = False) ->
             _forget_frames(folder)
         there = whole(animation, folder, journal.records)
         yield len(there) / count
-        for number in range(count):
-            if number in there:
-                continue
-            journal.append(render_frame(animation, folder, number))
-            there.add(number)
-            yield len(there) / count
+        missing = [(number, animation.stages[number].scene) for number in range(count) if number not in there]
+        with closing(crew.results(animation.task(), missing)) as done:
+            for (number, _), frame in done:
+                journal.append(write_frame(animation, folder, number, frame))
+                there.add(number)
+                yield len(there) / count
 
 
 def _forget_frames(folder: Path) -> None:
@@ -123,14 +162,10 @@ def whole(animation: Animation, folder: Path, records: Sequence[Any]) -> set[int
     return found
 
 
-def render_frame(animation: Animation, folder: Path, number: int) -> dict[str, Any]:
-    """Write one frame, whole or not at all; its record for the journal."""
-    picture = render_stage(
-        animation.stages[number], animation.width, animation.height, samples=animation.samples, error=animation.error
-    )
-    data = picture.encoded(animation.format)
-    write_whole(animation.file(folder, number), data, "out")
+def write_frame(animation: Animation, folder: Path, number: int, frame: Frame) -> dict[str, Any]:
+    """Whole or not at all; its record for the journal."""
+    write_whole(animation.file(folder, number), frame.data, "out")
     return {
-        "frame": number, "sha256": hashlib.sha256(data).hexdigest(), "samples": picture.cost.samples,
-        "seconds": round(picture.cost.seconds, 4),
+        "frame": number, "sha256": hashlib.sha256(frame.data).hexdigest(), "samples": frame.samples,
+        "seconds": round(frame.seconds, 4),
     }  # fmt: skip

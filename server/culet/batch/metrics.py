@@ -3,6 +3,7 @@ wrong, and how long it took."""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -17,6 +18,7 @@ from culet.grading.optics import optics_of
 from culet.grading.report import place_of
 from culet.grading.rules import Rules
 from culet.grading.sums import LightSums
+from culet.rendering.device import open_device
 from culet.stage import Stage
 from culet.stills import render_stage
 
@@ -75,6 +77,12 @@ def measure(sums: LightSums | None, stage: Stage, names: Sequence[str], effort: 
         found["radiance"] = float(stone.mean(dtype=np.float64)) if len(stone) else float("nan")
         found |= {"error": picture.missed.error, "seconds": picture.cost.seconds}
     return {column: found[column] for column in columns_of(names)}
+
+
+@functools.cache
+def light_sums() -> LightSums:
+    """The process's own, made by the first grade."""
+    return LightSums(open_device())
 
 
 def outline_mask(stage: Stage, stone: str | None, width: int, height: int) -> NDArray[np.bool_]:

@@ -5,20 +5,20 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from culet.batch.crew import IN_PROCESS, Crew
 from culet.batch.digest import digest_of
-from culet.batch.metrics import Effort, check_metrics, columns_of, measure
+from culet.batch.metrics import Effort, check_metrics, columns_of, light_sums, measure
 from culet.batch.variation import Variation, points_of, varied
 from culet.errors import InputError
 from culet.grading.metrics import GRADES
-from culet.grading.sums import LightSums
 from culet.journal import Journal
 from culet.places import write_whole
-from culet.rendering.device import open_device
 from culet.scene.model import Scene
 from culet.simulation.lying import put_down
 from culet.stage import Library, Stage
@@ -26,6 +26,8 @@ from culet.version import __version__
 
 PROBLEM = "problem"
 """The column that says why a scene has no numbers."""
+POINT = "point"
+"""In the journal, whose place a point has among all, from 0."""
 
 
 @dataclass(frozen=True)
@@ -67,44 +69,67 @@ def journal_of(out: Path) -> Path:
     return out.with_name(f"{out.name}.journal")
 
 
-def run(sweep: Sweep, out: Path, *, fresh: bool = False) -> Generator[tuple[int, int], None, None]:
-    """Measure every point, and write the table; points done of all, at the start and after each.
+def run(
+    sweep: Sweep, out: Path, *, fresh: bool = False, crew: Crew = IN_PROCESS
+) -> Generator[tuple[int, int], None, None]:
+    """Have every point measured, and write the table; points done of all, at the start and after each.
 
     What an earlier run of the same sweep has measured is taken from its journal; the table is written when the sweep
-    ends, however it ends. A point whose scene cannot be has no numbers, and a reason. InputError for what makes no
-    sweep, or for a journal of another one.
+    ends, however it ends, with the points that are known. A point whose scene cannot be has no numbers, and a reason.
+    InputError for what makes no sweep, or for a journal of another one.
     """
     check_metrics(sweep.metrics)
     points = points_of(sweep.variations)
     sweep.scene(points[0])  # a field that there is not is told before anything is begun
     with Journal(journal_of(out), sweep.identity(), kind="sweep", fresh=fresh) as journal:
-        if len(journal.records) > len(points) or not all(isinstance(record, dict) for record in journal.records):
-            raise InputError(f"{journal.path} holds lines that are no points of this sweep; --fresh begins anew")
-        sums = LightSums(open_device()) if set(sweep.metrics) & set(GRADES) else None
+        known = _known(journal, len(points))
+        missing = [(number, values) for number, values in enumerate(points) if number not in known]
         try:
-            yield len(journal.records), len(points)
-            for values in points[len(journal.records) :]:
-                journal.append(_measured(sweep, sums, values))
-                yield len(journal.records), len(points)
+            yield len(known), len(points)
+            with closing(crew.results(PointTask(sweep), missing)) as done:
+                for (number, _), found in done:
+                    journal.append({POINT: number, **found})
+                    known[number] = found
+                    yield len(known), len(points)
         finally:
-            write_whole(out, _table(sweep, points, journal.records), "out")
+            write_whole(out, _table(sweep, points, known), "out")
 
 
-def _measured(sweep: Sweep, sums: LightSums | None, values: Sequence[Any]) -> dict[str, Any]:
-    """Columns of one point; those that are no numbers are left out."""
-    try:
-        stage = put_down(Stage.of(sweep.scene(values), sweep.library(), before=sweep.stage), sweep.stage)
-        found = measure(sums, stage, sweep.metrics, sweep.effort)
-    except InputError as error:
-        return {PROBLEM: str(error)}
-    return {name: value for name, value in found.items() if math.isfinite(value)}
+def _known(journal: Journal, count: int) -> dict[int, dict[str, Any]]:
+    """Columns of points that are measured; InputError for records that are of none."""
+    known: dict[int, dict[str, Any]] = {}
+    for record in journal.records:
+        number = record.get(POINT) if isinstance(record, dict) else None
+        if not isinstance(number, int) or not 0 <= number < count:
+            raise InputError(f"{journal.path} holds lines that are no points of this sweep; --fresh begins anew")
+        known[number] = record
+    return known
 
 
-def _table(sweep: Sweep, points: Sequence[Sequence[Any]], records: Sequence[dict[str, Any]]) -> bytes:
+@dataclass(frozen=True)
+class PointTask:
+    """Measures points of a sweep, by their numbers and values."""
+
+    sweep: Sweep
+
+    def __call__(self, item: tuple[int, Sequence[Any]]) -> dict[str, Any]:
+        """Columns of that point; those that are no numbers are left out."""
+        sweep = self.sweep
+        sums = light_sums() if set(sweep.metrics) & set(GRADES) else None
+        try:
+            stage = put_down(Stage.of(sweep.scene(item[1]), sweep.library(), before=sweep.stage), sweep.stage)
+            found = measure(sums, stage, sweep.metrics, sweep.effort)
+        except InputError as error:
+            return {PROBLEM: str(error)}
+        return {name: value for name, value in found.items() if math.isfinite(value)}
+
+
+def _table(sweep: Sweep, points: Sequence[Sequence[Any]], known: Mapping[int, dict[str, Any]]) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(sweep.columns())
-    for values, record in zip(points, records, strict=False):
-        told = [record.get(column, "") for column in (*columns_of(sweep.metrics), PROBLEM)]
-        writer.writerow([*values, *told])
+    for number, values in enumerate(points):
+        if number in known:
+            told = [known[number].get(column, "") for column in (*columns_of(sweep.metrics), PROBLEM)]
+            writer.writerow([*values, *told])
     return text.getvalue().encode()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from culet.command.crew import Scheduler, TlsCa, TlsCert, TlsKey, Workers, crew_of
 from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
@@ -17,6 +18,7 @@ from culet.scene.film import MOST_SAMPLES
 
 if TYPE_CHECKING:
     from culet.batch.animation import Animation
+    from culet.batch.crew import Crew
     from culet.stage import Stage
 
 app = single_command()
@@ -61,11 +63,17 @@ def animate(
     mesh: MeshFile = None,
     sky: SkyFile = None,
     cut: CutText = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsCa = None,
+    tls_cert: TlsCert = None,
+    tls_key: TlsKey = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Render anew what an earlier run has left there.")] = False,
 ) -> None:
     """Render an animation, frame by frame.
 
-    Stopped with Ctrl-C, the same command goes on where it was; frames are there whole or not at all.
+    Stopped with Ctrl-C, the same command goes on where it was; frames are there whole or not at all. With --workers, or
+    the workers of a --scheduler, they are the same, bit for bit.
     """
     from culet.batch.animation import Animation, times_of
     from culet.batch.film import check_film, write_film
@@ -86,7 +94,8 @@ def animate(
         stages = _stages(stage, times, seconds, fall=fall, path=path)
         frames = Animation(stages, width, height, samples, error, image)
         folder = out.with_suffix(".frames") if film else out
-        _render(frames, folder, fresh=fresh)
+        with crew_of(workers, scheduler, tls_ca, tls_cert, tls_key) as crew:
+            _render(frames, folder, crew, fresh=fresh)
         if film:
             with progress_bar(f"encoding {out.name}") as advance:
                 write_film(frames, folder, out, fps, advance)
@@ -111,10 +120,10 @@ def _stages(stage: Stage, times: list[float], seconds: float, *, fall: bool, pat
         return animation.on_a_way(stage, Way.read(parse_json(data)), seconds, times)
 
 
-def _render(frames: Animation, folder: Path, *, fresh: bool) -> None:
+def _render(frames: Animation, folder: Path, crew: Crew, *, fresh: bool) -> None:
     from culet.batch.animation import render_frames
 
-    steps = render_frames(frames, folder, fresh=fresh)
+    steps = render_frames(frames, folder, fresh=fresh, crew=crew)
     with closing(steps), progress_bar(f"rendering {folder.name}") as advance:
         for done in steps:
             advance(done)

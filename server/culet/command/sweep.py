@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from culet.command.crew import Scheduler, TlsCa, TlsCert, TlsKey, Workers, crew_of
 from culet.command.options import Preset
 from culet.command.single import single_command
 from culet.command.subject import (
@@ -61,6 +62,11 @@ def sweep(
     width: Annotated[int, typer.Option(min=1, max=8192, help="Pixels of pictures.")] = 320,
     height: Annotated[int, typer.Option(min=1, max=8192, help="Pixels of pictures.")] = 180,
     samples: Annotated[int, typer.Option(min=2, max=MOST_SAMPLES, help="Samples per pixel of pictures.")] = 16,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsCa = None,
+    tls_cert: TlsCert = None,
+    tls_key: TlsKey = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Forget what an earlier sweep has left there.")] = False,
 ) -> None:
     """Measure a scene while fields of it vary, into a table.
@@ -82,10 +88,11 @@ def sweep(
         stage = with_material(subject(what, preset), material, index)
         effort = Effort(rules_named(rules, head), error, stone, coloured, width, height, samples)
         done = already = 0
-        steps = run(Sweep(stage, variations, metrics, effort), out, fresh=fresh)
-        with closing(steps), progress_bar(f"sweeping {out.name}") as advance:
-            for number, (done, count) in enumerate(steps):
-                already = already if number else done
-                advance(done / count)
+        with crew_of(workers, scheduler, tls_ca, tls_cert, tls_key) as crew:
+            steps = run(Sweep(stage, variations, metrics, effort), out, fresh=fresh, crew=crew)
+            with closing(steps), progress_bar(f"sweeping {out.name}") as advance:
+                for number, (done, count) in enumerate(steps):
+                    already = already if number else done
+                    advance(done / count)
         earlier = f", {already} of them measured before" if already else ""
         typer.echo(f"{out}: {done} points{earlier}")

@@ -49,3 +49,9 @@ def limit_threads() -> None:
     log.info("rendering with %d of %d processors: more are not this process's to use", count, there)
     for name in THREADS:
         os.environ[name] = str(count)
+
+
+def limit_threads_to(count: int) -> None:
+    """Have PoCL, which is not loaded yet, start so many threads, unless the environment says how many."""
+    for name in THREADS:
+        os.environ.setdefault(name, str(count))

@@ -1,0 +1,41 @@
+"""Who does the pieces of long work: this process, one after the other, or workers (`culet.batch.cluster`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable
+from typing import Protocol, TypeVar
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Items = Iterable[Item]
+Task = Callable[[Item], Result]
+"""What is done with each item. It and its items are values that can be pickled, and it gives the same wherever it is
+done."""
+Done = Generator[tuple[Item, Result], None, None]
+"""Items with their results, as these come."""
+
+
+class Crew(Protocol):
+    """Does work."""
+
+    def results(self, task: Task[Item, Result], items: Items[Item]) -> Done[Item, Result]:
+        """Every item once, in any order; whoever stops listening ends the work. What the task raises is raised."""
+
+    def places(self) -> int:
+        """How many items are done at a time."""
+
+
+class InProcess:
+    """Does one item after the other, here."""
+
+    def results(self, task: Task[Item, Result], items: Items[Item]) -> Done[Item, Result]:
+        """In the order of the items."""
+        for item in items:
+            yield item, task(item)
+
+    def places(self) -> int:
+        """One, on all processors."""
+        return 1
+
+
+IN_PROCESS = InProcess()
