@@ -20,9 +20,9 @@ NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
 FOLDER = "/gems"
 
 
-def from_the_page(language: str, server: str) -> str:
-    """The example in that language, for a server elsewhere."""
-    (example,) = re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)
+def from_the_page(begins: str, server: str) -> str:
+    """The example that begins so, for a server elsewhere."""
+    (example,) = re.findall(rf"```\w+\n({begins}.*?)```", PAGE.read_text(), re.DOTALL)
     assert "127.0.0.1:8000" in example
     return str(example).replace("127.0.0.1:8000", urlsplit(server).netloc)
 
@@ -37,7 +37,7 @@ def nginx(server: str, folder: Path) -> Iterator[str]:
     file.write_text(
         f"{'user root;' if os.geteuid() == 0 else ''}\ndaemon off;\npid {folder}/nginx.pid;\nworker_processes 1;\n"
         f"error_log {folder}/error.log;\nevents {{}}\nhttp {{\n  access_log off;\n{places}\n"
-        f"  server {{\n  listen 127.0.0.1:{port};\n{from_the_page('nginx', server)}  }}\n}}\n"
+        f"  server {{\n  listen 127.0.0.1:{port};\n{from_the_page('location /gems/', server)}  }}\n}}\n"
     )
     with running([NGINX, "-e", str(folder / "error.log"), "-p", str(folder), "-c", str(file)], port):
         yield f"http://127.0.0.1:{port}{FOLDER}"
@@ -48,7 +48,7 @@ def haproxy(server: str, folder: Path) -> Iterator[str]:
     """Where it shows the server."""
     assert HAPROXY
     port = free_port()
-    example = from_the_page("haproxy", server)
+    example = from_the_page("frontend site", server)
     assert "bind :80\n" in example
     defaults = "defaults\n  mode http\n  timeout connect 60s\n  timeout client 60s\n  timeout server 180s\n"
     file = folder / "haproxy.cfg"
