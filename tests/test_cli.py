@@ -24,6 +24,7 @@ from culet_protocol.watch import watch_id
 from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually
 from geometry.designs.files import design, gcs_of
+from shared.patience import PATIENCE
 
 COMMANDS = [
     "render",
@@ -426,7 +427,7 @@ async def test_serve_runs_and_ends_with_all_its_processes(tmp_path: Path) -> Non
             await eventually(complete)  # gateway and engine, and another one of each that stands by
             started = children(server.pid)
             server.send_signal(signal.SIGTERM)
-            assert server.wait(15) == 0
+            assert server.wait(PATIENCE) == 0
         finally:
             server.kill()
     assert [child for child in started if alive(child)] == []

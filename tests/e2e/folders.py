@@ -18,6 +18,8 @@ from e2e.units import HAPROXY, free_port
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "deploy.md"
 NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
 FOLDER = "/gems"
+TEMPORARY = "client_body", "proxy", "fastcgi", "uwsgi", "scgi"
+"""Kinds of folders that nginx makes as it begins, whether it needs them or not."""
 
 
 def from_the_page(begins: str, server: str) -> str:
@@ -32,7 +34,7 @@ def nginx(server: str, folder: Path) -> Iterator[str]:
     """Where it shows the server."""
     assert NGINX
     port = free_port()
-    places = "\n".join(f"  {kind}_temp_path {folder}/{kind};" for kind in ("client_body", "proxy"))
+    places = "\n".join(f"  {kind}_temp_path {folder}/{kind};" for kind in TEMPORARY)
     file = folder / "nginx.conf"
     file.write_text(
         f"{'user root;' if os.geteuid() == 0 else ''}\ndaemon off;\npid {folder}/nginx.pid;\nworker_processes 1;\n"

@@ -101,6 +101,13 @@ def test_a_divider_has_the_kept_design_at_its_left_until_the_picture_changes(wid
     page.keyboard.press("d")
     assert divider.count() == 0
     assert view.problems == []
+    view.refusals.add(401)
+    page.route("**/api/render", lambda route: route.fulfill(status=401))  # as of a server's guest, who has no token
+    page.keyboard.press("d")
+    view.until("() => culet.problems.length > 0")
+    assert divider.count() == 0
+    (problem,) = view.problems
+    assert "needs this server's token" in problem
 
 
 def test_a_mesh_has_no_proportions_and_gives_way_to_a_cut(wide_view: View, server: Server, tmp_path: Path) -> None:

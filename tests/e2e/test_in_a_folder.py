@@ -12,7 +12,7 @@ import pytest
 from e2e.conftest import ViewOf
 from e2e.folder_proxy import FolderProxy
 from e2e.folders import NGINX, haproxy, nginx
-from e2e.server import Server
+from e2e.server import PATIENCE, Server
 from e2e.units import HAPROXY, WHY_NOT
 
 
@@ -68,7 +68,7 @@ def test_by_the_configuration_of_the_documentation_the_page_is_in_a_folder(
         assert view.page.url.startswith(f"{url}/?session=")
         view.page.keyboard.press("p")
         view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.05")
-        with httpx.Client(base_url=f"{url}/", timeout=60) as http:
+        with httpx.Client(base_url=f"{url}/", timeout=PATIENCE) as http:
             made = http.post("api/sessions", json={"preset": "matte"}, headers={"Origin": url.removesuffix("/gems")})
             session = made.url.join(made.headers["location"])
             assert http.get(session).json()["id"] == made.json()["id"]

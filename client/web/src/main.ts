@@ -252,6 +252,7 @@ function keepDesign(): void {
 /** Show both designs with a divider, or the one alone; without a kept one keep this. */
 function divide(): void {
   if (!comparison.keeps(visit.scene)) keepDesign();
+  if (!comparison.keeps(visit.scene)) return;
   attempt(() => division.toggle());
 }
 

@@ -12,11 +12,14 @@ import type { DivisionWorld } from "./division";
 
 /** ms for which the picture stays as it is before the other one is asked for. */
 const PATIENCE_MS = 300;
+/** HTTP's status of what a guest may not ask for. */
+const TOKEN_NEEDED = 401;
 /** Percent of the width. */
 const MIDDLE = 50;
 
 export class DividedView {
   private readonly world: DivisionWorld;
+  private readonly refused: () => void;
   private readonly room = document.createElement("section");
   private readonly picture = document.createElement("img");
   private readonly divider = document.createElement("input");
@@ -24,8 +27,10 @@ export class DividedView {
   private waiting: ReturnType<typeof setTimeout> | undefined;
   private giveUp = new AbortController();
 
-  constructor(world: DivisionWorld) {
+  /** `refused` is called where the server renders no scenes for this viewer. */
+  constructor(world: DivisionWorld, refused: () => void) {
     this.world = world;
+    this.refused = refused;
     const { room, picture, divider } = this;
     room.id = "divided";
     picture.alt = words.compare.keptPicture;
@@ -78,7 +83,7 @@ export class DividedView {
 
   private divide(): void {
     this.room.style.setProperty("--at", String(this.divider.valueAsNumber / 100));
-    this.divider.setAttribute("aria-valuetext", `${Math.round(this.divider.valueAsNumber)} %`);
+    this.divider.setAttribute("aria-valuetext", words.compare.at(Math.round(this.divider.valueAsNumber)));
   }
 
   /** A quick picture first, then a fine one. */
@@ -102,7 +107,10 @@ export class DividedView {
         this.picture.hidden = false;
       }
     } catch (error) {
-      if (!signal.aborted) throw error;
+      if (signal.aborted) return;
+      if (!(error instanceof rest.ProblemError) || error.status !== TOKEN_NEEDED) throw error;
+      this.refused();
+      throw new Error(words.compare.tokenNeeded);
     }
   }
 

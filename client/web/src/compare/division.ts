@@ -26,8 +26,19 @@ export class Division {
     this.view?.close();
     this.view = null;
     if (!this.wanted) return;
-    const { DividedView } = await import("./divided-view");
-    if (this.wanted && !this.view) this.view = new DividedView(this.world);
+    try {
+      const { DividedView } = await import("./divided-view");
+      if (this.wanted && !this.view) this.view = new DividedView(this.world, () => this.close());
+    } catch (error) {
+      this.wanted = false;
+      throw error;
+    }
+  }
+
+  private close(): void {
+    this.wanted = false;
+    this.view?.close();
+    this.view = null;
   }
 
   /** Another picture is on the screen. */

@@ -362,6 +362,10 @@ export const compare = {
   keptPicture: "The kept design, under the same camera and light",
   keptSide: "kept",
   shownSide: "shown",
+  at: (percent: number) => `${percent}\u00a0% of the picture is the kept design's`,
+  tokenNeeded:
+    "The kept design's picture needs this server's token: open the address that the server printed. A changes the two " +
+    "over without it.",
   kept:
     "This design is kept. Choose or change another one: the grades tell how they differ, the key A changes the two " +
     "over, and D shows both.",
