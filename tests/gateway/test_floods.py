@@ -108,7 +108,7 @@ async def test_one_demand_of_a_session_is_under_way_and_of_those_that_wait_the_l
         assert isinstance(message, Demand)
         told.append((message.width, message.height))
         await answer.acquire()
-        return {}, b""
+        return {"width": message.width, "height": message.height}, b""
 
     monkeypatch.setattr(EngineLink, "request", request)
     session = SessionRecord("ab" * 16, {})

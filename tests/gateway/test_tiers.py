@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from culet.gateway.tiers import ENTER_SECONDS, FEW_FRAMES, Tiers
+from culet.gateway.tiers import ENTER_SECONDS, FEW_FRAMES, LEAVE_SECONDS, Tiers
 from culet.gateway.viewer import Viewer
 from culet_protocol.frame import Codec
 from culet_protocol.watch import LESSER, Stream
@@ -159,6 +159,57 @@ def test_pictures_at_rest_move_nobody_to_another_tier() -> None:
             tiers.came(Codec.JPEG, FULL, now)
         tiers.assign(viewers, viewers[0], SIZE, now)
     assert not viewers[1].feed.lesser
+
+
+def moved(tiers: Tiers, viewers: list[Viewer], now: float, seconds: float) -> float:
+    """Ticks in which nothing comes; the time afterwards."""
+    for _ in range(round(seconds / 0.1)):
+        now += 0.1
+        tiers.assign(viewers, viewers[0], SIZE, now)
+    return now
+
+
+def test_a_small_window_that_grows_at_rest_gets_the_first_tier_and_the_frame_anew() -> None:
+    tiers, viewers = Tiers(), watching(SIZE, (320, 180))
+    viewers[1].credit.take(1, 8_000, 0)
+    viewers[1].credit.acknowledge(1, 0.1)
+    now, lesser = 1.0, []
+    for size in ((320, 180), SIZE):
+        viewers[1].resize(*size)
+        now = moved(tiers, viewers, now, 2 * LEAVE_SECONDS)
+        lesser.append(viewers[1].feed.lesser)
+    assert lesser == [True, False]
+    assert viewers[1].feed.lacks_picture
+
+
+def test_a_slow_viewer_keeps_lesser_pictures_at_rest() -> None:
+    session = room(FAST, SLOW)
+    session.run(8)
+    now = moved(session.tiers, session.viewers, session.now, 10)
+    assert session.viewers[1].feed.lesser
+    session.viewers[1].resize(320, 180)
+    now = moved(session.tiers, session.viewers, now, 1)
+    session.viewers[1].resize(*SIZE)
+    moved(session.tiers, session.viewers, now, 2 * LEAVE_SECONDS)
+    assert session.viewers[1].feed.lesser, "its link is as it was"
+
+
+def test_a_small_window_of_a_viewer_of_video_goes_on_with_that() -> None:
+    tiers, viewers = Tiers(), watching(SIZE, (320, 180))
+    now, lesser = 0.0, []
+    for codec in (Codec.H264, None):
+        viewers[1].feed.follow(codec)
+        now = moved(tiers, viewers, now, 2 * ENTER_SECONDS)
+        lesser.append(viewers[1].feed.lesser)
+    assert lesser == [False, True]
+
+
+def test_of_frames_no_more_is_remembered_than_is_counted() -> None:
+    tiers = Tiers()
+    for number in range(6_000):
+        tiers.came(Codec.JPEG, FULL, number / 60)
+        tiers.came(LESSER, FULL, number / 60)
+    assert sum(map(len, tiers._came.values())) <= 62
 
 
 def test_a_viewer_of_lesser_pictures_is_offered_those_alone_and_video_from_a_key_frame_on_afterwards() -> None:

@@ -14,7 +14,7 @@ from culet.gateway.viewer import Viewer
 from culet_protocol.engine import Demand, HoldVideo
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Message
-from culet_protocol.watch import VIDEO, Stream
+from culet_protocol.watch import LESSER, VIDEO, Stream
 
 NAME = "0" * 32
 LARGE = 50_000
@@ -29,6 +29,11 @@ class Link(EngineLink):
         self.ready.set()
         self.heard: list[tuple[str, Stream]] = []
         self.holds: list[bool] = []
+        self.answers = asyncio.Event()
+        """Whether demands are answered."""
+        self.answers.set()
+        self.widest = 4096
+        """Pixels of the pictures that it makes."""
         self.record = SessionRecord(NAME, {})
         self.demands = Demands(self, {NAME: self.record})
 
@@ -46,9 +51,10 @@ class Link(EngineLink):
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         if isinstance(message, HoldVideo):
             self.holds.append(message.held)
-        else:
-            assert isinstance(message, Demand)
-        return {}, b""
+            return {}, b""
+        assert isinstance(message, Demand)
+        await self.answers.wait()
+        return {"width": min(self.widest, message.width), "height": message.height}, b""
 
     def viewer(self, codec: Codec | None = None) -> Viewer:
         viewer = Viewer(len(self.record.viewers) + 1, now=monotonic())
@@ -153,6 +159,57 @@ async def test_one_whose_link_is_full_is_not_waited_for_by_others_for_long() -> 
     assert [viewer.feed.in_step for viewer in (slow, fast)] == [False, True]
     assert Codec.JPEG in link.record.subscribed
     assert (await told(link))[-1] is False
+    await ended(link)
+
+
+async def test_lesser_pictures_are_listened_to_once_the_engine_knows_their_limits() -> None:
+    link = Link()
+    link.viewer()
+    await link.begin()
+    await ended(link)
+    small = link.viewer()
+    small.resize(160, 90)
+    small.feed.follow_lesser(lesser=True)
+    link.answers.clear()
+    await link.begin()
+    link.demands.update(link.record)
+    assert link.record.demand.lesser is not None
+    assert link.heard == [("+", Codec.JPEG)]
+    link.answers.set()
+    await link.begin()
+    assert link.heard == [("+", Codec.JPEG), ("+", LESSER)]
+    await ended(link)
+
+
+async def test_who_has_had_lesser_pictures_has_the_frame_sent_anew() -> None:
+    link = Link()
+    link.viewer()
+    small = link.viewer()
+    small.resize(160, 90)
+    small.feed.follow_lesser(lesser=True)
+    await link.begin()
+    small.feed.follow_lesser(lesser=False)
+    link.heard.clear()
+    link.demands.update(link.record)
+    link.demands.update(link.record)
+    again: list[tuple[str, Stream]] = [("+", Codec.JPEG), ("-", Codec.JPEG), ("-", LESSER)]
+    assert link.heard == again, "once, and before the engine is told that nobody has lesser pictures"
+    await ended(link)
+
+
+async def test_windows_are_compared_with_the_pictures_that_the_engine_makes() -> None:
+    link = Link()
+    link.widest = 320
+    link.viewer().resize(1280, 320)
+    window = link.viewer()
+    window.resize(200, 100)
+    window.feed.follow_lesser(lesser=True)
+    await link.begin()
+    assert link.record.drawn_size == (320, 320)
+    sizes: list[tuple[int, int]] = []
+    link.record.tiers.assign = lambda *arguments: sizes.append(arguments[2])  # type: ignore[method-assign]
+    link.demands.update(link.record)
+    assert sizes == [(320, 320)]
     await ended(link)
 
 

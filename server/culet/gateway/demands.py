@@ -11,8 +11,9 @@ from culet.errors import CuletError, NotFoundError
 from culet.gateway.link import EngineLink
 from culet.gateway.session_record import NO_DEMAND, LesserWanted, SessionRecord, Wanted
 from culet_protocol.engine import Demand, HoldVideo, LesserDemand
+from culet_protocol.frame import Codec
 from culet_protocol.sizes import LIVE_SIZE
-from culet_protocol.watch import VIDEO, VIDEO_NAMES, Stream
+from culet_protocol.watch import LESSER, VIDEO, VIDEO_NAMES, Stream
 
 log = logging.getLogger(__name__)
 
@@ -65,12 +66,14 @@ class Demands:
                 lesser=_lesser(demand),
             )
             try:
-                await self._link.request(told)
+                answer, _ = await self._link.request(told)
             except CuletError as error:
                 known = not isinstance(error, NotFoundError)  # or a new engine is about to be given the session
                 log.log(logging.WARNING if known else logging.DEBUG, "demand of a session was refused: %s", error)
                 session.demand = UNTOLD
                 return  # the next tick tries again
+            session.drawn_size = answer["width"], answer["height"]
+            session.lesser_told = demand.lesser is not None
             self._listen(session)
             await asyncio.sleep(DEMAND_SECONDS)
 
@@ -79,9 +82,19 @@ class Demands:
         now which."""
         if session.demand.frames_per_second <= 0 or session.id not in self._sessions:
             return
-        wanted = session.codecs_wanted(time.monotonic()) or session.subscribed
-        for codec in wanted - session.subscribed:
+        now = time.monotonic()
+        wanted = session.codecs_wanted(now)
+        if LESSER not in session.subscribed and not session.lesser_told:
+            wanted -= {LESSER}  # which would be made without limits
+        wanted = wanted or session.subscribed
+        lacking = [viewer for viewer in session.viewers if viewer.feed.lacks_picture and viewer.watches(now)]
+        again = wanted & {Codec.JPEG} if lacking else frozenset()
+        for codec in (wanted - session.subscribed) | again:
             self._link.subscribe(session.topics[codec])
+        for codec in again & session.subscribed:
+            self._link.unsubscribe(session.topics[codec])  # it was subscribed to once more, by which the engine knows
+        for viewer in lacking if again else ():
+            viewer.feed.lacks_picture = False
         for codec in session.subscribed - wanted:
             self._link.unsubscribe(session.topics[codec])
         session.subscribed = wanted
@@ -149,6 +162,7 @@ class Demands:
     def begin_anew(self, session: SessionRecord) -> None:
         """Another engine has the session, and was told no demand."""
         session.demand, session.held = NO_DEMAND, frozenset()
+        session.drawn_size, session.lesser_told = None, False
         self.update(session)
 
 

@@ -36,6 +36,8 @@ class FrameFeed:
         """It is sent lesser pictures, and no video."""
         self.lacks_key = False
         """It was offered a packet that it cannot use: it needs a key frame."""
+        self.lacks_picture = False
+        """It was sent lesser pictures until now: the frame that it has may be at rest, and is to come anew."""
         self._waiting: deque[Waiting] = deque()
         """Packets in the order of their numbers, and at the end, or alone, a picture of its own."""
         self._taken: int | None = None
@@ -71,6 +73,8 @@ class FrameFeed:
         if lesser and not self.lesser:
             self.fall_out()
             self.lacks_key = False
+        if lesser != self.lesser:
+            self.lacks_picture = not lesser
         self.lesser = lesser
 
     def offer(self, frame: Frame, message: bytes, stream: Stream, now: float) -> None:

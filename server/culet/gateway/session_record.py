@@ -90,6 +90,10 @@ class SessionRecord:
         """s, when a key frame was asked for last."""
         self.demand = NO_DEMAND
         """What the engine was last told."""
+        self.drawn_size: tuple[int, int] | None = None
+        """Pixels of the pictures that the engine makes, by its answer; None: it has given none."""
+        self.lesser_told = False
+        """Whether the engine has confirmed that it knows what lesser pictures may have."""
         self.demanding: asyncio.Task[None] | None = None
         """Tells the engine, one demand after the other."""
         self.room = asyncio.Semaphore(EVENTS_UNDER_WAY)
@@ -157,7 +161,7 @@ class SessionRecord:
     def assign_tiers(self, now: float) -> None:
         """See to it that each viewer is sent frames for which it has room."""
         watching = [viewer for viewer in self.viewers if viewer.watches(now)]
-        self.tiers.assign(watching, self._deciding(watching), self.demand.size, now)
+        self.tiers.assign(watching, self._deciding(watching), self.drawn_size or self.demand.size, now)
 
     @staticmethod
     def _deciding(watching: Sequence[Viewer]) -> Viewer | None:

@@ -205,6 +205,40 @@ async def test_without_room_for_an_encoder_frames_are_pictures_until_there_is(de
     assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 4)], "it has what it needs"
 
 
+async def test_what_an_encoder_is_about_to_take_counts_as_taken(desk: Desk) -> None:
+    needed = BYTES_PER_PIXEL[Codec.H264] * 32 * 18
+    first, second = (VideoTrack(Codec.H264, Telling) for _ in range(2))
+
+    def has_room(size: int) -> bool:
+        return first.nbytes + second.nbytes + size <= needed
+
+    assert first.find_room((32, 18), 30, 0, has_room)
+    assert first.nbytes == needed
+    assert not second.find_room((32, 18), 30, 0, has_room)
+    first.encode(desk.frame.rgb, 30, 0)
+    assert (first.nbytes, second.nbytes) == (needed, 0)
+
+
+async def test_nothing_counts_as_taken_for_a_frame_that_is_held(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    desk.outgoing.hold(Codec.H264, desk.now, held=True)
+    assert await desk.publish() == []
+    assert desk.asked
+    assert desk.outgoing.nbytes == 0
+
+
+async def test_frames_that_are_repeated_at_rest_need_no_encoder(desk: Desk) -> None:
+    desk.watch(Codec.H264)
+    desk.now = 10
+    await desk.publish()
+    desk.now = 11
+    await desk.publish(planned=False)
+    for _ in range(3):
+        desk.now += 1
+        desk.sender.repeat(desk.outgoing)
+    assert (desk.outgoing.sent_at, desk.outgoing.encoded_at) == (14, 10)
+
+
 async def test_of_an_encoder_of_another_size_only_what_is_more_needs_room(desk: Desk) -> None:
     desk.watch(Codec.H264)
     await desk.publish()

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
 import simplejpeg
 
 from culet.engine.governing.thrift import GROWN, Allowance, Encoding
+from culet.engine.painting.coded import Coded
 from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.live_picture import LivePicture, State
+from culet.engine.painting.painter import Painter
+from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.still import EncodeStill, StillQueue
+from culet.errors import CuletError
+from culet.rendering.target import Target
 from culet_protocol.frame import Codec, Flags
 from culet_protocol.watch import LESSER, topic_of
 from engine.painting.test_frame_sender import VIDEO_TOPIC, WATCH, Desk
@@ -90,6 +99,104 @@ async def test_it_goes_out_under_the_number_of_the_frame_by_a_topic_of_its_own(d
     assert Flags.KEY in desk.sent[-1].flags
     desk.sender.repeat(desk.outgoing)
     assert desk.sent[-1].width == 320
+
+
+async def test_the_first_tier_leaves_before_it_is_made(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = []
+    encoded = LesserTier.encoded
+
+    def noting(tier: LesserTier, frame: LiveFrame) -> Coded:
+        before.append([(sent.watch, sent.sequence) for sent in desk.sent])
+        return encoded(tier, frame)
+
+    monkeypatch.setattr(LesserTier, "encoded", noting)
+    desk.watch(Codec.JPEG, Codec.H264)
+    desk.outgoing.watch(LESSER, subscribed=True)
+    await desk.publish()
+    assert before == [[(VIDEO_TOPIC, 1), (WATCH, 1)]]
+
+
+async def test_one_that_fails_costs_the_others_no_frame_and_no_key_frame(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise CuletError("it cannot be shrunk")
+
+    problems: list[CuletError] = []
+    monkeypatch.setattr(LesserTier, "encoded", fails)
+    monkeypatch.setattr(desk.sender, "_tell_problem", lambda _, problem: problems.append(problem))
+    desk.watch(Codec.JPEG, Codec.H264)
+    desk.outgoing.watch(LESSER, subscribed=True)
+    for number in (1, 2):
+        assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, number), (WATCH, Codec.JPEG, number)]
+        assert len(problems) == number
+        assert desk.outgoing.unsent == 0
+    assert [sent.depends_on for sent in desk.sent if sent.codec is Codec.H264] == [0, 1]
+
+
+async def test_who_has_it_can_be_sent_the_frame_under_another_number(desk: Desk, frame: LiveFrame) -> None:
+    desk.frame = frame
+    desk.watch(Codec.JPEG)
+    await desk.publish(planned=False)
+    desk.sender.send_anew(desk.session, desk.outgoing)
+    assert [sent.sequence for sent in desk.sent] == [1, 1], "nobody has another picture of that number"
+    desk.outgoing.watch(LESSER, subscribed=True)
+    desk.outgoing.lesser.size = (320, 180)
+    await desk.publish(planned=False)
+    first, lesser = desk.sent[2:]
+    desk.outgoing.watch(LESSER, subscribed=False)
+    desk.sender.send_anew(desk.session, desk.outgoing)
+    (again,) = desk.sent[4:]
+    assert (first.sequence, lesser.sequence, again.sequence) == (2, 2, 3)
+    assert (again.watch, again.payload, again.flags, again.samples) == (WATCH, first.payload, first.flags, 1)
+    await desk.publish(planned=False)
+    assert desk.sent[-1].sequence == 4
+
+
+async def test_alone_it_is_repeated_too(desk: Desk) -> None:
+    desk.watch()
+    desk.outgoing.watch(LESSER, subscribed=True)
+    assert await desk.publish(planned=False) == [(LESSER_TOPIC, Codec.JPEG, 1)]
+    desk.sender.repeat(desk.outgoing)
+    assert [sent.watch for sent in desk.sent] == [LESSER_TOPIC, LESSER_TOPIC]
+
+
+async def at_rest(desk: Desk, window: tuple[int, int]) -> LivePicture:
+    """A picture that is as good as it becomes, and was sent as a lesser one for such a window alone."""
+    live = LivePicture(desk.session, watched=True, outgoing=desk.outgoing)
+    live.painted, live.painted_size, live.size, live.state = live.session.shown, live.size, live.size, State.FINAL
+    desk.watch()
+    desk.outgoing.watch(LESSER, subscribed=True)
+    live.resize_lesser(window)
+    await desk.publish(planned=False)
+    assert live.at_rest
+    return live
+
+
+@pytest.mark.parametrize(
+    ("window", "state"),
+    [((640, 300), State.BLANK), ((320, 180), State.FINAL), ((100, 100), State.FINAL)],
+)
+async def test_at_rest_it_is_drawn_anew_for_a_larger_window_only(
+    desk: Desk, window: tuple[int, int], state: State
+) -> None:
+    live = await at_rest(desk, (320, 180))
+    live.resize_lesser(window)
+    assert live.state is state
+
+
+async def test_who_comes_to_a_session_at_rest_of_which_there_is_only_a_lesser_picture_has_one_drawn(desk: Desk) -> None:
+    live = await at_rest(desk, (320, 180))
+    painter = Painter(
+        cast(Renderer, None), cast(ThreadPoolExecutor, None), StillQueue(1, 1), send=lambda _: None,
+        tell_problem=lambda *_: None, encode_still=cast(EncodeStill, None), still_seconds=1, rest=Target(1, None),
+    )  # fmt: skip
+    states = []
+    for stream in (LESSER, Codec.JPEG):
+        desk.outgoing.watch(stream, subscribed=True)
+        painter.show_again(live, stream)
+        states.append(live.state)
+    assert states == [State.FINAL, State.BLANK]
 
 
 async def test_for_nobody_it_is_not_made(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -73,7 +73,8 @@ def test_what_failed_is_not_reserved_any_more() -> None:
 
 
 def test_encoders_of_sessions_at_rest_are_given_back_and_those_of_moving_ones_are_not() -> None:
-    memory, resting, moving = Memory(10**9), Outgoing(), Outgoing(sent_at=time.monotonic())
+    now = time.monotonic()
+    memory, resting, moving = Memory(10**9), Outgoing(sent_at=now), Outgoing(sent_at=now, encoded_at=now)
     edits = SimpleNamespace(nbytes=0)
     lives = [
         SimpleNamespace(outgoing=each, session=SimpleNamespace(history=(), edits=edits)) for each in (moving, resting)

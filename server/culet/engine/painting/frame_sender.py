@@ -8,7 +8,7 @@ import os
 import time
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from culet.engine.governing.thrift import NO_LIMITS, Allowance
@@ -20,7 +20,7 @@ from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.video_track import VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
-from culet_protocol.frame import Codec
+from culet_protocol.frame import Codec, Frame
 from culet_protocol.watch import LESSER, VIDEO, WATCH_BYTES, Stream, topic_of
 
 T = TypeVar("T")
@@ -43,6 +43,8 @@ class Outgoing:
     """The frame sent last, by the session's watch id; None if it was only sent as video."""
     sent_at: float = 0.0
     """s, steady clock: when that was."""
+    encoded_at: float = 0.0
+    """s, steady clock: when a frame was last encoded as video."""
     unsent: int = 0
     """Frames that are being encoded, or wait for that."""
     allowance: Allowance = NO_LIMITS
@@ -128,17 +130,30 @@ class FrameSender:
         """Encode and send a frame that was begun at that time of the clock; this does not wait for either. `learn` is
         told what a frame for a link with limits has become."""
         outgoing.unsent += 1
-        work = self._encode_and_send(session, outgoing, learn, frame, begun_at, before=outgoing.latest)
+        work = self._encode_and_send(session, outgoing, learn, frame, begun_at, outgoing.latest)
         outgoing.latest = asyncio.create_task(work)
 
     def repeat(self, outgoing: Outgoing) -> None:
         """Send the frame sent last again, if there was one."""
+        lesser = outgoing.lesser.message or outgoing.message
+        if lesser is None:
+            return
+        outgoing.sent_at = self._now()
+        self._tally.counters.frames_repeated += 1
         if outgoing.message is not None:
-            outgoing.sent_at = self._now()
-            self._tally.counters.frames_repeated += 1
             self._send_to(outgoing.codecs - {LESSER}, outgoing.message)
-            if LESSER in outgoing.codecs:
-                self._send_to({LESSER}, outgoing.lesser.message or outgoing.message)
+        if LESSER in outgoing.codecs:
+            self._send_to({LESSER}, lesser)
+
+    def send_anew(self, session: Session, outgoing: Outgoing) -> None:
+        """Send the frame sent last again, under a number of its own if it was sent as a lesser picture too: whoever has
+        that one takes no other of the same number."""
+        if outgoing.unsent == 0 and outgoing.lesser.sequence == session.sequence:
+            session.sequence += 1
+            outgoing.lesser.sequence = session.sequence
+            outgoing.message = _numbered(outgoing.message, session.sequence)
+            outgoing.lesser.message = _numbered(outgoing.lesser.message, session.sequence)
+        self.repeat(outgoing)
 
     def stop(self) -> None:
         """Encode nothing more."""
@@ -153,8 +168,30 @@ class FrameSender:
         begun_at: float,
         before: asyncio.Task[None] | None,
     ) -> None:
+        lesser = outgoing.lesser if LESSER in outgoing.codecs else None
+        try:
+            began = await self._send_first(session, outgoing, learn, frame, begun_at, before)
+            if began is None or lesser is None:
+                outgoing.lesser.message = None  # of something else than what is shown
+            else:
+                await self._send_lesser(session, outgoing, frame, began)
+        finally:
+            outgoing.unsent -= 1
+            self._wake()
+
+    async def _send_first(
+        self,
+        session: Session,
+        outgoing: Outgoing,
+        learn: Callable[[Coded], None],
+        frame: LiveFrame,
+        begun_at: float,
+        before: asyncio.Task[None] | None,
+    ) -> float | None:
+        """The first tier, which waits for no lesser picture of the same frame. s, of the performance counter: when it
+        was begun; None if the frame goes no further."""
         drawn_at, started = self._now(), time.perf_counter()
-        codecs, lesser = outgoing.codecs - {LESSER}, outgoing.lesser if LESSER in outgoing.codecs else None
+        codecs, lesser = outgoing.codecs - {LESSER}, LESSER in outgoing.codecs
         tracks = list(outgoing.tracks.values()) if frame.planned else []
         video: dict[VideoTrack, Coded] = {}
         try:
@@ -163,47 +200,61 @@ class FrameSender:
             for track in tracks:
                 works = track.works and track.find_room(frame.size, frame.crf, drawn_at, self._has_room)
                 codecs -= {track.codec} if works else set()
-                if works and not track.is_held(drawn_at):  # skipped before it is encoded, not after
-                    packet = await self._in_thread(track.encode, frame.rgb, frame.crf, drawn_at)
-                    if packet is None:
-                        codecs |= {track.codec}  # as JPEG
-                    else:
-                        video[track] = frame.coded(track.codec, packet, track.sequence)
+                if not works or track.is_held(drawn_at):  # skipped before it is encoded, not after
+                    track.forgo()
+                    continue
+                packet = await self._in_thread(track.encode, frame.rgb, frame.crf, drawn_at)
+                if packet is None:
+                    codecs |= {track.codec}  # as JPEG
+                else:
+                    video[track] = frame.coded(track.codec, packet, track.sequence)
             picture = await self._in_thread(frame.encoded, outgoing.allowance.at_rest or math.inf) if codecs else None
             encode_seconds = time.perf_counter() - started
-            less = None if lesser is None else await self._in_thread(lesser.encoded, frame)
             if frame.encoding is not None:
                 for coded in [*video.values(), *([] if picture is None else [picture])]:
                     learn(coded)
             if before is not None:
                 await asyncio.wait([before])  # so that frames leave in order
-            if picture is None and less is None and not video:
-                outgoing.message = outgoing.lesser.message = None  # of something else than what is shown
-                return
+            if picture is None and not video and not lesser:
+                outgoing.message = None  # of something else than what is shown
+                return None
             session.sequence += 1
             message = None if picture is None else frame.pack(session, picture, encode_seconds)
-            lesser_message = None if less is None else frame.pack(session, less, time.perf_counter() - started)
             packed = {track: frame.pack(session, coded, encode_seconds) for track, coded in video.items()}
         except Exception as error:  # one session's failure must not end the others'
             for track in video:
                 track.close()  # what comes next must not need what was not sent
             self._tell_problem(session, as_culet_error(error, what="encoding"))
-            return
-        finally:
-            outgoing.unsent -= 1
-            self._wake()
+            return None
         now = self._now()
         self._tally.durations.encode_wait.add(max(0.0, now - drawn_at))
         self._tally.durations.frame.add(max(0.0, now - begun_at))
-        outgoing.message, outgoing.lesser.message, outgoing.sent_at = message, lesser_message, now
+        outgoing.message, outgoing.sent_at = message, now
+        if video:
+            outgoing.encoded_at = now
         self._tally.counters.frames_sent += 1
         for track, sent in packed.items():
             track.sequence = session.sequence
             self._send_to({track.codec}, sent)
         if message is not None:  # after the packets: who is sent a frame as a picture cannot begin video with it
             self._send_to(codecs, message)
-        if lesser_message is not None:
-            self._send_to({LESSER}, lesser_message)
+        return started
+
+    async def _send_lesser(self, session: Session, outgoing: Outgoing, frame: LiveFrame, started: float) -> None:
+        """The lesser picture of the frame that was sent last, under the same number. What fails here costs nobody else
+        theirs."""
+        lesser = outgoing.lesser
+        try:
+            less = await self._in_thread(lesser.encoded, frame)
+            message = frame.pack(session, less, time.perf_counter() - started)
+        except Exception as error:
+            lesser.message = None
+            self._tell_problem(session, as_culet_error(error, what="encoding"))
+            return
+        lesser.sequence = session.sequence
+        if LESSER in outgoing.codecs:
+            lesser.message = message
+            self._send_to({LESSER}, message)
 
     def _send_to(self, codecs: Collection[Stream], message: bytes) -> None:
         """A message by the session's watch id to who subscribes to frames in those codecs."""
@@ -213,3 +264,7 @@ class FrameSender:
 
     async def _in_thread(self, call: Callable[..., T], *arguments: object) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._threads, call, *arguments)
+
+
+def _numbered(message: bytes | None, sequence: int) -> bytes | None:
+    return None if message is None else replace(Frame.unpack(message), sequence=sequence).pack()

@@ -30,11 +30,13 @@ class LesserTier:
         """That the link has for a moving frame, by the rate at which they are made."""
         self.message: bytes | None = None
         """The frame sent last, by the session's watch id."""
+        self.sequence: int | None = None
+        """Number of the last frame of which there was a lesser picture."""
         self._thrift = Thrift(read_byte_ladder())
 
     def encoded(self, frame: LiveFrame) -> Coded:
         """The frame as a JPEG within the limits. Takes milliseconds."""
-        width, height = self._fitting(frame.size)
+        width, height = self.fitting(frame.size)
         if not frame.planned:
             quality = jpeg.MOVING_QUALITY if frame.shown.moving else jpeg.RESTING_QUALITY
             most = self.allowance.at_rest or math.inf
@@ -53,12 +55,15 @@ class LesserTier:
         less = picture.quality < best or picture.width < width
         return Coded.of_jpeg(picture, thrifty=thrifty or less)
 
-    def _fitting(self, size: tuple[int, int]) -> tuple[int, int]:
+    def fitting(self, size: tuple[int, int]) -> tuple[int, int]:
         """A frame's size, or the smaller one that fills the viewers' windows."""
-        if self.size is None:
-            return size
-        scale = min(1.0, max(self.size[0] / size[0], self.size[1] / size[1]))
-        return max(LEAST_SIDE, round(scale * size[0])), max(LEAST_SIDE, round(scale * size[1]))
+        return size if self.size is None else fitting(size, self.size)
+
+
+def fitting(size: tuple[int, int], window: tuple[int, int]) -> tuple[int, int]:
+    """Pixels of a picture of that size, or of the smaller one that fills a window."""
+    scale = min(1.0, max(window[0] / size[0], window[1] / size[1]))
+    return max(LEAST_SIDE, round(scale * size[0])), max(LEAST_SIDE, round(scale * size[1]))
 
 
 def _shrunk(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:

@@ -10,6 +10,7 @@ from typing import assert_never
 from culet.engine.governing.governor import asked_rate
 from culet.engine.painting.frame_sender import Outgoing
 from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.lesser_tier import fitting
 from culet.engine.painting.quality import Quality
 from culet.engine.painting.renderer import Picture
 from culet.engine.painting.shares import Account
@@ -259,6 +260,20 @@ class LivePicture:
         if self.state is State.REFUSED:
             self.state = State.BLANK
 
+    def draw_anew(self) -> None:
+        """The picture at rest is wanted in a form in which it was not sent; a frame under way brings it by itself."""
+        if self.making is None and self.state in (State.FULL, State.FINAL):
+            self.picture, self.state = None, State.BLANK
+
+    def resize_lesser(self, size: tuple[int, int]) -> None:
+        """Lesser pictures are to fill other windows. One at rest is made anew if it is smaller than that."""
+        lesser = self.outgoing.lesser
+        had, lesser.size = lesser.size, size
+        if had is None or not self.at_rest or lesser.message is None:
+            return
+        if lesser.fitting(self.painted_size) > fitting(self.painted_size, had):
+            self.draw_anew()
+
     def abandon(self, now: float) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
         if isinstance(self.making, FrameWork):
@@ -273,5 +288,5 @@ class LivePicture:
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
-        known = self.watched and self.current and self.outgoing.message
+        known = self.watched and self.current and (self.outgoing.message or self.outgoing.lesser.message)
         return self.outgoing.sent_at + REPEAT_SECONDS if known else None

@@ -27,6 +27,8 @@ from culet.engine.session.stepper import Stepper
 from culet.errors import CuletError
 from culet.rendering.target import Target
 from culet.stage import Stage
+from culet_protocol.frame import Codec
+from culet_protocol.watch import LESSER, Stream
 
 
 class Painter:
@@ -82,10 +84,14 @@ class Painter:
         """Something changed: look again for what is due."""
         self._changed.set()
 
-    def show_again(self, live: LivePicture) -> None:
-        """Send the latest frame at once, for a viewer who has just come."""
-        if live.current:
+    def show_again(self, live: LivePicture, codec: Stream) -> None:
+        """Send the latest frame at once, for a viewer who has just come, or wants it in another form than before."""
+        if live.at_rest and codec is Codec.JPEG:
+            self._sender.send_anew(live.session, live.outgoing)
+        elif live.current:
             self._sender.repeat(live.outgoing)
+        if live.at_rest and codec is not LESSER and live.outgoing.message is None:
+            live.draw_anew()
         self.wake()
 
     async def run(self) -> None:

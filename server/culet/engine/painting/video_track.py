@@ -62,12 +62,18 @@ class VideoTrack:
         self._began_at = -float("inf")
         self._held_until = -float("inf")
         self._roomless_until = -float("inf")
+        self._promised = 0
+        """Bytes that the encoder of the next picture takes, for which room was found."""
         self.has_room = True
         """Whether there was memory for the encoder that was needed last."""
 
     @property
     def nbytes(self) -> int:
-        """That its encoder takes."""
+        """That its encoder takes, or is about to take."""
+        return max(self._promised, self._taken)
+
+    @property
+    def _taken(self) -> int:
         encoder = self._encoder
         return 0 if encoder is None else BYTES_PER_PIXEL[self.codec] * encoder.width * encoder.height
 
@@ -94,10 +100,12 @@ class VideoTrack:
         width, height = size
         if self._encoder is not None and not self._is_to_change(self._encoder, width, height, crf, now):
             return 0
-        return max(0, BYTES_PER_PIXEL[self.codec] * width * height - self.nbytes)
+        return max(0, BYTES_PER_PIXEL[self.codec] * width * height - self._taken)
 
     def find_room(self, size: tuple[int, int], crf: int, now: float, has_room: Callable[[int], bool]) -> bool:
-        """Whether the next picture can be encoded, as far as memory goes; `has_room` is asked for bytes."""
+        """Whether the next picture can be encoded, as far as memory goes; `has_room` is asked for bytes, which count as
+        taken until the picture is encoded, or not to be."""
+        self._promised = 0
         lacking = self.lacks(size, crf, now)
         if lacking == 0:
             self.has_room = True
@@ -106,7 +114,13 @@ class VideoTrack:
             self._roomless_until = -float("inf") if self.has_room else now + ROOM_SECONDS
         else:
             self.has_room = False
+        if self.has_room and lacking > 0:
+            self._promised = self._taken + lacking
         return self.has_room
+
+    def forgo(self) -> None:
+        """The picture for which there is room is not encoded."""
+        self._promised = 0
 
     def encode(self, rgb: NDArray[np.uint8], crf: int, now: float) -> TrackedPacket | None:
         """The next packet, of a (height, width, 3) picture at that second of a steady clock; None if it failed."""
@@ -124,6 +138,8 @@ class VideoTrack:
             log.warning("%s%s", error, "" if self.works else "; this session goes on without video")
             self.close()
             return None
+        finally:
+            self._promised = 0
         if packet.is_key:
             self._key_at, self._key_wanted = now, False
         return TrackedPacket(packet.data, packet.is_key, encoder.crf, encoder.width, encoder.height)

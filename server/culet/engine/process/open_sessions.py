@@ -28,7 +28,7 @@ SESSION_BYTES = 2**20
 SHOWN_BYTES = 2**14
 """Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
 AT_REST_SECONDS = 2.0
-"""Without a frame, after which a session's encoders are given back where memory is needed."""
+"""Without a frame of video, after which a session's encoders are given back where memory is needed."""
 HISTORY_SHARE = 1 / 8
 """Of the memory that all histories together may take."""
 
@@ -59,7 +59,7 @@ class OpenSessions:
         """Of sessions at rest, until so many bytes are free."""
         until = time.monotonic() - AT_REST_SECONDS
         for live in self:
-            if size > 0 and live.outgoing.sent_at < until:
+            if size > 0 and live.outgoing.encoded_at < until:
                 size -= live.outgoing.give_back()
 
     def __len__(self) -> int:
@@ -139,7 +139,7 @@ class OpenSessions:
         live.watched = bool(live.outgoing.codecs)
         self._touched[live.session.name] = time.monotonic()
         if subscribed:
-            self._painter.show_again(live)
+            self._painter.show_again(live, codec)
 
     def pace(self) -> dict[str, Any]:
         """How far the simulations are behind real time, for the status."""

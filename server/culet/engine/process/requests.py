@@ -184,7 +184,7 @@ class Requests:
         live.outgoing.allowance = Allowance(request.bytes_per_frame, request.bytes_at_rest)
         if (less := request.lesser) is not None:
             live.outgoing.lesser.allowance = Allowance(less.bytes_per_frame, less.bytes_at_rest)
-            live.outgoing.lesser.size = less.width, less.height
+            live.resize_lesser((less.width, less.height))
         live.size = size_within(
             self._memory,
             live_size(request.width, request.height, self._limits),
