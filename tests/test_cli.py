@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import culet.stills as culet_stills
 from command_line import Run, culet, invoke
 from culet.geometry.stone_file import shape_from_file
 from culet.rendering.features import RUNTIME, features_of
@@ -166,6 +167,16 @@ def test_designs_that_cannot_be_used_are_refused_in_one_line(
     Path("stone.obj").write_text("v 0 0 0\n")
     assert said in refused(invoke("design", *arguments))
     assert not list(Path().glob("a.*"))
+
+
+def test_a_search_of_a_stone_without_tiers_is_of_ratios_alone_and_says_so(tmp_path: Path) -> None:
+    mesh = tmp_path / "gem.off"
+    mesh.write_bytes(TETRAHEDRON)
+    assert "angles: expected 0, or 0.002 to 10 degrees" in refused(
+        invoke("design", "optimise", mesh, "--angles", "1e-4")
+    )
+    run = invoke("design", "optimise", mesh, "--evaluations", "10")
+    assert "no tier can be turned by itself with all meets kept; ratios alone" in run.stderr
 
 
 def test_a_mesh_takes_the_place_of_a_stone_of_any_scale(tmp_path: Path) -> None:
@@ -454,6 +465,17 @@ def test_a_cut_takes_the_place_of_the_stones_shape(tmp_path: Path) -> None:
         invoke("render", *TINY, "--cut", "oval,length_to_width=0", "-o", oval)
     )
     assert "a mesh or a cut, got both" in refused(invoke("render", "--cut", "oval", "--mesh", "x.obj", "-o", oval))
+
+
+def test_a_legend_that_cannot_be_is_refused_before_the_picture_is_rendered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rendered: list[object] = []
+    monkeypatch.setattr(culet_stills, "render_stage", lambda *arguments, **_: rendered.append(arguments))
+    out = tmp_path / "out.png"
+    assert "expected an instrument's sky" in refused(invoke("render", *TINY, "--legend", "-o", out))
+    assert "expected a picture of at least" in refused(invoke("render", *TINY, "--legend", "--preset=aset", "-o", out))
+    assert rendered == []
 
 
 def test_a_cuts_diagram_is_drawn_and_its_file_written(tmp_path: Path) -> None:

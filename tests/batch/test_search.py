@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from culet.batch.angle_search import AngleSearch, turn_tiers
+from culet.batch.angle_search import LEAST_REACH, AngleSearch, free_angles, turn_tiers
 from culet.batch.search import BRIGHTNESS, FIRE, Candidate, Search
 from culet.geometry.cuts.cut import shape_of_cut
-from culet.geometry.recut import recut_shape
-from culet.geometry.shape import Shape
+from culet.geometry.half_spaces import shape_from_half_spaces
+from culet.geometry.recut import OF_A_SHAPE, recut_shape
+from culet.geometry.shape import FacetName, Shape
 from culet.grading.grades import grade
 from culet.grading.number import Number
 from culet.grading.optics import StoneOptics, optics_of
@@ -75,6 +77,37 @@ def test_angles_of_single_tiers_find_what_ratios_cannot() -> None:
     assert graded(again).total == pytest.approx(best.total, abs=1e-9)
     nameless = AngleSearch(LightSums(open_device()), replace(shape, names=()), DIAMOND, Rules(), {})
     assert nameless.run(found_by_ratios, lambda each: each.total, 3, 10) == []
+
+
+def test_angles_are_searched_within_the_smallest_reach_too() -> None:
+    """Smaller than twice the step that is the last otherwise."""
+    shape = shape_of_cut(SingleCut())
+    angles = AngleSearch(LightSums(open_device()), shape, DIAMOND, Rules(), {"iso": 1})
+    start = Candidate(1, 1, {}, 0)
+    for reach in (0.01, LEAST_REACH):
+        found = angles.run(start, lambda each: each.total, reach, 2)
+        own = free_angles(shape)
+        assert len(found) == 2
+        assert all(each.angles == pytest.approx(own, abs=1.001 * reach) for each in found)
+    assert angles.run(start, lambda each: each.total, 0.9 * LEAST_REACH, 2) == []
+
+
+def test_a_tier_that_is_nearly_level_or_of_two_slopes_is_not_searched() -> None:
+    """A pyramid below a girdle, and above it one of 0.001 degrees, or one whose sides differ by less than is told
+    apart, one from the other, on both sides of the first."""
+    around = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], np.float64)
+
+    def shape(slopes: list[float]) -> Shape:
+        sides = [(*around[k], 0.0, 1.0) for k in range(4)]
+        above = [(*np.sin(slope) * around[k], np.cos(slope), 1.1) for k, slope in enumerate(slopes)]
+        below = [(*np.sqrt(0.5) * around[k], -np.sqrt(0.5), 1.0) for k in range(4)]
+        planes = np.array([*sides, *above, *below]) @ OF_A_SHAPE
+        names = [FacetName(1 + k // 4, "") for k in range(12)]
+        return replace(shape_from_half_spaces("pyramids", planes), names=tuple(names))
+
+    assert set(free_angles(shape([1.2] * 4))) == {2, 3}
+    for slopes in ([np.radians(0.001)] * 4, [1.2, 1.2 + 9e-7, 1.2 - 9e-7, 1.2]):
+        assert set(free_angles(shape(slopes))) == {3}
 
 
 def test_the_front_has_each_design_once_and_none_that_another_beats() -> None:

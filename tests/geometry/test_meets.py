@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import culet.geometry.meets
 from culet.errors import InputError, MeshError
 from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.designs.measures import Outline, outline_of, proportions_of
@@ -151,3 +154,29 @@ def test_tiers_are_named_by_number_or_by_name() -> None:
             angles_of(given, [text])
     with pytest.raises(InputError, match="expected each tier once, got A again"):
         angles_of(given, ["4=33", "A=34"])
+
+
+def test_what_takes_too_long_is_given_up_with_how_far_it_came(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With less work than it takes; the whole is 3 s of a processor."""
+    monkeypatch.setattr(culet.geometry.meets, "MOST_WORK", 3e7)
+    with pytest.raises(
+        MeshError, match=r"expected a smaller change of a stone of \d+ facets and \d+ angles"
+    ) as refused:
+        recut_design(design("06_oval_1.4"), Recut(angles={2: 23}))
+    assert refused.value.field == "angles"
+    said = re.search(r"followed as far as tier 2 at (\S+) in the time for it; got tier 2 at 23\.00", str(refused.value))
+    assert said
+    own = angles(Solid(design("06_oval_1.4")))[2]
+    assert 0 < abs(float(said[1]) - own) < abs(23 - own)
+
+
+def test_what_followed_is_told_of_the_right_tiers_where_one_repeats_another() -> None:
+    """The repeated one is cut once, so that all behind it have other numbers in what is made."""
+    given = design("04_emerald_1.4")
+    repeated = replace(given, tiers=(*given.tiers[:3], given.tiers[2], *given.tiers[3:]))
+    recut = Recut(angles={15: 57})
+    followed = angles_that_followed(repeated, recut_design(repeated, recut), recut)
+    assert len(followed) == 8
+    assert followed[0].startswith("Tier 16 (pavilion_1_corner) followed from ")
+    same = Recut(pavilion_ratio=1.01, angles={15: 57})
+    assert len(angles_that_followed(repeated, recut_design(repeated, same), same)) == 8

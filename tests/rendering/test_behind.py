@@ -5,12 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.shares import Account
+from culet.engine.session.session import Session
 from culet.optics.tone import TONE_MAPS, tone_map
 from culet.rendering.behind import before_its_colour
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.backdrop import PlainBackdrop
+from culet.scene.fields import LARGEST_COMPONENT
 from rendering.views import take
+from shared.stages import staged
 
 COLOURS = [(244, 241, 234), (16, 32, 64), (240, 192, 64), (0, 0, 0), (255, 255, 255)]
 
@@ -34,6 +39,17 @@ def test_a_colour_that_a_tone_map_never_shows_becomes_one_that_looks_like_it() -
     assert red > 230  # measured 236
     assert green == pytest.approx(blue, abs=0.1)
     assert green < 10  # measured 4.4
+
+
+@pytest.mark.parametrize("exposure", [1e-7, 1e-320, 1e6])
+def test_at_any_exposure_there_is_a_colour_that_a_scene_may_have(exposure: float) -> None:
+    film = {"background": "#f4f1ea", "exposure": exposure}
+    shown = Session("0" * 32, staged(Scene.read({"film": film}))).shown
+    frame = FrameWork(Kind.FULL, shown, (64, 36), Account(None), begun_at=0)
+    backdrop = frame.stage.scene.backdrop
+    assert isinstance(backdrop, PlainBackdrop)
+    assert max(backdrop.colour) <= LARGEST_COMPONENT
+    assert Scene.read(frame.stage.scene.model_dump(mode="json")).backdrop == backdrop
 
 
 def test_a_scene_without_a_colour_stays_as_it_is() -> None:

@@ -29,11 +29,15 @@ from culet.scene.recut import Recut
 FIRST_STEP = 0.5
 """Of the reach, how far the first models look."""
 SMALLEST_STEP = 0.01
-"""Degrees: finer than anybody cuts."""
+"""Degrees: finer than anybody cuts; within a smaller reach the first step is the last."""
 WORSE = 10.0
 """Points by which angles that lose a meet count as worse than the start, so that models stay tame."""
 DECIMALS = 3
 """Of degrees that are graded, and told."""
+LEAST_REACH = 2 * 10**-DECIMALS
+"""Degrees; in less the first step would not be told from none."""
+LEAST, MOST = 0.01, 89.99
+"""Degrees between which a tier's angle is searched; tiers beyond follow."""
 
 
 class AngleSearch:
@@ -56,8 +60,8 @@ class AngleSearch:
         """The designs that were graded, at most so many, to find a larger value within `reach` degrees of a start's
         angles. None of a shape without tiers that can be turned, or with more facets than angles are changed of."""
         ratios = Recut(crown_ratio=start.crown_ratio, pavilion_ratio=start.pavilion_ratio)
-        own = _free_angles(recut_shape(self._shape, ratios))
-        if not own or evaluations < 2:
+        own = free_angles(recut_shape(self._shape, ratios))
+        if not own or evaluations < 2 or reach < LEAST_REACH:
             return []
         tiers, middle = list(own), np.round(list(own.values()), DECIMALS)
         found: dict[tuple[float, ...], Candidate | None] = {}
@@ -72,8 +76,9 @@ class AngleSearch:
             each = found[key]
             return -value(start) + WORSE if each is None else -value(each)
 
-        bounds = Bounds(np.maximum(middle - reach, 0.01), np.minimum(middle + reach, 89.99))
-        options = {"maxfev": evaluations, "initial_tr_radius": FIRST_STEP * reach, "final_tr_radius": SMALLEST_STEP}
+        bounds = Bounds(np.maximum(middle - reach, LEAST), np.minimum(middle + reach, MOST))
+        first = FIRST_STEP * reach
+        options = {"maxfev": evaluations, "initial_tr_radius": first, "final_tr_radius": min(SMALLEST_STEP, first)}
         with suppress(SpentError):
             minimize(lost, middle, method="COBYQA", bounds=bounds, options=options)
         return [each for each in found.values() if each is not None]
@@ -115,7 +120,7 @@ def turn_tiers(
         search.candidates += angles.run(start, value, reach, room, one_more)
 
 
-def _free_angles(shape: Shape) -> dict[int, float]:
+def free_angles(shape: Shape) -> dict[int, float]:
     """Degrees of the tiers that can each be turned by itself; none where angles cannot be changed."""
     planes, tiers = shape.planes @ OF_A_SHAPE.T, [name.tier for name in shape.names]
     try:
@@ -123,4 +128,4 @@ def _free_angles(shape: Shape) -> dict[int, float]:
     except MeshError:
         return {}
     angles = angle_of_tiers(planes, tiers)
-    return {tier: angles[tier] for tier in free}
+    return {tier: angles[tier] for tier in free if LEAST <= angles.get(tier, 0) <= MOST}

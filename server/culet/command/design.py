@@ -10,7 +10,7 @@ import typer
 
 from culet.command.subject import Head, Index, Material, RulesName, rules_named, subject, with_material
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
-from culet.errors import MeshError
+from culet.errors import InputError, MeshError
 from culet.places import check_place, write_whole
 from culet.sources import naming
 
@@ -98,7 +98,7 @@ def mesh(
     """Write a design's stone as a mesh, for other programs.
 
     It is as a scene has it: y up, the centre of mass at the origin, the farthest corner at 1. Of .obj the corners are
-    exact, of the others to single precision.
+    exact in double precision, of the others rounded to single.
     """
     from culet.geometry.designs.solid import shape_of_design
     from culet.geometry.mesh_files import ENDINGS, mesh_file
@@ -166,7 +166,7 @@ def optimise(
     First tangent ratios of crown and pavilion, then angles of single tiers. Prints the front: designs that no other
     beats in both, since there is no single best one. Each is cut by culet design convert with its ratios and angles.
     """
-    from culet.batch.angle_search import AngleSearch, turn_tiers
+    from culet.batch.angle_search import LEAST_REACH, AngleSearch, free_angles, turn_tiers
     from culet.batch.search import Search
     from culet.command.search import front_csv, print_front, range_of, weights_of
     from culet.grading.optics import optics_of
@@ -176,20 +176,25 @@ def optimise(
     with errors_in_one_line():
         if out is not None:
             check_place(out, "out", ["csv"])
+        if 0 < angles < LEAST_REACH:
+            raise InputError(f"angles: expected 0, or {LEAST_REACH:g} to 10 degrees, got {angles:g}", "angles")
         weights = weights_of(weight or ["iso=1", "fire=1"])
         ends = range_of("crown", crown), range_of("pavilion", pavilion)
         judged = rules_named(rules, head)
         stage = with_material(subject(str(file), None), material, index)
         stone, shape = stage.scene.stones[0], stage.shapes[0]
         optics = optics_of(stone, stage.scene.millimetres)
+        turned = bool(angles and free_angles(shape))
+        if angles and not turned:
+            typer.echo(f"{file}: no tier can be turned by itself with all meets kept; ratios alone", err=True)
         with progress_bar("searching") as advance:
-            first = evaluations // 2 if angles else evaluations
+            first = evaluations // 2 if turned else evaluations
             sums = LightSums(open_device())
             search = Search(
                 sums, shape, optics, judged, weights, first, lambda part: advance(part * first / evaluations)
             )
             search.run(*ends)
-            if angles:
+            if turned:
                 turn_tiers(search, AngleSearch(sums, shape, optics, judged, weights), angles, evaluations, advance)
         print_front(report_console(), search, weights)
         if out is not None:

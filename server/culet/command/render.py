@@ -67,11 +67,14 @@ def render(
         from culet.rendering.device import open_in_advance
 
         open_in_advance()
+        from culet.legend import legend_for
         from culet.stills import before, render_stage
 
         stage = read_stage(scene, preset, mesh, sky, cut)
         if background is not None:
             stage = before(stage, background)
+        if legend:
+            legend_for(stage.scene, width, height)  # a refusal comes before the work
         with progress_bar(f"rendering {out.name}") as advance:
             picture = render_stage(stage, width, height, samples=samples, error=error, progress=advance)
         if legend:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from culet.geometry.shape import Shape
 
 ENDINGS = ("obj", "ply", "stl")
-DIGITS = 17
-"""Of a number in text: as many as tell any two doubles apart."""
 
 
 def mesh_file(shape: Shape, ending: str) -> bytes:
-    """Its vertices and triangles as they are: .obj in double precision, .ply and .stl in single precision."""
+    """Its vertices and triangles: .obj to the last bit of double precision, .ply and .stl in single precision."""
+    if ending == "obj":  # by trimesh 17 decimals, which of small coordinates are not all digits
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in shape.vertices.tolist()]
+        lines += [f"f {a} {b} {c}" for a, b, c in (shape.triangles + 1).tolist()]
+        return "\n".join([*lines, ""]).encode()
     import trimesh
 
-    solid = trimesh.Trimesh(shape.vertices, shape.triangles, process=False)
-    options: dict[str, Any] = {"digits": DIGITS, "include_normals": False, "header": None} if ending == "obj" else {}
-    data = solid.export(file_type=ending, **options)
-    return data.encode() if isinstance(data, str) else bytes(data)
+    data = trimesh.Trimesh(shape.vertices, shape.triangles, process=False).export(file_type=ending)
+    if not isinstance(data, bytes):
+        raise AssertionError(f"expected .{ending} as bytes, got {type(data)}")
+    return data

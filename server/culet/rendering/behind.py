@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from culet.optics.tone import tone_map
 from culet.scene import Scene
 from culet.scene.backdrop import PlainBackdrop
+from culet.scene.fields import LARGEST_COMPONENT
 
 LEAST = 1e-6
 """Radiance, exposed, that every tone map shows as 0 of 255."""
@@ -27,12 +28,14 @@ def before_its_colour(scene: Scene) -> Scene:
     """The scene before the colour that its film has behind everything; as it is where that has none.
 
     The camera alone sees it, as any backdrop. Colours that a tone map never shows, as neutral no red of #ff0000, become
-    the nearest one that it does.
+    the nearest one that it does. Where the exposure is so low that no backdrop is bright enough, it is the brightest.
     """
     behind = scene.film.behind
     if behind is None:
         return scene
-    red, green, blue = _radiance(behind, scene.film.tone_map) / scene.film.exposure
+    with np.errstate(over="ignore"):
+        radiance = _radiance(behind, scene.film.tone_map) / scene.film.exposure
+    red, green, blue = np.minimum(radiance, LARGEST_COMPONENT)
     backdrop = PlainBackdrop(kind="plain", colour=(float(red), float(green), float(blue)))
     return scene.model_copy(update={"backdrop": backdrop})
 

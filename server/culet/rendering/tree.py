@@ -7,7 +7,7 @@ Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017, section
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from weakref import WeakKeyDictionary
 
@@ -106,10 +106,19 @@ def _planted(shape: Shape) -> Tree:
         branches = _grow(lower, upper, by_median=by_median)
         for branch in reversed(branches):
             _weigh(branch)
-        tree, depth = _collapse(branches[0], shape, corners)
-        if (WIDTH - 1) * depth + 1 <= STACK:
+        tree, depth = _collapse(branches[0], shape, corners, _adopt)
+        if _has_room(depth):
             return tree
-    raise AssertionError("splits at the median halve a node, so 2^32 triangles need no more than STACK")
+    # Where each scale of detail is a small part of the one before, nodes that cost least follow it, one a scale.
+    tree, depth = _collapse(branches[0], shape, corners, _descendants)
+    if not _has_room(depth):
+        raise AssertionError("splits at the median halve a node, so 2^32 triangles need no more than STACK")
+    return tree
+
+
+def _has_room(depth: int) -> bool:
+    """Whether a ray may have all waiting that it meets in a tree so deep."""
+    return (WIDTH - 1) * depth + 1 <= STACK
 
 
 def _grow(lower: Array, upper: Array, *, by_median: bool) -> list[_Branch]:
@@ -170,8 +179,10 @@ def _areas(lower: Array, upper: Array) -> Array:
     return areas
 
 
-def _collapse(root: _Branch, shape: Shape, corners: Array) -> tuple[Tree, int]:
-    """The wide tree, and its depth in nodes."""
+def _collapse(
+    root: _Branch, shape: Shape, corners: Array, adopt: Callable[[_Branch], list[_Branch]]
+) -> tuple[Tree, int]:
+    """The wide tree of nodes whose children are those that `adopt` gives of a branch, and its depth in nodes."""
     boxes, links, leaves, depth = [], [], [np.empty(0, np.int64)], 0
     turned = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-300)
@@ -182,7 +193,7 @@ def _collapse(root: _Branch, shape: Shape, corners: Array) -> tuple[Tree, int]:
         below: list[_Branch] = []
         for node in level:
             box, link = np.tile(np.array([*NOWHERE, *NOWHERE, *[0] * 6])[:, None], WIDTH), np.full(WIDTH, ~0, np.int32)
-            for place, child in enumerate(_adopt(node)):
+            for place, child in enumerate(adopt(node)):
                 box[:3, place], box[3:6, place] = child.lower - MARGIN, child.upper + MARGIN
                 of_child = turned[child.triangles]
                 box[6:9, place], box[9:, place] = of_child.min(axis=0) - MARGIN, of_child.max(axis=0) + MARGIN
@@ -230,6 +241,14 @@ def _adopt(node: _Branch) -> list[_Branch]:
     first, second = node.children
     share = int((first.costs[: WIDTH - 1] + second.costs[WIDTH - 2 :: -1]).argmin()) + 1
     return _as_children(first, share) + _as_children(second, WIDTH - share)
+
+
+def _descendants(node: _Branch) -> list[_Branch]:
+    """The children of a node in as few levels as can be: its branch's descendants as far down as WIDTH of them go."""
+    found = [node]
+    for _ in range(WIDTH.bit_length() - 1):
+        found = [child for each in found for child in (each.children or (each,))]
+    return found
 
 
 def _as_children(branch: _Branch, most: int) -> list[_Branch]:

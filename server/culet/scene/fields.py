@@ -8,7 +8,9 @@ from typing import Annotated
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 Coordinate = Annotated[float, Field(ge=-1e9, le=1e9)]
-Component = Annotated[float, Field(ge=0, le=1e6)]
+LARGEST_COMPONENT = 1e6
+"""Radiance."""
+Component = Annotated[float, Field(ge=0, le=LARGEST_COMPONENT)]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
 Colour = tuple[Component, Component, Component]
 

@@ -13,6 +13,7 @@ from culet.geometry.designs.asc import read_asc
 from culet.geometry.designs.measures import outline_of, proportions_of
 from culet.geometry.designs.solid import Solid, shape_of_design
 from culet.geometry.mass import solid_integrals
+from culet.geometry.mesh_files import mesh_file
 from culet.geometry.polygons import fan
 from culet.geometry.stone_file import shape_from_file
 from culet.rendering.features import by_half_spaces
@@ -28,6 +29,13 @@ CHECKED = {
 """Figures of ours by those of check_values.json."""
 
 BOX = "g 96\na 0 1 96 n T\na 90 1 24 n G 48 72 96\na 0 -1 96 n C\n"
+
+
+def test_corners_of_an_obj_are_the_stones_to_the_last_bit() -> None:
+    shape = shape_of_design(design("02_round_tolkowsky"))
+    lines = [line.split() for line in mesh_file(shape, "obj").decode().splitlines()]
+    assert [[float(word) for word in words] for kind, *words in lines if kind == "v"] == shape.vertices.tolist()
+    assert [[int(word) - 1 for word in words] for kind, *words in lines if kind == "f"] == shape.triangles.tolist()
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -74,9 +74,11 @@ def angles_that_followed(given: Design, cut: Design, recut: Recut) -> list[str]:
     """A sentence for each angle that nobody asked for and that changed so that meets are kept."""
     if not recut.angles:
         return []
+    numbers = sorted({number for number, _ in Solid(given).facets})  # a tier that repeats another is not cut anew
     first = recut_design(given, recut.model_copy(update={"angles": TierAngles()}))
+    before = [given.tiers[number - 1] for number in numbers] if first is given else first.tiers
     return [
         f"Tier {number} ({new.name}) followed from {old.angle:.2f} to {new.angle:.2f} degrees."
-        for number, (old, new) in enumerate(zip(first.tiers, cut.tiers, strict=False), 1)
+        for number, old, new in zip(numbers, before, cut.tiers, strict=False)  # a table that was added has no number
         if number not in recut.angles and abs(old.angle - new.angle) > SHOWN
     ]
