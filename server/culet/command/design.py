@@ -3,6 +3,7 @@ need."""
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -76,8 +77,10 @@ def convert(
 
     with errors_in_one_line():
         check_place(out, "out", ["asc"])
+        proportions = partial(_recut, crown_ratio, pavilion_ratio, girdle, table)
+        proportions({})  # what is wrong of them is said before a file is read
         given = read(file)
-        recut = _recut(crown_ratio, pavilion_ratio, girdle, table, angles_of(given, angle or []))
+        recut = proportions(angles_of(given, angle or []))
         with naming(str(file)):
             design = recut_design(given, recut)
             followed = angles_that_followed(given, design, recut)
