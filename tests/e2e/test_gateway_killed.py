@@ -21,6 +21,7 @@ def falling(view_of: ViewOf, server: Server) -> View:
     answer = server.http.post("/api/sessions", json={"scene": scene})
     view = view_of().open(f"?session={answer.json()['id']}")
     view.refusals |= {404, 503}
+    view.gives_up_streams = True
     view.change_by("ArrowLeft")
     view.page.keyboard.press("p")
     view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.1")

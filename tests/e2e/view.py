@@ -64,6 +64,8 @@ class View:
     """Errors and warnings in the console, and exceptions that nobody caught."""
     refusals: set[int] = field(default_factory=set)
     """Statuses of answers that the test is about; Chromium itself writes those above 400 to the console."""
+    gives_up_streams: bool = False
+    """Its gateway goes away: Chromium warns of a stream that the page gave up before it was open."""
     foreign: list[str] = field(default_factory=list)
     """Requests to anything but the server."""
 
@@ -196,6 +198,7 @@ class View:
 
     def _logged(self, message: ConsoleMessage) -> None:
         expected = any(f"responded with a status of {status} " in message.text for status in self.refusals)
+        expected |= self.gives_up_streams and "closed before the connection is established" in message.text
         if message.type in ("error", "warning") and not expected:
             self.complaints.append(message.text)
 
