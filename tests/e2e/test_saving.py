@@ -125,7 +125,7 @@ def test_s_while_falling_saves_the_frame_that_was_seen_then(view: View) -> None:
     later = view.look()
     assert started.value.suggested_filename == f"culet-{step}.png"
     assert before.frame["step"] < step < later.frame["step"]
-    # A moving frame was seen, which is the coarser the slower the machine is; 16 samples are saved. Measured 4.3 and 5.5, against
+    # A moving frame was seen, coarser on a slower machine; 16 samples are saved. Measured 4.3 and 5.5, against
     # 10.3 to 11.9 for the moments before and after.
     assert difference(saved, seen) < min(difference(saved, before.pixels), difference(saved, later.pixels))
 
