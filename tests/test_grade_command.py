@@ -54,7 +54,7 @@ def test_an_error_that_all_rays_do_not_reach_is_told(monkeypatch: pytest.MonkeyP
         (["heart"], "heart: expected a convex stone"),
         (["--as", "agl"], "as: expected culet or gemray, got 'agl'"),
         (["--stone", "ruby"], "stone: expected the id of a stone"),
-        (["--material", "glass"], "material"),
+        (["--material", "cheese"], "material"),
         (["--material", "ruby", "--index", "1.5"], "expected a material or an index, got both"),
         (["oval,length=2"], "cut.length: unknown field"),
         (["missing.asc"], "missing.asc: cannot be read"),

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from culet.service.command_lines import engine_command
-from gateway.running import Endpoints, Gateway, engine_process, gateway_before
+from gateway.running import PATIENCE, Endpoints, Gateway, engine_process, gateway_before
 
 
 @pytest.fixture(scope="session")
@@ -22,6 +22,6 @@ def engine() -> Iterator[Endpoints]:
 
 @pytest.fixture
 async def gateway(engine: Endpoints, tmp_path: Path) -> AsyncIterator[Gateway]:
-    """A web server that found the engine."""
-    async with gateway_before(engine, web=tmp_path) as running:
+    """A web server that found the engine, and does not give it up where other work keeps it from its heartbeats."""
+    async with gateway_before(engine, web=tmp_path, engine_silence_seconds=PATIENCE / 4) as running:
         yield running
