@@ -110,13 +110,14 @@ def test_a_child_process_is_given_what_was_given() -> None:
 
 def test_the_variables_that_compose_hands_on_are_settings_of_their_service() -> None:
     text = (Path(__file__).parents[1] / "docker" / "compose.yaml").read_text()
-    engine, gateway = text.partition("services:")[2].split("\n  gateway:")
-    of_containers = {"CULET_ENGINE_MEMORY", "CULET_ENGINE_CPUS", "CULET_GATEWAY_MEMORY"}
-    of_compose_itself = {"CULET_ADDRESS", "CULET_PORT"} | of_containers
+    engine, others = text.partition("services:")[2].split("\n  gateway:")
+    gateway = others.partition("\n  scheduler:")[0]
+    of_compose_itself = {"CULET_ADDRESS", "CULET_PORT"}
     commands = typer.main.get_command(app)
     assert isinstance(commands, typer.core.TyperGroup)
     for name, service, kind in (("engine", engine, Limits), ("gateway", gateway, GatewaySettings)):
-        named = set(re.findall(r"CULET_\w+", service)) - of_compose_itself
+        of_container = {f"CULET_{name.upper()}_{limit}" for limit in ("MEMORY", "CPUS")}
+        named = set(re.findall(r"CULET_\w+", service)) - of_compose_itself - of_container
         assert len(named) > 3
         command = commands.get_command(typer.Context(commands), name)
         assert command is not None
