@@ -210,18 +210,20 @@ static inline void probe_leaf(tree_t tree, int leaf, const probes_t *probes, int
 }
 
 // Takes up a triangle through which a ray goes, if it is nearer than what the ray has met. The distance is that to the facet's
-// plane, so that the crossing is on it to rounding however the ray grazes it. Only facets that the ray meets from the right side
-// count: one that it has just left is turned away and needs no epsilon.
+// plane, so that the crossing is on it to rounding however the ray grazes it: the corner is seen along the ray, which has small
+// numbers to round where the ray passes near it. Only facets that the ray meets from the right side count: one that it has just
+// left is turned away and needs no epsilon.
 static inline void take_triangle(tree_t tree, int triangle, probes_t *probes, int ray) {
   __global const real *rows = tree.corners + triangle / TREE_WIDTH * 12 * TREE_WIDTH + triangle % TREE_WIDTH;
-  real speed = 0, gap = 0;
-  EACH (k, 3) {
-    const real normal = rows[(9 + k) * TREE_WIDTH];
-    speed = fma(normal, probes->facing[k][ray], speed);
-    gap = fma(normal, rows[k * TREE_WIDTH] - probes->origin[k][ray], gap);
-  }
-  const real side = probes->side;
-  gap *= -side;
+  const uint x = probes->axis[0][ray], y = probes->axis[1][ray], z = probes->axis[2][ray];
+  const real across = probes->shear[0][ray], up = probes->shear[1][ray], side = probes->side;
+  const real depth = rows[z] - probes->turned[2][ray];
+  const real right = fma(-across, depth, rows[x] - probes->turned[0][ray]),
+             above = fma(-up, depth, rows[y] - probes->turned[1][ray]);
+  const real nx = rows[9 * TREE_WIDTH + x], ny = rows[9 * TREE_WIDTH + y];
+  const real slope = fma(nx, across, fma(ny, up, rows[9 * TREE_WIDTH + z]));
+  const real speed = probes->facing[z / TREE_WIDTH][ray] * slope;
+  const real gap = -side * fma(nx, right, fma(ny, above, slope * depth));
   // From outside, light that skims a facet to rounding passes it by: reflected, it would skim it again, without end.
   if (!(speed > (side > 0 ? SLACK : PARALLEL) && gap - probes->start[ray] * speed >= -SLACK - probes->widening)) return;
   const real t = (side < 0 ? fmax(gap, (real)SMALLEST_GAP) : gap) / speed;
