@@ -182,6 +182,16 @@ def test_a_small_window_that_grows_at_rest_gets_the_first_tier_and_the_frame_ane
     assert viewers[1].feed.lacks_picture
 
 
+def test_a_window_that_is_dragged_to_and_fro_about_half_the_size_changes_tiers_once() -> None:
+    tiers, viewers = Tiers(), watching(SIZE, SIZE)
+    now, lesser = 0.0, []
+    for width in (700, 600, 700, 800):
+        viewers[1].resize(width, width * 9 // 16)
+        now = moved(tiers, viewers, now, 2 * LEAVE_SECONDS)
+        lesser.append(viewers[1].feed.lesser)
+    assert lesser == [False, True, True, False]
+
+
 def test_a_slow_viewer_keeps_lesser_pictures_at_rest() -> None:
     session = room(FAST, SLOW)
     session.run(8)
