@@ -102,6 +102,21 @@ class Outgoing:
         return self.unsent >= UNSENT_FRAMES
 
 
+@dataclass(frozen=True, eq=False)
+class _Departure:
+    """A frame that is to leave."""
+
+    session: Session
+    outgoing: Outgoing
+    learn: Callable[[Coded], None]
+    """Is told what a frame for a link with limits has become."""
+    frame: LiveFrame
+    begun_at: float
+    """s, steady clock."""
+    before: asyncio.Task[None] | None
+    """That of the session's frame before it."""
+
+
 class FrameSender:
     """Of all sessions."""
 
@@ -130,8 +145,8 @@ class FrameSender:
         """Encode and send a frame that was begun at that time of the clock; this does not wait for either. `learn` is
         told what a frame for a link with limits has become."""
         outgoing.unsent += 1
-        work = self._encode_and_send(session, outgoing, learn, frame, begun_at, outgoing.latest)
-        outgoing.latest = asyncio.create_task(work)
+        departure = _Departure(session, outgoing, learn, frame, begun_at, outgoing.latest)
+        outgoing.latest = asyncio.create_task(self._encode_and_send(departure))
 
     def repeat(self, outgoing: Outgoing) -> None:
         """Send the frame sent last again, if there was one."""
@@ -159,37 +174,23 @@ class FrameSender:
         """Encode nothing more."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
-    async def _encode_and_send(
-        self,
-        session: Session,
-        outgoing: Outgoing,
-        learn: Callable[[Coded], None],
-        frame: LiveFrame,
-        begun_at: float,
-        before: asyncio.Task[None] | None,
-    ) -> None:
-        lesser = outgoing.lesser if LESSER in outgoing.codecs else None
+    async def _encode_and_send(self, departure: _Departure) -> None:
+        outgoing = departure.outgoing
+        lesser = LESSER in outgoing.codecs
         try:
-            began = await self._send_first(session, outgoing, learn, frame, begun_at, before)
-            if began is None or lesser is None:
+            began = await self._send_first(departure)
+            if began is None or not lesser:
                 outgoing.lesser.message = None  # of something else than what is shown
             else:
-                await self._send_lesser(session, outgoing, frame, began)
+                await self._send_lesser(departure, began)
         finally:
             outgoing.unsent -= 1
             self._wake()
 
-    async def _send_first(
-        self,
-        session: Session,
-        outgoing: Outgoing,
-        learn: Callable[[Coded], None],
-        frame: LiveFrame,
-        begun_at: float,
-        before: asyncio.Task[None] | None,
-    ) -> float | None:
+    async def _send_first(self, departure: _Departure) -> float | None:
         """The first tier, which waits for no lesser picture of the same frame. s, of the performance counter: when it
         was begun; None if the frame goes no further."""
+        session, outgoing, frame, before = departure.session, departure.outgoing, departure.frame, departure.before
         drawn_at, started = self._now(), time.perf_counter()
         codecs, lesser = outgoing.codecs - {LESSER}, LESSER in outgoing.codecs
         tracks = list(outgoing.tracks.values()) if frame.planned else []
@@ -212,7 +213,7 @@ class FrameSender:
             encode_seconds = time.perf_counter() - started
             if frame.encoding is not None:
                 for coded in [*video.values(), *([] if picture is None else [picture])]:
-                    learn(coded)
+                    departure.learn(coded)
             if before is not None:
                 await asyncio.wait([before])  # so that frames leave in order
             if picture is None and not video and not lesser:
@@ -228,7 +229,7 @@ class FrameSender:
             return None
         now = self._now()
         self._tally.durations.encode_wait.add(max(0.0, now - drawn_at))
-        self._tally.durations.frame.add(max(0.0, now - begun_at))
+        self._tally.durations.frame.add(max(0.0, now - departure.begun_at))
         outgoing.message, outgoing.sent_at = message, now
         if video:
             outgoing.encoded_at = now
@@ -240,9 +241,10 @@ class FrameSender:
             self._send_to(codecs, message)
         return started
 
-    async def _send_lesser(self, session: Session, outgoing: Outgoing, frame: LiveFrame, started: float) -> None:
+    async def _send_lesser(self, departure: _Departure, started: float) -> None:
         """The lesser picture of the frame that was sent last, under the same number. What fails here costs nobody else
         theirs."""
+        session, outgoing, frame = departure.session, departure.outgoing, departure.frame
         lesser = outgoing.lesser
         try:
             less = await self._in_thread(lesser.encoded, frame)
