@@ -9,6 +9,7 @@ import pytest
 
 from culet.errors import MeshError
 from culet.geometry.brilliant import brilliant, brilliant_planes
+from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.polygons import edges_of_facets
 from culet.scene.cuts import BrilliantCut
 
@@ -82,9 +83,9 @@ def test_the_table_is_up_and_the_stone_is_centred_and_of_radius_one() -> None:
 
 
 def test_one_stone_serves_every_scene_with_the_same_cut() -> None:
-    assert brilliant(BrilliantCut(table_percent=57)) is brilliant(BrilliantCut(table_percent=57))
+    assert shape_of_cut(BrilliantCut(table_percent=57)) is shape_of_cut(BrilliantCut(table_percent=57))
     with pytest.raises(ValueError, match="read-only"):
-        brilliant(TOLKOWSKY).vertices[0, 0] = 2
+        shape_of_cut(TOLKOWSKY).vertices[0, 0] = 2
 
 
 def test_stars_that_do_not_slope_are_refused_with_the_range() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from culet.errors import MeshError, SceneError
-from culet.geometry.brilliant import brilliant
+from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
 from culet.scene.cuts import BrilliantCut
@@ -18,12 +18,12 @@ TETRAHEDRON = shape_from_half_spaces(
 
 
 def test_the_default_is_the_default_brilliant() -> None:
-    assert shape_of(StoneSettings.model_validate({}), {}) is brilliant(BrilliantCut())
+    assert shape_of(StoneSettings.model_validate({}), {}) is shape_of_cut(BrilliantCut())
 
 
 def test_proportions_are_used() -> None:
     cut = BrilliantCut(table_percent=60)
-    assert shape_of(StoneSettings.model_validate({"cut": cut}), {}) is brilliant(cut)
+    assert shape_of(StoneSettings.model_validate({"cut": cut}), {}) is shape_of_cut(cut)
 
 
 def test_a_mesh_takes_the_place_of_the_cut() -> None:

@@ -7,7 +7,6 @@ pavilion, which ends in a point. Stars end on the line of the kites, halves meet
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +69,6 @@ def brilliant_planes(cut: BrilliantCut) -> NDArray[np.float64]:
     return np.array(rows)
 
 
-@lru_cache(maxsize=64)
 def brilliant(cut: BrilliantCut) -> Shape:
     """The shape of these proportions: 73 facets, 57 vertices. MeshError, naming the proportion, if there is none."""
     shape = shape_from_half_spaces("brilliant", brilliant_planes(cut), NAMES)
