@@ -45,6 +45,8 @@ class Kernel:
     """pyopencl's."""
     kept_bytes: int
     """That a work-item keeps of a tile under way."""
+    features: Features
+    """That it was made for: the general ones serve others too, and read what those of their own would not."""
 
     def launch(self, queue: Any, items: int, given: Mapping[str, object]) -> Any:  # noqa: ANN401 - pyopencl has no types
         """So many work-items, with the arguments by name; returns the event."""
@@ -92,7 +94,7 @@ def make(device: Device, features: Features, variant: Variant) -> Kernel:
     with alone(kernel_cache.folder(), f"{culet_kernels.source('render.cl')} {options}"):
         program = build(device, "render.cl", options)
         kept_bytes = warm_up(device, cl.Kernel(program, "render"))
-    return Kernel(cl.Kernel(program, "render"), kept_bytes)
+    return Kernel(cl.Kernel(program, "render"), kept_bytes, features)
 
 
 def warm_up(device: Device, kernel: Any) -> int:  # noqa: ANN401

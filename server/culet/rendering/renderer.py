@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -63,13 +64,14 @@ class Renderer:
         real: Real = np.float32,
         lanes: int | None = None,
         background_compile: bool = False,
+        special_programs: bool = True,
     ) -> None:
         """Open the device (DeviceError if none works). With `background_compile` a picture never waits for a special
-        program: the general one serves until it is ready."""
+        program: the general one serves until it is ready; without `special_programs` for good."""
         self.device = device or open_device()
         self.variant = Variant(lanes=lanes or self.device.lanes_for(real), real=real)
         self.programs = Programs(self.device)
-        self.background_compile = background_compile
+        self._background_compile, self._special_programs = background_compile, special_programs
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
         self._most = 0
         """Bytes that pictures had at most at a time, since what was kept was given back last."""
@@ -86,6 +88,13 @@ class Renderer:
     def prepare(self) -> None:
         """Make the program that serves most scenes until a special one is ready, so that no picture waits for it."""
         self.programs.exact(Features().general, self.variant)
+
+    def kernel_for(self, features: Features, *, asked_for: bool) -> Kernel:
+        """The kernel for what needs these features, or for just them where they were asked for."""
+        if not (asked_for or self._special_programs):
+            return self.programs.exact(features.general, self.variant)
+        get = self.programs.best if self._background_compile else self.programs.exact
+        return get(features, self.variant)
 
     def picture(
         self,
@@ -214,7 +223,7 @@ class Picture:
         self._renderer = renderer
         real = renderer.variant.real
         needed = features_of(stage)
-        features = features or needed
+        asked_for, features = features is not None, features or needed
         if features.estimator != needed.estimator:
             raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
         if features.stones < needed.stones:
@@ -226,9 +235,9 @@ class Picture:
         triangles = sum(len(shape.triangles) for shape in stage.shapes)
 
         def tracing(traced: Stage, wanted: Features) -> Tracing:
-            get = renderer.programs.best if renderer.background_compile else renderer.programs.exact
-            kernel = get(wanted, renderer.variant)
-            inputs = partial(Inputs, renderer.device, traced, width, height, wanted, real, bound)
+            kernel = renderer.kernel_for(wanted, asked_for=asked_for)
+            read = replace(wanted, dispersion=kernel.features.dispersion)  # a general one has a chain for each channel
+            inputs = partial(Inputs, renderer.device, traced, width, height, read, real, bound)
             return Tracing(kernel, renderer.pace_of(kernel, triangles), inputs)
 
         self._tracings = Tracings(stage, features, tracing)

@@ -20,7 +20,7 @@ from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.polygons import edges_of_facets
 from culet.geometry.shape import Shape
 from culet.rendering.chains import GROUPS, chain_table, is_spectral
-from culet.rendering.features import Geometry, features_of
+from culet.rendering.features import Features, Geometry, features_of
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
 from culet.scene.model import Scene
@@ -229,8 +229,14 @@ EXTREMES = (
 _FROM_THE_SIDE: Settings = {"position": [0.7, 1.6, 2.4], "target": [0, 0, 0], "fov_degrees": 40}
 
 
-def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3) -> Count:
-    """Render a case in a mode of MODES, and judge every pixel."""
+def count(
+    renderer: Renderer,
+    extreme: Extreme,
+    mode: str,
+    cutoff: float = 1e-3,
+    program: Callable[[Features], Features] = lambda needed: needed,
+) -> Count:
+    """Render a case in a mode of MODES, by the `program` for what it needs, and judge every pixel."""
     shape = extreme.shape()
     library = Library({MESH: shape})
     cameras = extreme.cameras(shape) if extreme.cameras else iter([_FROM_THE_SIDE])
@@ -253,7 +259,7 @@ def count(renderer: Renderer, extreme: Extreme, mode: str, cutoff: float = 1e-3)
         features = features_of(stage)
         if mode == "triangles":
             features = replace(features, geometry=Geometry.MESH)
-        picture = renderer.picture(stage, *size, features=features)
+        picture = renderer.picture(stage, *size, features=program(features))
         picture.refine()
         pixels, cut = picture.linear().astype(np.float64), picture.cut_map().astype(np.float64)
         total = total.plus(_judged(scene, extreme.brightest, pixels, cut))

@@ -62,6 +62,11 @@ class Limits(Settings):
         le=MOST_SAMPLES,
         description="Samples of a pixel that a live picture at rest takes at most, whatever its error.",
     )
+    special_programs: bool = Field(
+        default=True,
+        description="Compile a program of its own for each kind of scene, in the background, which takes some 3 s of a "
+        "processor once and renders faster from then on; without, the general programs render all.",
+    )
     max_live_pixels: int = Field(
         2560 * 1440,
         ge=1,

@@ -10,6 +10,7 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import TYPE_CHECKING
 
 import zmq.asyncio
@@ -64,13 +65,15 @@ async def _run(control: str, frames: Sequence[str], limits: Limits, start: async
         loop.add_reader(sys.stdin, begin)
     else:
         start.set()
-    await serve(control, frames, limits, open_renderer, encode_still, start)
+    await serve(
+        control, frames, limits, partial(open_renderer, special_programs=limits.special_programs), encode_still, start
+    )
     if stand_by:
         loop.remove_reader(sys.stdin)
 
 
-def open_renderer() -> Renderer:
-    """The OpenCL renderer, its special programs compiled while the general one serves.
+def open_renderer(*, special_programs: bool) -> Renderer:
+    """The OpenCL renderer, its special programs compiled while the general one serves, or with none.
 
     It is imported here, so that whatever only speaks to an engine never loads it.
     """
@@ -80,7 +83,7 @@ def open_renderer() -> Renderer:
 
     if not kernel_cache.has_plenty_of_room() and (fault := kernel_cache.complaint()):
         log.error("%s", fault)  # said first: the compiler may end this process
-    renderer = CuttingRenderer(background_compile=True)
+    renderer = CuttingRenderer(background_compile=True, special_programs=special_programs)
     try:
         renderer.prepare()
     except CuletError as error:  # what needs these programs says so itself, and other work goes on
