@@ -29,11 +29,19 @@ REST_SAMPLES = "16"
 """A picture at rest is final with so many in the servers that tests start: tests wait for many of them."""
 
 
+SPECIAL_PROGRAMS = "off"
+"""Engines that tests start render by the general programs: of each kind of scene that is shown, another one would be
+compiled in the background, which no test waits for. Those that are about that say `--special-programs`."""
+
+
 def pytest_configure() -> None:
-    """What every process is told that a test starts; and that no example has a time, which other work would exceed."""
-    settings.register_profile("culet", deadline=None)
+    """What every process is told that a test starts; that no example has a time, which other work would exceed, and
+    that examples are the same in every run: new ones are tried by `pytest --hypothesis-profile explore`."""
+    settings.register_profile("culet", deadline=None, derandomize=True)
+    settings.register_profile("explore", deadline=None, derandomize=False, database=None)
     settings.load_profile("culet")
     os.environ.setdefault("CULET_REST_SAMPLES", REST_SAMPLES)
+    os.environ.setdefault("CULET_SPECIAL_PROGRAMS", SPECIAL_PROGRAMS)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -63,13 +71,14 @@ def device() -> Device:
 
 @pytest.fixture(scope="session")
 def renderer_of(device: Device) -> RendererOf:
-    """The renderer with that many lanes, in that precision."""
+    """The renderer with that many lanes, in that precision. It renders by the general programs, of which a few serve
+    all tests; that special ones show the same is tried in `rendering/test_features.py`."""
 
     made: dict[tuple[int, type[np.floating[Any]]], Renderer] = {}
 
     def of(lanes: int, real: type[np.floating[Any]]) -> Renderer:
         if (lanes, real) not in made:
-            made[lanes, real] = Renderer(device, lanes=lanes, real=real)
+            made[lanes, real] = Renderer(device, lanes=lanes, real=real, special_programs=False)
         return made[lanes, real]
 
     return of
@@ -77,7 +86,8 @@ def renderer_of(device: Device) -> RendererOf:
 
 @pytest.fixture(scope="session")
 def renderer(renderer_of: RendererOf, device: Device) -> Renderer:
-    """As the server uses it: single precision, packets as wide as the device likes them."""
+    """As the server uses it until a special program is compiled: single precision, packets as wide as the device likes
+    them."""
     return renderer_of(device.lanes, np.float32)
 
 

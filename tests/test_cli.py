@@ -259,7 +259,7 @@ def test_a_process_ends_as_its_command_does() -> None:
 @pytest.mark.parametrize(
     ("cases", "features"),
     [
-        pytest.param(("checker", "default"), ("floor",), id="some"),
+        pytest.param(("default",), ("floor",), id="some"),
         pytest.param(tuple(CASES), MEASURED_FEATURES, id="all", marks=pytest.mark.validation),
     ],
 )

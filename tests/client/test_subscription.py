@@ -9,10 +9,12 @@ import threading
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import zmq
 
+import culet_client.view as viewing
 from client.frames import FRAME, SESSION
 from culet_client import ClientError, FrameSubscription, SilenceError
 from culet_client.frame_folder import INDEX, FrameFolder
@@ -33,7 +35,7 @@ class Publisher:
 
     def subscription(self) -> bytes:
         """The next one that comes or goes."""
-        assert self.socket.poll(10_000), "nobody subscribed"
+        assert self.socket.poll(int(PATIENCE * 1000)), "nobody subscribed"
         return self.socket.recv()
 
     def send(self, *sequences: int) -> None:
@@ -147,17 +149,24 @@ def test_viewing_counts_frames(publisher: Publisher, tmp_path: Path) -> None:
     assert sequences == [1, 2, 3]
 
 
-def test_recording_writes_a_repeated_frame_once(publisher: Publisher, tmp_path: Path) -> None:
+def test_recording_writes_a_repeated_frame_once(
+    publisher: Publisher, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its time is over, by a clock of this test, when the last frame has come."""
     sequences: list[int] = []
+    now = [0.0]
+    monkeypatch.setattr(viewing, "time", SimpleNamespace(monotonic=lambda: now[0]))
 
     def some_more(frame: Frame, _: Path) -> None:
         greeter.join()
         sequences.append(frame.sequence)
         if frame.sequence == 1:
             publisher.send(1, 1, 2, 2, 3)
+        if frame.sequence == 3:
+            now[0] = PATIENCE
 
     greeter = publisher.greet()
-    assert record(publisher.endpoint, SESSION, 0.3, tmp_path / "out", shown=some_more) == 3
+    assert record(publisher.endpoint, SESSION, PATIENCE, tmp_path / "out", shown=some_more) == 3
     assert sequences == [1, 2, 3]
 
 

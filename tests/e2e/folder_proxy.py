@@ -7,6 +7,8 @@ import contextlib
 import threading
 from urllib.parse import urlsplit
 
+from shared.patience import PATIENCE
+
 LARGEST_HEAD = 65536
 
 
@@ -24,12 +26,12 @@ class FolderProxy:
     def __enter__(self) -> FolderProxy:
         self._thread.start()
         listening = asyncio.start_server(self._serve, "127.0.0.1", 0, limit=LARGEST_HEAD)
-        self._server = asyncio.run_coroutine_threadsafe(listening, self._loop).result(10)
+        self._server = asyncio.run_coroutine_threadsafe(listening, self._loop).result(PATIENCE)
         self.url = f"http://127.0.0.1:{self._server.sockets[0].getsockname()[1]}{self._folder}"
         return self
 
     def __exit__(self, *_: object) -> None:
-        asyncio.run_coroutine_threadsafe(self._end(), self._loop).result(10)
+        asyncio.run_coroutine_threadsafe(self._end(), self._loop).result(PATIENCE)
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()

@@ -100,7 +100,7 @@ links = some.tuples(
 )
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(links)
 def test_on_any_link_the_queue_stays_short_and_the_last_frame_is_shown(link: tuple[float, float, float, int]) -> None:
     megabits, round_trip, made, seed = link

@@ -58,6 +58,7 @@ def general(renderer: Renderer, case: Case) -> Picture:
     return take(renderer, legacy(case.scene), size=SIZE, features=GENERAL)
 
 
+@pytest.mark.validation  # by which others are judged, in four lanes
 @CASE
 @pytest.mark.parametrize("lanes", [1, 4, 8])
 def test_every_width_of_packet_gives_the_same_picture_in_double_precision(

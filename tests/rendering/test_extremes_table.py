@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from culet.rendering.features import Features
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.study.extremes import EXTREMES, MODES, ROUNDING, Extreme, _judged, count
+from rendering.views import program_between_few_mirrors
 
 MANY = (
     "rays at every vertex",
@@ -22,8 +25,20 @@ MANY = (
 QUICK = [extreme for extreme in EXTREMES if extreme.name not in MANY]
 
 
-def assert_nothing_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> None:
-    found = count(renderer, extreme, mode)
+def general(needed: Features) -> Features:
+    """One for all cases, but of stones between few mirrors."""
+    return program_between_few_mirrors(needed) or needed.general
+
+
+def special(needed: Features) -> Features:
+    """One for each, as the table has them."""
+    return needed
+
+
+def assert_nothing_wrong(
+    renderer: Renderer, extreme: Extreme, mode: str, program: Callable[[Features], Features]
+) -> None:
+    found = count(renderer, extreme, mode, program=program)
     assert found.pixels > 0
     assert (found.not_finite, found.negative, found.specks) == (0, 0, 0), found
     assert found.farthest < ROUNDING
@@ -32,14 +47,14 @@ def assert_nothing_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> Non
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("extreme", QUICK, ids=lambda extreme: extreme.name)
 def test_no_pixel_is_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> None:
-    assert_nothing_wrong(renderer, extreme, mode)
+    assert_nothing_wrong(renderer, extreme, mode, general)
 
 
 @pytest.mark.validation
 @pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("extreme", [e for e in EXTREMES if e.name in MANY], ids=lambda extreme: extreme.name)
-def test_no_pixel_of_many_views_is_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> None:
-    assert_nothing_wrong(renderer, extreme, mode)
+@pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name)
+def test_no_pixel_of_any_case_is_wrong_in_its_own_program(renderer: Renderer, extreme: Extreme, mode: str) -> None:
+    assert_nothing_wrong(renderer, extreme, mode, special)
 
 
 def test_what_is_wrong_is_counted() -> None:

@@ -73,6 +73,7 @@ def size_of_general(narrow: Renderer) -> int:
     return machine_code(take(narrow, LEGACY_DEFAULT, features=Features()))
 
 
+@pytest.mark.validation
 @pytest.mark.parametrize(("feature", "kind", "scene"), DECIDED.values(), ids=DECIDED.keys())
 def test_a_decided_feature_shows_what_the_general_program_shows(
     narrow: Renderer, size_of_general: int, feature: str, kind: int, scene: dict[str, Any]
@@ -95,6 +96,7 @@ def test_a_decided_feature_shows_what_the_general_program_shows(
         assert radiance(decided) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)
 
 
+@pytest.mark.validation
 @pytest.mark.parametrize("name", OFF)
 def test_a_feature_that_is_off_is_not_in_the_program(narrow: Renderer, size_of_general: int, name: str) -> None:
     """Measured: from 0.7 % (absorption) to 22 % (the sky) of 49 kB. What the camera's place decides is a branch or two,
@@ -110,6 +112,14 @@ def test_without_dispersion_a_third_of_the_segments_is_followed(narrow: Renderer
     general = take(narrow, legacy(scene), features=Features())
     decided = take(narrow, legacy(scene), features=replace(Features(), **{feature: kind}))
     assert general.segments() == 3 * decided.segments() > 0
+
+
+def test_the_general_program_that_serves_a_stone_of_one_index_has_a_chain_for_each_channel(renderer: Renderer) -> None:
+    """Its own program has one for all: with what that reads, the general one showed the stone in red alone."""
+    scene = legacy({"stones": [{"material": {"ior": [2.4, 2.4, 2.4]}}]})
+    serves, asked_for = take(renderer, scene), take(renderer, scene, features=Features())
+    assert (radiance(serves) == radiance(asked_for)).all()
+    assert serves.segments() == asked_for.segments()
 
 
 def test_without_a_stone_the_program_is_less_than_half(narrow: Renderer, size_of_general: int) -> None:
@@ -130,7 +140,8 @@ def test_a_scenes_own_program_is_smaller_and_shows_the_same(
     narrow: Renderer, size_of_general: int, scene: dict[str, Any]
 ) -> None:
     """Every feature decided, against every feature left to run time."""
-    own, general = take(narrow, legacy(scene)), take(narrow, legacy(scene), features=Features())
+    of = legacy(scene)
+    own, general = (take(narrow, of, features=which) for which in (features_of(staged(of)), Features()))
     # measured 2.2e-7 of the radiance: where less is left to run time, other sums are rounded together
     with compared(radiance(own), radiance(general)):
         assert radiance(own) == pytest.approx(radiance(general), rel=4e-7, abs=3e-8)

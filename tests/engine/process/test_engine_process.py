@@ -413,7 +413,7 @@ async def test_sigterm_ends_the_engine_in_order_while_it_renders(tmp_path: Path)
             await peer.control("toggle_fall")
             await watcher.next()
             process.process.terminate()
-            assert await asyncio.to_thread(process.process.wait, 5) == 0
+            assert await asyncio.to_thread(process.process.wait, PATIENCE) == 0
 
 
 COMPILING = """

@@ -131,7 +131,7 @@ def test_length_to_width_is_that_of_the_stone(name: str) -> None:
 
 
 @given(st.data())
-@settings(max_examples=80, deadline=None, derandomize=True)
+@settings(max_examples=80)
 def test_within_the_usual_ranges_there_is_a_cut_or_a_refusal_that_names_a_proportion(data: st.DataObject) -> None:
     kind = CUTS[data.draw(st.sampled_from(sorted(CUTS)))]
     usual = kind()
@@ -166,7 +166,7 @@ def allowed_values(kind: type[AnyCut], name: str) -> st.SearchStrategy[float]:
 
 
 @given(st.data())
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 def test_of_all_numbers_that_are_allowed_there_is_a_cut_or_a_refusal_that_names_a_proportion(
     data: st.DataObject,
 ) -> None:

@@ -65,7 +65,7 @@ def designs(draw: some.DrawFn) -> Design:
     )  # fmt: skip
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(designs())
 def test_any_design_is_read_back_equal_to_the_last_bit(there: Design) -> None:
     """Names, notes and titles that look like records among them; lines stay short."""

@@ -42,7 +42,7 @@ def is_a_stone_or_refused(data: bytes, file_type: str) -> bool:
 
 
 @pytest.mark.parametrize("file_type", DESIGN_TYPES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(chance=some.randoms(use_true_random=False))
 def test_damaged_designs_are_stones_or_refused(file_type: DesignType, chance: some.Random) -> None:  # type: ignore[name-defined]
     data = bytearray(GOOD[file_type])
@@ -61,7 +61,7 @@ def test_damaged_designs_are_stones_or_refused(file_type: DesignType, chance: so
 
 
 @pytest.mark.parametrize("file_type", DESIGN_TYPES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(some.binary(max_size=300))
 def test_random_bytes_are_refused(file_type: DesignType, data: bytes) -> None:
     assert is_a_stone_or_refused(data, file_type)
