@@ -28,8 +28,8 @@ def test_in_a_folder_that_the_proxy_takes_off_the_page_shows_moves_and_documents
         view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.05")
         view.until("() => document.querySelector('#scenes img')")
         thumbnail = str(view.page.evaluate("document.querySelector('#scenes img').src"))
-        assert httpx.get(thumbnail).headers["content-type"] == "image/webp"
-        with httpx.Client(base_url=f"{proxy.url}/") as http:
+        assert httpx.get(thumbnail, timeout=PATIENCE).headers["content-type"] == "image/webp"
+        with httpx.Client(base_url=f"{proxy.url}/", timeout=PATIENCE) as http:
             made = http.post("api/sessions", json={"preset": "matte"})
             session = made.url.join(made.headers["location"])
             assert http.get(session).json()["id"] == made.json()["id"]
