@@ -34,14 +34,15 @@ SPECIAL_PROGRAMS = "off"
 compiled in the background, which no test waits for. Those that are about that say `--special-programs`."""
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """What every process is told that a test starts; that no example has a time, which other work would exceed, and
     that examples are the same in every run: new ones are tried by `pytest --hypothesis-profile explore`."""
     settings.register_profile("culet", deadline=None, derandomize=True)
     settings.register_profile("explore", deadline=None, derandomize=False, database=None)
     settings.load_profile("culet")
     os.environ.setdefault("CULET_REST_SAMPLES", REST_SAMPLES)
-    os.environ.setdefault("CULET_SPECIAL_PROGRAMS", SPECIAL_PROGRAMS)
+    if config.getoption("markexpr") != "soak":  # which has goals in seconds
+        os.environ.setdefault("CULET_SPECIAL_PROGRAMS", SPECIAL_PROGRAMS)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
