@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -58,6 +59,13 @@ def ended(command: Command) -> tuple[int, str, str]:
     """Its exit code and what it has printed, on both ways."""
     out, err = command.communicate(timeout=PATIENCE)
     return command.returncode, out, err
+
+
+def line_told(command: Command) -> str:
+    """The next one on its way of errors."""
+    assert command.stderr is not None
+    assert select.select([command.stderr], [], [], PATIENCE)[0], "it told nothing"
+    return command.stderr.readline()
 
 
 def interrupt(command: Command) -> None:

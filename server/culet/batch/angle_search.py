@@ -7,24 +7,18 @@ quadratic models (COBYQA: T. M. Ragonneau, Z. Zhang, 2022, as scipy has it). Gra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 from scipy.optimize import Bounds, minimize
 
-from culet.batch.search import BRIGHTNESS, FIRE, Candidate, Search, SpentError
+from culet.batch.candidates import ANGLE_DECIMALS, BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Design, Search
 from culet.errors import MeshError
 from culet.geometry.meets import angle_of_tiers, independent_tiers
 from culet.geometry.recut import OF_A_SHAPE, recut_shape
 from culet.geometry.shape import Shape
-from culet.grading.grades import grade
-from culet.grading.metrics import number_of
-from culet.grading.optics import StoneOptics
-from culet.grading.rules import Rules
-from culet.grading.sums import LightSums
-from culet.scene.recut import Recut
 
 FIRST_STEP = 0.5
 """Of the reach, how far the first models look."""
@@ -32,92 +26,55 @@ SMALLEST_STEP = 0.01
 """Degrees: finer than anybody cuts; within a smaller reach the first step is the last."""
 WORSE = 10.0
 """Points by which angles that lose a meet count as worse than the start, so that models stay tame."""
-DECIMALS = 3
-"""Of degrees that are graded, and told."""
-LEAST_REACH = 2 * 10**-DECIMALS
+LEAST_REACH = 2 * 10**-ANGLE_DECIMALS
 """Degrees; in less the first step would not be told from none."""
 LEAST, MOST = 0.01, 89.99
 """Degrees between which a tier's angle is searched; tiers beyond follow."""
 
 
-class AngleSearch:
-    """Grades designs that differ in tiers' angles."""
-
-    def __init__(
-        self, sums: LightSums, shape: Shape, optics: StoneOptics, rules: Rules, weights: Mapping[str, float]
-    ) -> None:
-        """`shape` is the design as it was given, `weights` of grades by name."""
-        self._sums, self._shape, self._optics, self._rules, self._weights = sums, shape, optics, rules, weights
-
-    def run(
-        self,
-        start: Candidate,
-        value: Callable[[Candidate], float],
-        reach: float,
-        evaluations: int,
-        progress: Callable[[], None] = lambda: None,
-    ) -> list[Candidate]:
-        """The designs that were graded, at most so many, to find a larger value within `reach` degrees of a start's
-        angles. None of a shape without tiers that can be turned, or with more facets than angles are changed of."""
-        ratios = Recut(crown_ratio=start.crown_ratio, pavilion_ratio=start.pavilion_ratio)
-        own = free_angles(recut_shape(self._shape, ratios))
-        if not own or evaluations < 2 or reach < LEAST_REACH:
-            return []
-        tiers, middle = list(own), np.round(list(own.values()), DECIMALS)
-        found: dict[tuple[float, ...], Candidate | None] = {}
-
-        def lost(degrees: Any) -> float:  # noqa: ANN401 - as scipy gives them
-            key = tuple(np.round(degrees, DECIMALS).tolist())
-            if key not in found:
-                if len(found) >= evaluations:
-                    raise SpentError
-                found[key] = self._graded(ratios, dict(zip(tiers, key, strict=True)))
-                progress()
-            each = found[key]
-            return -value(start) + WORSE if each is None else -value(each)
-
-        bounds = Bounds(np.maximum(middle - reach, LEAST), np.minimum(middle + reach, MOST))
-        first = FIRST_STEP * reach
-        options = {"maxfev": evaluations, "initial_tr_radius": first, "final_tr_radius": min(SMALLEST_STEP, first)}
-        with suppress(SpentError):
-            minimize(lost, middle, method="COBYQA", bounds=bounds, options=options)
-        return [each for each in found.values() if each is not None]
-
-    def _graded(self, ratios: Recut, angles: Mapping[int, float]) -> Candidate | None:
-        """None for angles that keep not all meets."""
-        try:
-            shape = recut_shape(self._shape, Recut(**ratios.model_dump(exclude={"angles"}), angles=angles))
-            grades = next(grade(self._sums, shape, self._optics, self._rules))
-        except MeshError:
-            return None
-        numbers = {name: number_of(grades, name) for name in {BRIGHTNESS, FIRE, *self._weights}}
-        total = sum(weight * numbers[name].value for name, weight in self._weights.items())
-        return Candidate(ratios.crown_ratio, ratios.pavilion_ratio, numbers, total, angles)
+Value = Callable[[Candidate], float]
+"""Of which a search wants more."""
+VALUES: tuple[Value, ...] = (
+    lambda each: each.total,
+    lambda each: each.grades[BRIGHTNESS].value,
+    lambda each: each.grades[FIRE].value,
+)
+"""Searches start from the largest of each, and go for more of it."""
 
 
-def turn_tiers(
-    search: Search,
-    angles: AngleSearch,
-    reach: float,
-    evaluations: int,
-    progress: Callable[[float], None] = lambda part: None,
-) -> None:
-    """Add to a search's designs others that differ in angles, from its largest sum, its brightest and its most fiery,
-    until it has graded so many in all."""
-    values: list[Callable[[Candidate], float]] = [lambda each: each.total]
-    values += [lambda each, name=name: each.grades[name].value for name in (BRIGHTNESS, FIRE)]  # type: ignore[misc]
-    begun = len(search.candidates)
-    graded = 0
+def search_angles(candidates: Candidates, reach: float, evaluations: int) -> None:
+    """Grade so many more designs at most, within `reach` degrees of the angles of those that were found before."""
+    starts = [max(candidates.found, key=value) for value in VALUES]
+    room = evaluations // len(VALUES)
+    searches = [
+        search
+        for start, value in zip(starts, VALUES, strict=True)
+        if (search := angle_search(candidates.shape, start, value, reach, room)) is not None
+    ]
+    candidates.run(searches, room)
 
-    def one_more() -> None:
-        nonlocal graded
-        graded += 1
-        progress(min(1.0, (begun + graded) / evaluations))
 
-    for left, value in zip((3, 2, 1), values, strict=True):
-        start = max(search.candidates[:begun], key=value)
-        room = (evaluations - begun - graded) // left
-        search.candidates += angles.run(start, value, reach, room, one_more)
+def angle_search(shape: Shape, start: Candidate, value: Value, reach: float, most: int) -> Search | None:
+    """For a larger value within `reach` degrees of a start's angles. None of a shape without tiers that can be turned,
+    or with more facets than angles are changed of; nor with room for less than two designs."""
+    ratios = Design.of(start.crown_ratio, start.pavilion_ratio)
+    own = free_angles(recut_shape(shape, ratios.recut()))
+    if not own or most < 2 or reach < LEAST_REACH:
+        return None
+    tiers, middle = list(own), np.round(list(own.values()), ANGLE_DECIMALS)
+
+    def lost(ask: Ask, degrees: Any) -> float:  # noqa: ANN401 - as scipy gives them
+        each = ask(Design.of(start.crown_ratio, start.pavilion_ratio, dict(zip(tiers, degrees, strict=True))))
+        return -value(start) + WORSE if each is None else -value(each)
+
+    bounds = Bounds(np.maximum(middle - reach, LEAST), np.minimum(middle + reach, MOST))
+    first = FIRST_STEP * reach
+    options = {"maxfev": most, "initial_tr_radius": first, "final_tr_radius": min(SMALLEST_STEP, first)}
+
+    def search(ask: Ask) -> None:
+        minimize(partial(lost, ask), middle, method="COBYQA", bounds=bounds, options=options)
+
+    return Search(search, together=2 * len(tiers) + 1)  # the first models' points
 
 
 def free_angles(shape: Shape) -> dict[int, float]:

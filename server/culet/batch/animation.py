@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from culet.batch.cameras import Way, along
-from culet.batch.crew import IN_PROCESS, Crew
+from culet.batch.crew import IN_PROCESS, Crew, in_turn
 from culet.batch.digest import digest_of
 from culet.errors import InputError
 from culet.falls import simulate_stage
@@ -135,7 +135,7 @@ def render_frames(
         there = whole(animation, folder, journal.records)
         yield len(there) / count
         missing = [(number, animation.stages[number].scene) for number in range(count) if number not in there]
-        with closing(crew.results(animation.task(), missing)) as done:
+        with closing(crew.results(animation.task(), in_turn(missing))) as done:
             for (number, _), frame in done:
                 journal.append(write_frame(animation, folder, number, frame))
                 there.add(number)

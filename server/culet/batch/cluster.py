@@ -2,7 +2,8 @@
 
 Results come to this process, which alone writes files and journals: workers need no folder in common with it. A result
 is asked for as soon as it is there, and then forgotten, since Dask makes a finished one again whose worker died while
-somebody still wanted it. What was being made in a worker that died is given to another one.
+somebody still wanted it. What was being made in a worker that died is given to another one. That there is no worker
+at all is told.
 """
 
 from __future__ import annotations
@@ -12,12 +13,12 @@ import pickle
 import re
 import signal
 import threading
+import time
 import warnings
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import islice
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any, NoReturn
@@ -25,7 +26,8 @@ from typing import Any, NoReturn
 import dask
 from distributed import Client, KilledWorker, LocalCluster, Security, as_completed, get_worker
 
-from culet.batch.crew import Done, Item, Items, Result, Task
+from culet.batch.absence import END_AFTER, Absence
+from culet.batch.crew import Done, Item, More, Result, Task
 from culet.batch.edition import edition
 from culet.endpoints import is_loopback
 from culet.errors import CuletError, InputError, WorkersError
@@ -33,6 +35,8 @@ from culet.rendering.processors import limit_threads_to
 
 PATIENCE_SECONDS = 30
 """For the scheduler to answer, and for its first worker to come."""
+LOOK_SECONDS = 1.0
+"""Between looks whether there are workers, while no result comes."""
 WAITING = 2
 """Items under way or waiting for each that is being made, so that no worker waits for this process."""
 _ADDRESS = re.compile(r"(?P<way>\w+)://(?P<host>\[[0-9a-fA-F:]+\]|[^/:]+):(?P<port>\d{1,5})")
@@ -49,8 +53,17 @@ class Certificates:
     key: Path | None = None
 
 
+Tell = Callable[[str], None]
+"""Says a line to whoever waits."""
+RESUMES = "the same command goes on where it was"
+"""What becomes of work whose scheduler is lost, if it keeps a journal."""
+
+
+def _untold(text: str) -> None: ...
+
+
 @contextmanager
-def local(count: int) -> Iterator[Cluster]:
+def local(count: int, tell: Tell = _untold, afterwards: str = RESUMES) -> Iterator[Cluster]:
     """So many workers on this machine, each with one thread and one processor; they end with the `with`.
 
     They and their scheduler speak by certificates that exist in memory alone: on a machine with several users none of
@@ -66,11 +79,13 @@ def local(count: int) -> Iterator[Cluster]:
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
     with cluster, Client(cluster, set_as_default=False) as client:
-        yield Cluster(client, "the workers of this command")
+        yield Cluster(client, "this command", tell, afterwards, END_AFTER)
 
 
 @contextmanager
-def remote(address: str, certificates: Certificates = Certificates()) -> Iterator[Cluster]:
+def remote(
+    address: str, certificates: Certificates = Certificates(), tell: Tell = _untold, afterwards: str = RESUMES
+) -> Iterator[Cluster]:
     """The workers of a scheduler; they outlive the `with`.
 
     InputError for an address that is none, or that other machines reach without being asked for a certificate;
@@ -83,7 +98,7 @@ def remote(address: str, certificates: Certificates = Certificates()) -> Iterato
     except (OSError, ValueError, RuntimeError) as error:
         raise WorkersError(f"scheduler: nothing that answers as one at {address}: {_reason(error)}") from error
     with client:
-        found = Cluster(client, f"the scheduler at {address}")
+        found = Cluster(client, f"the scheduler at {address}", tell, afterwards)
         found.wait()
         yield found
 
@@ -91,8 +106,10 @@ def remote(address: str, certificates: Certificates = Certificates()) -> Iterato
 class Cluster:
     """A crew of Dask's workers."""
 
-    def __init__(self, client: Client, name: str) -> None:
-        self._client, self._name = client, name
+    def __init__(self, client: Client, name: str, tell: Tell, afterwards: str, end_after: float | None = None) -> None:
+        """It ends `end_after` so many s without a worker; without that never."""
+        self._client, self._name, self._tell, self._afterwards = client, name, tell, afterwards
+        self._absence = Absence(name, end_after)
 
     def wait(self) -> None:
         """Until there is a worker, all of them of this edition; WorkersError if there is not."""
@@ -108,31 +125,57 @@ class Cluster:
         with self._naming():
             return sum(self._client.nthreads().values())
 
-    def results(self, task: Task[Item, Result], items: Items[Item]) -> Done[Item, Result]:
-        """As they come. WorkersError if the scheduler is lost, or if one item has killed several workers."""
-        left, under_way = iter(items), dict[str, Item]()
+    def results(self, task: Task[Item, Result], more: More[Item]) -> Done[Item, Result]:
+        """As they come. WorkersError if the scheduler is lost, if one item has killed several workers, or if there have
+        been none for too long."""
+        under_way = dict[str, Item]()
         with self._naming():
             # As the result of a task of its own each worker has it once, and it is made again if that worker dies.
             known = self._client.submit(pickle.loads, pickle.dumps(task), pure=False)
-            done = as_completed(loop=self._client.loop, raise_errors=False)
+            done = as_completed(loop=self._client.loop, with_results=True, raise_errors=False)
 
         def fill() -> None:
             room = WAITING * max(1, self.places()) - len(under_way)
-            for item in islice(left, max(0, room)):
+            for item in more(room) if room > 0 else ():
                 future = self._client.submit(_perform, known, edition(), pickle.dumps(item), pure=False)
                 under_way[future.key] = item
                 done.add(future)
 
         with self._naming():
             fill()
-        for future in done:
+        while self._waited(done):
+            future, result = next(done)
             if future.status == "error":
                 self._raise(future.exception())
             with self._naming():
-                result, item = future.result(), under_way.pop(future.key)
+                if isinstance(result, CancelledError):
+                    raise result
+                item = under_way.pop(future.key)
                 future.release()
-                fill()
             yield item, result
+            with self._naming():  # after that: who got it may have asked for more
+                fill()
+
+    def _waited(self, done: as_completed) -> bool:
+        """Until a result is there; false if none will come. Tells if there are no workers."""
+        looked = time.monotonic()
+        while not done.has_ready():
+            if done.is_empty():
+                return False
+            with done.thread_condition:
+                done.thread_condition.wait(0.1)
+            now = time.monotonic()
+            if now - looked >= LOOK_SECONDS:
+                looked = now
+                with self._naming():
+                    workers = self.places()
+                self._say(self._absence.seen(now, workers))
+        self._say(self._absence.seen(looked, 1))  # whoever made it
+        return True
+
+    def _say(self, text: str | None) -> None:
+        if text is not None:
+            self._tell(text)
 
     def _raise(self, error: BaseException) -> NoReturn:
         """What a piece of work has ended with."""
@@ -162,8 +205,7 @@ class Cluster:
             yield
         except (OSError, TimeoutError, CancelledError) as error:
             raise WorkersError(
-                f"workers: {self._name} cannot be reached any more ({_reason(error)}); "
-                "the same command goes on where it was"
+                f"workers: {self._name} cannot be reached any more ({_reason(error)}); {self._afterwards}"
             ) from error
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Sequence
+from itertools import islice
 from typing import Protocol, TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-Items = Iterable[Item]
+More = Callable[[int], Sequence[Item]]
+"""Asked for so many items gives as many, or fewer if there are no more before another result is there. Work of which
+none is being done, and of which there is no more, is done."""
 Task = Callable[[Item], Result]
 """What is done with each item. It and its items are values that can be pickled, and it gives the same wherever it is
 done."""
@@ -18,7 +21,7 @@ Done = Generator[tuple[Item, Result], None, None]
 class Crew(Protocol):
     """Does work."""
 
-    def results(self, task: Task[Item, Result], items: Items[Item]) -> Done[Item, Result]:
+    def results(self, task: Task[Item, Result], more: More[Item]) -> Done[Item, Result]:
         """Every item once, in any order; whoever stops listening ends the work. What the task raises is raised."""
 
     def places(self) -> int:
@@ -28,10 +31,11 @@ class Crew(Protocol):
 class InProcess:
     """Does one item after the other, here."""
 
-    def results(self, task: Task[Item, Result], items: Items[Item]) -> Done[Item, Result]:
+    def results(self, task: Task[Item, Result], more: More[Item]) -> Done[Item, Result]:
         """In the order of the items."""
-        for item in items:
-            yield item, task(item)
+        while items := more(1):
+            for item in items:
+                yield item, task(item)
 
     def places(self) -> int:
         """One, on all processors."""
@@ -39,3 +43,9 @@ class InProcess:
 
 
 IN_PROCESS = InProcess()
+
+
+def in_turn(items: Iterable[Item]) -> More[Item]:
+    """Items that are all known before."""
+    left = iter(items)
+    return lambda room: list(islice(left, room))

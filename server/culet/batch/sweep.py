@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from culet.batch.crew import IN_PROCESS, Crew
+from culet.batch.crew import IN_PROCESS, Crew, in_turn
 from culet.batch.digest import digest_of
 from culet.batch.metrics import Effort, check_metrics, columns_of, light_sums, measure
 from culet.batch.variation import Variation, points_of, varied
@@ -86,7 +86,7 @@ def run(
         missing = [(number, values) for number, values in enumerate(points) if number not in known]
         try:
             yield len(known), len(points)
-            with closing(crew.results(PointTask(sweep), missing)) as done:
+            with closing(crew.results(PointTask(sweep), in_turn(missing))) as done:
                 for (number, _), found in done:
                     journal.append({POINT: number, **found})
                     known[number] = found

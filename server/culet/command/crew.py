@@ -40,9 +40,18 @@ EXTRA = "culet[batch]"
 
 @contextmanager
 def crew_of(
-    workers: int | None, scheduler: str | None, ca: Path | None, cert: Path | None, key: Path | None
+    workers: int | None,
+    scheduler: str | None,
+    ca: Path | None,
+    cert: Path | None,
+    key: Path | None,
+    *,
+    afterwards: str | None = None,
 ) -> Iterator[Crew]:
-    """Who was asked for; InputError for two at once, and without the extra that workers need."""
+    """Who was asked for; InputError for two at once, and without the extra that workers need.
+
+    `afterwards` says what becomes of the work if the scheduler is lost; without it the same command goes on.
+    """
     from culet.batch.crew import IN_PROCESS
 
     if workers is not None and scheduler is not None:
@@ -55,11 +64,17 @@ def crew_of(
     if find_spec("distributed") is None or find_spec("cryptography") is None:
         option = "workers" if scheduler is None else "scheduler"
         raise InputError(f"{option}: workers need Dask: pip install '{EXTRA}'; this process alone needs none", option)
-    from culet.batch.cluster import Certificates, local, remote
+    from culet.batch.cluster import RESUMES, Certificates, local, remote
 
+    said = RESUMES if afterwards is None else afterwards
     if scheduler is not None:
-        with remote(scheduler, Certificates(ca, cert, key)) as crew:
+        with remote(scheduler, Certificates(ca, cert, key), _tell, said) as crew:
             yield crew
     elif workers is not None:
-        with local(workers) as crew:
+        with local(workers, _tell, said) as crew:
             yield crew
+
+
+def _tell(text: str) -> None:
+    """Above the progress bar, if there is one."""
+    typer.echo(f"culet: {text}", err=True)

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from culet.command.crew import Scheduler, TlsCa, TlsCert, TlsKey, Workers, crew_of
 from culet.command.subject import Head, Index, Material, RulesName, rules_named, subject, with_material
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
-from culet.errors import InputError, MeshError
+from culet.errors import InputError, MeshError, WorkersError
 from culet.places import check_place, write_whole
 from culet.sources import naming
 
 if TYPE_CHECKING:
+    from culet.batch.candidates import Candidates
+    from culet.batch.search import Range
     from culet.geometry.designs.design import Design
     from culet.scene.recut import Recut
 
@@ -163,18 +166,22 @@ def optimise(
     head: Head = None,
     rules: RulesName = "culet",
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE.csv", help="The front as a table.")] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    tls_ca: TlsCa = None,
+    tls_cert: TlsCert = None,
+    tls_key: TlsKey = None,
 ) -> None:
     """Search crown and pavilion for brightness and fire, all meets kept.
 
     First tangent ratios of crown and pavilion, then angles of single tiers. Prints the front: designs that no other
     beats in both, since there is no single best one. Each is cut by culet design convert with its ratios and angles.
+    Ctrl-C ends the search with the front of what was graded. Whoever grades, the same designs are found.
     """
-    from culet.batch.angle_search import LEAST_REACH, AngleSearch, free_angles, turn_tiers
-    from culet.batch.search import Search
+    from culet.batch.angle_search import LEAST_REACH, free_angles
+    from culet.batch.candidates import Candidates
     from culet.command.search import front_csv, print_front, range_of, weights_of
     from culet.grading.optics import optics_of
-    from culet.grading.sums import LightSums
-    from culet.rendering.device import open_device
 
     with errors_in_one_line():
         if out is not None:
@@ -190,19 +197,40 @@ def optimise(
         turned = bool(angles and free_angles(shape))
         if angles and not turned:
             typer.echo(f"{file}: no tier can be turned by itself with all meets kept; ratios alone", err=True)
-        with progress_bar("searching") as advance:
-            first = evaluations // 2 if turned else evaluations
-            sums = LightSums(open_device())
-            search = Search(
-                sums, shape, optics, judged, weights, first, lambda part: advance(part * first / evaluations)
+        with (
+            crew_of(workers, scheduler, tls_ca, tls_cert, tls_key, afterwards="what was graded is told") as crew,
+            progress_bar("searching") as advance,
+        ):
+            candidates = Candidates(
+                shape, optics, judged, weights, crew=crew, progress=lambda count: advance(min(1, count / evaluations))
             )
-            search.run(*ends)
-            if turned:
-                turn_tiers(search, AngleSearch(sums, shape, optics, judged, weights), angles, evaluations, advance)
-        print_front(report_console(), search, weights)
-        if out is not None:
-            write_whole(out, front_csv(search, weights), "out")
-            typer.echo(f"{out}: {len(search.front())} designs of {len(search.candidates)} that were graded")
+            ended = _search(candidates, *ends, angles if turned else 0, evaluations)
+        if candidates.found:
+            print_front(report_console(), candidates, weights)
+            if out is not None:
+                write_whole(out, front_csv(candidates, weights), "out")
+                typer.echo(f"{out}: {len(candidates.front())} designs of {len(candidates.found)} that were graded")
+        if isinstance(ended, KeyboardInterrupt):
+            typer.echo(f"culet: interrupted after {len(candidates.graded)} of {evaluations} designs", err=True)
+            raise typer.Exit(130)
+        if ended is not None:
+            raise ended
+
+
+def _search(
+    candidates: Candidates, crown: Range, pavilion: Range, angles: float, evaluations: int
+) -> KeyboardInterrupt | WorkersError | None:
+    """What has ended it too early, so that what was found until then can be told."""
+    from culet.batch.angle_search import search_angles
+    from culet.batch.search import search_ratios
+
+    try:
+        search_ratios(candidates, crown, pavilion, evaluations // 2 if angles else evaluations)
+        if angles:
+            search_angles(candidates, angles, evaluations - len(candidates.graded))
+    except (KeyboardInterrupt, WorkersError) as error:
+        return error
+    return None
 
 
 def _recut(crown: float, pavilion: float, girdle: float | None, table: float | None, angles: dict[int, float]) -> Recut:

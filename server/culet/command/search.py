@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from culet.batch.search import BRIGHTNESS, FIRE, Candidate, Range, Search
+from culet.batch.candidates import BRIGHTNESS, FIRE, Candidate, Candidates
+from culet.batch.search import Range
 from culet.errors import InputError
 from culet.grading.metrics import GRADES, LIGHT_RETURN
 from culet.scene.recut import LEAST_RATIO, MOST_RATIO
@@ -54,15 +55,15 @@ def range_of(option: str, text: str) -> Range:
     return least, most
 
 
-def print_front(console: Console, search: Search, weights: Mapping[str, float]) -> None:
+def print_front(console: Console, candidates: Candidates, weights: Mapping[str, float]) -> None:
     """From the brightest to the most fiery, the best by the weighted sum marked."""
     names = _names(weights)
-    best, given = search.best(), search.candidates[0]
+    best, given = candidates.best(), candidates.found[0]
     table = Table("", "crown ratio", "pavilion ratio", *names, "sum", box=None)
-    turned = any(each.angles for each in search.candidates)
+    turned = any(each.angles for each in candidates.found)
     if turned:
         table.add_column("tiers at degrees", overflow="fold")
-    front = search.front()
+    front = candidates.front()
     marked = [*front] if best in front else [*front, best]
     for each in [given, *(one for one in marked if one is not given)]:
         of = ["as it is"] * (each is given) + ["largest sum"] * (each is best)
@@ -74,12 +75,12 @@ def print_front(console: Console, search: Search, weights: Mapping[str, float]) 
     console.print(table)
     error = max(number.error for each in front for number in each.grades.values())
     console.print(
-        f"{len(front)} designs that no other of {len(search.candidates)} beats in {BRIGHTNESS} and {FIRE} both; "
+        f"{len(front)} designs that no other of {len(candidates.found)} beats in {BRIGHTNESS} and {FIRE} both; "
         f"standard errors up to {error:.2g}"
     )
 
 
-def front_csv(search: Search, weights: Mapping[str, float]) -> bytes:
+def front_csv(candidates: Candidates, weights: Mapping[str, float]) -> bytes:
     """The same as a table, with standard errors."""
     names = _names(weights)
     text = io.StringIO()
@@ -93,7 +94,7 @@ def front_csv(search: Search, weights: Mapping[str, float]) -> bytes:
             "angles",
         ]
     )
-    for each in search.front():
+    for each in candidates.front():
         numbers = [part for name in names for part in (each.grades[name].value, each.grades[name].error)]
         writer.writerow([each.crown_ratio, each.pavilion_ratio, *numbers, each.total, angles_text(each)])
     return text.getvalue().encode()
