@@ -76,7 +76,15 @@ def interrupt(command: Command) -> None:
 def workers_of(command: Command) -> list[psutil.Process]:
     """The processes that multiprocessing has started for it."""
     found = psutil.Process(command.pid).children(recursive=True)
-    return [process for process in found if any("spawn_main" in word for word in process.cmdline())]
+    return [process for process in found if any("spawn_main" in word for word in _words(process))]
+
+
+def _words(process: psutil.Process) -> list[str]:
+    """Of its command; none of one that has ended meanwhile, whether or not somebody knows already."""
+    try:
+        return process.cmdline()
+    except psutil.NoSuchProcess:
+        return []
 
 
 def numbers_in(folder: Path) -> list[int]:
