@@ -76,6 +76,8 @@ def local(count: int, tell: Tell = _untold, afterwards: str = RESUMES) -> Iterat
             n_workers=count, threads_per_worker=1, security=True, memory_limit=0, silence_logs=logging.CRITICAL,
             dashboard_address=None, scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
         )  # fmt: skip
+    except RuntimeError as error:  # as of one that is killed while it starts
+        raise WorkersError(f"workers: {count} processes could not be started: {_reason(error)}") from error
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
     with cluster, Client(cluster, set_as_default=False) as client:
