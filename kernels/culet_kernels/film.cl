@@ -116,16 +116,22 @@ static inline rgb16 developed(rgb16 colour, int tone_map, int inside_gamut) {
 
 static inline uchar16 to_bytes(float16 x) { return convert_uchar16_sat_rte(255 * x); }
 
+// Which sums of samples there are besides the earlier run.
+#define LATER 1
+#define ASIDE 2
+
 // The sums of four pixels, one after the other.
 static inline float16 four_pixels(__global const real4 *sums) {
   return (float16)(convert_float4(sums[0]), convert_float4(sums[1]), convert_float4(sums[2]), convert_float4(sums[3]));
 }
 
-static inline rgb16 block_of(__global const real4 *earlier, __global const real4 *later, int both) {
+static inline rgb16 block_of(__global const real4 *earlier, __global const real4 *later, __global const real4 *aside,
+                             int runs) {
   float16 four[4];
   for (int k = 0; k < 4; k++) {
     four[k] = four_pixels(earlier + 4 * k);
-    if (both) four[k] += four_pixels(later + 4 * k);
+    if (runs & LATER) four[k] += four_pixels(later + 4 * k);
+    if (runs & ASIDE) four[k] += four_pixels(aside + 4 * k);
   }
   const rgb16 sums = {(float16)(four[0].s048c, four[1].s048c, four[2].s048c, four[3].s048c),
                       (float16)(four[0].s159d, four[1].s159d, four[2].s159d, four[3].s159d),
@@ -134,11 +140,15 @@ static inline rgb16 block_of(__global const real4 *earlier, __global const real4
 }
 
 // The same where a picture ends within a block: the last pixel is repeated.
-static inline rgb16 part_of_block(__global const real4 *earlier, __global const real4 *later, int both, int count) {
+static inline rgb16 part_of_block(__global const real4 *earlier, __global const real4 *later,
+                                  __global const real4 *aside, int runs, int count) {
   float linear[3][BLOCK];
   for (int i = 0; i < BLOCK; i++) {
     const int pixel = min(i, count - 1);
-    const float4 sum = convert_float4(both ? earlier[pixel] + later[pixel] : earlier[pixel]);
+    real4 all = earlier[pixel];
+    if (runs & LATER) all += later[pixel];
+    if (runs & ASIDE) all += aside[pixel];
+    const float4 sum = convert_float4(all);
     linear[0][i] = sum.x;
     linear[1][i] = sum.y;
     linear[2][i] = sum.z;
@@ -160,14 +170,15 @@ static inline void store_block(uchar16 r, uchar16 g, uchar16 b, __global uchar *
   vstore16(third, 2, to);
 }
 
-// A work-item shows BLOCK of the pixels from `begin` to before `end`, of which `earlier` and, if `both`, `later` hold sums of
-// samples. `scale` is the exposure over the number of samples.
-__kernel void develop(__global const real4 *earlier, __global const real4 *later, int both, __global uchar *bytes,
-                      int begin, int end, float scale, int tone_map, int inside_gamut) {
+// A work-item shows BLOCK of the pixels from `begin` to before `end`, of which `earlier` and, if `runs` says so, `later` and
+// `aside` hold sums of samples. `scale` is the exposure over the number of samples.
+__kernel void develop(__global const real4 *earlier, __global const real4 *later, __global const real4 *aside, int runs,
+                      __global uchar *bytes, int begin, int end, float scale, int tone_map, int inside_gamut) {
   const int first = begin + get_global_id(0) * BLOCK, count = min(BLOCK, end - first);
   if (count <= 0) return;
-  __global const real4 *before = earlier + first, *after = later + first;
-  rgb16 radiance = count == BLOCK ? block_of(before, after, both) : part_of_block(before, after, both, count);
+  __global const real4 *before = earlier + first, *after = later + first, *beside = aside + first;
+  rgb16 radiance =
+      count == BLOCK ? block_of(before, after, beside, runs) : part_of_block(before, after, beside, runs, count);
   radiance.red *= scale;
   radiance.green *= scale;
   radiance.blue *= scale;
@@ -188,7 +199,7 @@ __kernel void develop(__global const real4 *earlier, __global const real4 *later
 // The samples of one run, times `scale`.
 static inline rgb16 scaled(__global const real4 *sums, int first, int count, float scale) {
   __global const real4 *from = sums + first;
-  rgb16 result = count == BLOCK ? block_of(from, from, 0) : part_of_block(from, from, 0, count);
+  rgb16 result = count == BLOCK ? block_of(from, from, from, 0) : part_of_block(from, from, from, 0, count);
   result.red *= scale;
   result.green *= scale;
   result.blue *= scale;

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from culet.geometry.load import shape_of
+from culet.rendering.light.effort import Effort
 from culet.rendering.pace import Pace
 from culet.rendering.renderer import Renderer, jitter
+from culet.rendering.target import Target
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from culet.stage import Stage
 from pictures import compared
@@ -88,6 +92,57 @@ def test_a_launch_of_a_very_dear_scene_ends_when_its_steps_are_made(renderer: Re
     assert len(launches) == 200, "a single launch would have been the whole sample"
     assert picture.samples == 0
     assert np.median(launches) < 0.01, "measured 0.0004 s; the sample takes seconds"
+
+
+@pytest.mark.parametrize("samples", [0, 1, 2, 3])
+def test_a_picture_is_seen_amid_a_sample_where_that_is_done(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch, samples: int
+) -> None:
+    """Elsewhere it is what was seen before; and it ends as if nobody had looked."""
+    size, stage, target = (150, 110), Stage.of(SCENE), Target(5)
+    expected = renderer.picture(stage, *size, effort=Effort.RESTING)
+    for _ in expected.refine_until(target, math.inf):
+        if expected.samples == samples + 1 and not expected.under_way:
+            break
+    whole = expected.softened() if samples == 0 else expected.rgb()
+    picture = renderer.picture(stage, *size, effort=Effort.RESTING)
+    if samples > 0:
+        for _ in picture.refine_until(Target(samples), math.inf):
+            pass
+    monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: 300)
+    monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
+    over = np.full((*size[::-1], 3), 77, np.uint8)
+    seen, looks = over, 0
+    while picture.samples == samples:
+        for _ in picture.refine_until(Target(samples + 1), 1.0, due=lambda _: True):
+            pass
+        if not picture.under_way:
+            break
+        assert picture.samples == samples
+        assert picture.samples_seen == max(samples, 1)
+        before = seen
+        *_, seen = picture.overlaid(before)
+        same_as_whole = (seen == whole).all(axis=2)
+        inside = np.ones_like(same_as_whole) if samples else _away_from_tiles(size, 48)
+        assert (same_as_whole | (seen == before).all(axis=2))[inside].all()
+        looks += 1
+    assert looks > 2
+    assert 0 < (seen != over).any(axis=2).mean() < 1
+    for _ in picture.refine_until(target, 1.0):
+        pass
+    at_once = renderer.picture(stage, *size, effort=Effort.RESTING)
+    for _ in at_once.refine_until(target, math.inf):
+        pass
+    assert picture.samples == 5
+    assert picture.linear().tobytes() == at_once.linear().tobytes()
+    assert picture.rgb().tobytes() == at_once.rgb().tobytes()
+    assert (picture.cut(), picture.shown_error()) == (at_once.cut(), at_once.shown_error())
+
+
+def _away_from_tiles(size: tuple[int, int], tile: int) -> NDArray[np.bool_]:
+    """Where softening sees only pixels of the same tile."""
+    x, y = (np.arange(length) % tile for length in size)
+    return np.logical_and.outer((y > 0) & (y < tile - 1), (x > 0) & (x < tile - 1))
 
 
 def test_refining_in_steps_is_refining_at_once(exact: Renderer) -> None:

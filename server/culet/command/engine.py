@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from culet.blas import keep_blas_to_one_thread
 from culet.command.endpoints import Control, Spare
 from culet.command.help import ListedHelp
 from culet.command.settings import options_of
@@ -45,6 +46,7 @@ def engine(
 
             serve_engine(control, frames, [*Limits.words(given)])
         else:
+            keep_blas_to_one_thread()
             from culet.engine.process.serve import run
 
             run(control, frames, limits, stand_by=stand_by)

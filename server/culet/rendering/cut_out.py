@@ -42,14 +42,14 @@ class CutOut(Picture):
         self._cut_out, self._cut_out_samples = np.zeros((height, width, 4 if self._behind is None else 3), np.uint8), 0
         """As developed last, and how many samples there were then."""
 
-    def _one_sample(self, seconds: float) -> Iterator[float]:
+    def _one_sample(self) -> Iterator[float]:
         """One of both, by the same light map."""
         if self._lighter.samples > self.samples:  # the map has become another, and this picture has begun anew
             self._lighter.begin_anew()
-        for part in super()._one_sample(seconds):
+        for part in super()._one_sample():
             yield part / 2
-        before = self._lighter.seconds
-        for part in self._lighter._one_sample(seconds):
+        before, self._lighter.launch_seconds = self._lighter.seconds, self.launch_seconds
+        for part in self._lighter._one_sample():
             yield (1 + part) / 2
         self.seconds += self._lighter.seconds - before
 
@@ -63,11 +63,16 @@ class CutOut(Picture):
         return super().segments() + self._lighter.segments()
 
     def refine_until(
-        self, target: Target, seconds: float, *, pause: Callable[[], bool] = lambda: False
+        self,
+        target: Target,
+        seconds: float,
+        *,
+        pause: Callable[[], bool] = lambda: False,
+        due: Callable[[float], bool] = lambda _: False,
     ) -> Iterator[float]:
         """As of any picture. The error is the larger one of the two: before black and before white."""
         self._lighter.compare_as_shown()
-        yield from super().refine_until(target, seconds, pause=pause)
+        yield from super().refine_until(target, seconds, pause=pause, due=due)
 
     def meets(self, target: Target) -> bool:
         """Whether it has the error that the target asks for, if it asks for one."""

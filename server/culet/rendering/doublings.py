@@ -30,7 +30,7 @@ class Doublings:
 
     def clear(self) -> None:
         """As at first."""
-        self._errors.clear()
+        self._errors = {}
 
     def add(self, samples: int, squared: float, components: int) -> None:
         """There are so many samples now, whose halves' means differ by squares of that sum over all components."""

@@ -38,11 +38,17 @@ from culet.stage import Stage
 
 TALLIES = constants("tile.cl")["TALLIES"]
 """Numbers for each tile."""
+LATER, ASIDE = constants("film.cl")["LATER"], constants("film.cl")["ASIDE"]
+"""Which sums `develop` adds to the earlier run."""
 ALMOST = 1 - 2**-20
 """The part of a sample that is done when its pixels are, but not what comes after."""
-PASSES_FOR_A_LOOK = 1.0
-"""Of a sample's time: what passes of light take, at least, before a sample shows them that the next pass makes vain. So
-the light of a picture at rest takes at most twice as long as if nothing were seen of it."""
+LIGHT_FOR_SAMPLES = 1.0
+"""s that passes of light get for each second of samples that are shown meanwhile, and made anew in the light that there
+is at last. So the light of a picture at rest takes at most twice as long as if nothing were seen of it."""
+SOON = 0.1
+"""s. A sample that ends as soon is shown when it is whole."""
+MIXED = -1
+"""Version of the map that samples saw which saw several."""
 DEVELOP_BLOCK = 16
 """Pixels of a work-item that develops, as in film.cl."""
 DEVELOP_GROUP = 16
@@ -145,7 +151,7 @@ class Renderer:
         scratch = cl.Buffer(self.device.context, cl.mem_flags.READ_WRITE, 64)
         none = np.int32(0)
         self.develop(
-            self.device.queue, (DEVELOP_GROUP,), (DEVELOP_GROUP,), scratch, scratch, none, scratch, none, none,
+            self.device.queue, (DEVELOP_GROUP,), (DEVELOP_GROUP,), scratch, scratch, scratch, none, scratch, none, none,
             np.float32(0), none, none,
         )  # fmt: skip
         self.fold.warm_up(scratch)
@@ -218,8 +224,18 @@ class Picture:
         """Spent by the last refinement."""
         self.light_seconds = 0.0
         """Spent by the last refinement on the light map."""
-        self._sample_seconds = 0.0
-        """Spent on the last sample."""
+        self.launch_seconds = math.inf
+        """That a launch is meant to take."""
+        self.sample_seconds = 0.0
+        """Spent on the last whole sample."""
+        self._sampling: Iterator[float] | None = None
+        """The sample under way. A picture that is left amid one goes on with it."""
+        self._lighting: Iterator[object] | None = None
+        """The light on its way to be good enough, the same."""
+        self._under_way_seconds = self._part = 0.0
+        """Spent on the sample under way, s, and the part of its tiles that were begun."""
+        self._light_spent = self._samples_spent = 0.0
+        """s on passes of light, and on samples, while the light got better."""
         self._renderer = renderer
         real = renderer.variant.real
         needed = features_of(stage)
@@ -243,11 +259,13 @@ class Picture:
         self._tracings = Tracings(stage, features, tracing)
         _ = self._tracings.of(0).inputs  # what cannot be drawn is refused at once
         self._lit_by = 0
-        """Version of the map that its samples saw."""
+        """Version of the map that its samples saw, or MIXED."""
+        self._in_final_light = self._light is None
+        """Whether they all saw the one that is good enough."""
         self._light_errors: list[float] = []
         self._light_bounds: list[float] = []
-        """Of the map, as each sample saw it."""
-        tile = tile_of(features)
+        """Of the map, as each sample saw it: first those that were put aside."""
+        self._tile = tile = tile_of(features)
         self._tiles = math.ceil(width / tile), math.ceil(height / tile)
         # Not by this picture's `_allocate`: with sums that hold their picture, both stay until garbage is collected.
         self._sums = Sums(renderer.fold, renderer.allocate, width, height, real)
@@ -255,8 +273,12 @@ class Picture:
         hides = film.fireflies == "hide" and not film.cut_out
         self._fireflies = renderer.fireflies(width * height, film.exposure) if hides else None
         self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
-        self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), 0
-        """As developed last, and how many samples there were then."""
+        self._tallies_before = np.zeros((self._tiles[0] * self._tiles[1], TALLIES), np.float32)
+        """Of the sample before the one that is under way."""
+        self._seen = np.zeros(self._tiles[0] * self._tiles[1], bool)
+        """Tiles of the sample under way that `overlaid` has shown."""
+        self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), (0, 0)
+        """As developed last, and how many samples there were then, and put aside."""
 
     @property
     def scene(self) -> Scene:
@@ -267,6 +289,18 @@ class Picture:
     def samples(self) -> int:
         """Of each pixel, so far."""
         return self._sums.samples
+
+    @property
+    def samples_seen(self) -> int:
+        """Of each pixel, in what is shown. While the light gets better, samples are shown that are made anew in the
+        light that there is at last, one by one: until then as many are shown as there were."""
+        under_way = self._sampling is not None  # in some pixels, and in none that there was nothing of
+        return max(self.samples, self._sums.samples_aside, int(under_way))
+
+    @property
+    def under_way(self) -> bool:
+        """Whether it was left amid a sample, which some pixels have and others have not."""
+        return self._sampling is not None
 
     def prepare(self) -> None:
         """Have on the device what the next sample needs, which `refine` does by itself."""
@@ -284,34 +318,49 @@ class Picture:
         picture is the same to the last bit as one that is made at once.
         """
         self.seconds = self.light_seconds = 0.0
+        self.launch_seconds = seconds
         before = self.samples
         while self.samples < before + samples:
-            for _ in self._lit(seconds):
+            for _ in self._lit():
                 yield max(0, self.samples - before) / samples
             done = self.samples - before
-            for part in self._one_sample(seconds):
+            for part in self._sampled():
                 yield max(0.0, done + part) / samples
 
     def refine_until(
-        self, target: Target, seconds: float, *, pause: Callable[[], bool] = lambda: False
+        self,
+        target: Target,
+        seconds: float,
+        *,
+        pause: Callable[[], bool] = lambda: False,
+        due: Callable[[float], bool] = lambda _: False,
     ) -> Iterator[float]:
         """Add samples until the target is reached, in launches of about so many seconds; yields the part that is done,
         as far as that can be told.
 
-        After each sample `pause` is asked whether to leave it at that for now, and after each pass of the light map
-        whether to show that pass by a sample, before the next one. The picture that reaches the target is the same to
-        the last bit however often it was left, as long as its first two samples were not made otherwise.
+        After each sample `pause` is asked whether to leave it at that for now. `due` tells whether somebody is to see
+        the picture within so many seconds: it is left when that is so, amid a sample too if that does not end SOON
+        (`overlaid`), and a picture at rest shows samples in the light that there is, while that gets better. The
+        picture that reaches the target is the same to the last bit however often it was left, as long as its first two
+        samples were not made otherwise.
         """
         self.compare_as_shown()
         self.seconds = self.light_seconds = 0.0
+        self.launch_seconds = seconds
         while not self.reached(target):
-            for _ in self._lit(seconds, pause):
+            for _ in self._lit(due):
                 yield min(self.samples / self._needed(target), 1.0)
-            before = self.samples
-            for part in self._one_sample(seconds):
+            before, begun = self.samples, self.seconds
+            for part in self._sampled():
                 yield min((before + part) / self._needed(target), 1.0)
-            if pause():
+                spent = self.seconds - begun
+                tiles = self._fireflies is None and part < ALMOST  # what comes after them is short
+                if tiles and self._left > SOON and spent > 0 and due(0):
+                    return
+            if pause() or due(0):
                 break
+        if self.reached(target):
+            self._forget_aside()
 
     def compare_as_shown(self) -> None:
         """From now on, tell the error of what is shown whenever samples have doubled."""
@@ -320,7 +369,7 @@ class Picture:
 
     def reached(self, target: Target) -> bool:
         """Whether there is nothing left to do for it: its error is met, or its samples are there."""
-        return self.samples >= self._needed(target)
+        return self._in_final_light and self.samples >= self._needed(target)
 
     def meets(self, target: Target) -> bool:
         """Whether it has the error that the target asks for, if it asks for one."""
@@ -332,39 +381,93 @@ class Picture:
         expected = None if target.error is None else self._sums.shown.samples_for(target.error)
         return target.samples if expected is None else min(max(expected, target.least), target.samples)
 
-    def _lit(self, seconds: float, pause: Callable[[], bool] = lambda: False) -> Iterator[None]:
-        """See to the light map before the next sample; yields between launches. If the map becomes another, so do all
-        samples.
+    def _lit(self, due: Callable[[float], bool] = lambda _: False) -> Iterator[None]:
+        """See to the light map before the next sample, or amid one; yields between launches. If the map becomes
+        another, so do all samples.
 
-        At rest the map as it is may be shown by a sample before its last pass, if `pause` says so after a pass.
+        At rest it is left, and goes on later, when a sample is `due` and the light has had its share of the time.
         """
-        if self._light is None:
+        light = self._light
+        if light is None:
             return
-        started, first = time.perf_counter(), self.samples == 0
-        spent, version, may_wait = self.light_seconds, self._light.version, self._effort is Effort.RESTING
-        for _ in self._light.pieces(self.scene.optics.caustics_cutoff, self._effort, seconds, first=first):
-            self.light_seconds += time.perf_counter() - started
+        started, begun = time.perf_counter(), self.samples > 0 or self._sampling is not None
+        shares, final = self._effort is Effort.RESTING, True
+        if self._lighting is None:
+            cutoff = self.scene.optics.caustics_cutoff
+            self._lighting = iter(light.pieces(cutoff, self._effort, self.launch_seconds, first=not begun))
+            final = begun or not shares
+        for _ in self._lighting:
+            self._spent_on_light(time.perf_counter() - started)
             yield
             started = time.perf_counter()
-            paid = self.light_seconds - spent >= PASSES_FOR_A_LOOK * self._sample_seconds
-            if may_wait and self._light.version != version and paid and pause():
-                break  # the light goes on where it was, before the next sample
-        self.light_seconds += time.perf_counter() - started
-        if self._light.version != self._lit_by and self.samples > 0:
+            shared = self._light_spent >= LIGHT_FOR_SAMPLES * self._samples_spent
+            if shares and begun and shared and due(self._left):
+                final = False
+                break
+        else:
+            self._lighting = None
+        self._spent_on_light(time.perf_counter() - started)
+        if final:
+            self._light_spent = self._samples_spent = 0.0
+        if self._sampling is not None:  # which goes on in the light that there is now
+            self._lit_by = self._lit_by if self._lit_by == light.version else MIXED
+            self._in_final_light = final and self._lit_by != MIXED
+            return
+        if final and self.samples > 0 and self._lit_by != light.version:
+            yield from self._put_aside()
+        self._lit_by = light.version if self.samples == 0 or self._lit_by == light.version else MIXED
+        self._in_final_light = final
+        self._light_errors.append(light.rmse)
+        self._light_bounds.append(math.nan if light.figures is None else light.figures.bound)
+
+    def _spent_on_light(self, seconds: float) -> None:
+        self.light_seconds += seconds
+        self._light_spent += seconds
+
+    def _put_aside(self) -> Iterator[None]:
+        """Make all samples anew, which are shown until they are there. Fireflies cannot be told from two lights."""
+        if self._effort is not Effort.RESTING or self._fireflies is not None:
             self.begin_anew()
-        self._lit_by = self._light.version
-        figures = self._light.figures
-        self._light_errors.append(self._light.rmse)
-        self._light_bounds.append(math.nan if figures is None else figures.bound)
+            return
+        yield from self._sums.put_aside()
 
     def begin_anew(self) -> None:
         """Forget all samples."""
         self._sums.restart()
-        self._shown_samples = 0
-        self._light_errors.clear()
-        self._light_bounds.clear()
+        self._forget_aside()
+        self._shown_samples = 0, 0
 
-    def _one_sample(self, seconds: float) -> Iterator[float]:
+    def _forget_aside(self) -> None:
+        self._sums.forget_aside()
+        kept = self.samples
+        self._light_errors = self._light_errors[len(self._light_errors) - kept :]
+        self._light_bounds = self._light_bounds[len(self._light_bounds) - kept :]
+
+    def _sampled(self) -> Iterator[float]:
+        """The sample under way, or the next one, as `_one_sample` makes it."""
+        self._sampling = self._sampling or self._one_sample()
+        before = self.seconds
+        try:
+            for part in self._sampling:
+                self._samples_spent += 0.0 if self._in_final_light else self.seconds - before
+                before, self._part = self.seconds, part
+                if part == 1:
+                    self._sampling = None
+                yield part
+        except Exception:
+            self._sampling = None  # it has ended
+            raise
+        if self._sums.samples_aside == 0:
+            self._forget_aside()
+
+    @property
+    def _left(self) -> float:
+        """s that the sample under way, or else the next one, is still expected to take."""
+        if self._sampling is None:
+            return self.sample_seconds
+        return self._under_way_seconds * (1 - self._part) / self._part if self._part > 0 else math.inf
+
+    def _one_sample(self) -> Iterator[float]:
         """Yields the part of the tiles that were begun, between launches, and at last 1."""
         device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
         tracing = self._tracings.of(self.samples)
@@ -374,7 +477,10 @@ class Picture:
         progress = np.zeros(progress_size(device.units), np.uint32)
         of_items = progress[OF_ITEMS:].reshape(device.units, 2)
         buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * tracing.kernel.kept_bytes)
-        start, before = time.perf_counter(), self.seconds
+        start = time.perf_counter()
+        self._under_way_seconds = self._part = 0.0
+        if self._effort is Effort.RESTING:
+            self._mark_tiles()
         cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
         while True:
             event = tracing.kernel.launch(
@@ -387,7 +493,7 @@ class Picture:
                     "tallies": self._tallies,
                     "jitter_x": x,
                     "jitter_y": y,
-                    "steps": tracing.pace.steps(seconds),
+                    "steps": tracing.pace.steps(self.launch_seconds),
                     "count": count,
                     "progress": buffer,
                     "kept": kept,
@@ -397,6 +503,7 @@ class Picture:
             cl.enqueue_copy(device.queue, progress, buffer)
             taken = time.perf_counter() - start
             self.seconds += taken
+            self._under_way_seconds += taken
             under_way, steps = of_items.T
             tracing.pace.made(int(steps.max()), taken)
             part = min(int(progress[TILES_DEALT]) / count, ALMOST)
@@ -404,7 +511,7 @@ class Picture:
                 break
             yield part
             start = time.perf_counter()
-        self._sample_seconds = self.seconds - before
+        self.sample_seconds = self._under_way_seconds
         if self._fireflies is not None:
             self._fireflies.collect(run, add=adds, sample=self.samples)
         for _ in self._sums.added():
@@ -448,43 +555,90 @@ class Picture:
 
     def develop_in_pieces(self) -> Iterator[None]:
         """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""
-        if self._shown_samples == self.samples:
+        there = self.samples, self._sums.samples_aside
+        if self._shown_samples == there:
             return
         shown = np.empty((self.height, self.width, 3), np.uint8)
-        pixels, (earlier, later), both = self.width * self.height, self._sums.buffers, self._sums.later > 0
+        yield from self._fill(shown, 0, self.height, self.samples, later=self._sums.later > 0)
+        self._shown, self._shown_samples = shown, there
+
+    def overlaid(self, over: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
+        """Where tiles of the sample under way are done, the picture with that sample; elsewhere what was seen last
+        (height, width, 3), of the same shape. So each pixel is at least as good as it was. Yields it between pieces of
+        work; what comes last is whole."""
+        shown = over.copy()
+        done = ~np.isnan(self._read_tallies()[:, 0])
+        new = (done & ~self._seen).reshape(self._tiles[::-1])
+        developed = np.empty_like(shown)
+        tile = self._tile
+        masks: list[tuple[slice, NDArray[np.bool_]]] = []
+        for number in np.flatnonzero(new.any(axis=1)):
+            rows = slice(int(number) * tile, min((int(number) + 1) * tile, self.height))
+            for _ in self._fill(developed, rows.start, rows.stop, self.samples + 1, later=self.samples > 0):
+                yield shown
+            mask = np.repeat(new[number], tile)[: self.width]
+            shown[rows][:, mask] = developed[rows][:, mask]
+            masks.append((rows, mask))
+        if self.samples == 0 and self._sums.samples_aside <= 1:
+            softened = self._renderer.softening.softened(shown)
+            for rows, mask in masks:
+                shown[rows][:, mask] = softened[rows][:, mask]
+        self._seen |= done
+        yield shown
+
+    def _fill(self, shown: NDArray[np.uint8], first: int, last: int, samples: int, *, later: bool) -> Iterator[None]:
+        """Fill those rows of (height, width, 3), of so many samples of each pixel besides those that are put aside, of
+        the earlier run and, with `later`, of the later one."""
+        sums, renderer = self._sums, self._renderer
+        earlier, run = sums.buffers
+        runs = (LATER if later else 0) | (ASIDE if sums.samples_aside else 0)
         if self._fireflies is not None:
-            earlier, both = self._fireflies.left_out(earlier, later, self.samples, both=both), False
-        queue, target = self._renderer.device.queue, self._allocate(shown.nbytes)
-        flat = shown.reshape(-1)
-        for begin in range(0, pixels, DEVELOPED):
-            end = min(begin + DEVELOPED, pixels)
+            earlier, runs = self._fireflies.left_out(earlier, run, samples, both=later), 0
+        aside = earlier if sums.aside is None else sums.aside
+        queue, flat, target = renderer.device.queue, shown.reshape(-1), self._allocate(shown.nbytes)
+        many = samples + sums.samples_aside
+        for begin in range(first * self.width, last * self.width, DEVELOPED):
+            end = min(begin + DEVELOPED, last * self.width)
             items = math.ceil((end - begin) / DEVELOP_BLOCK / DEVELOP_GROUP) * DEVELOP_GROUP
-            self._renderer.develop(
-                queue, (items,), (DEVELOP_GROUP,), earlier, later, np.int32(both), target,
-                np.int32(begin), np.int32(end), *film_arguments(self.scene, self.samples),
+            renderer.develop(
+                queue, (items,), (DEVELOP_GROUP,), earlier, run, aside, np.int32(runs), target,
+                np.int32(begin), np.int32(end), *film_arguments(self.scene, many),
             )  # fmt: skip
             cl.enqueue_copy(queue, flat[3 * begin : 3 * end], target, src_offset=3 * begin)
             yield
-        self._shown, self._shown_samples = shown, self.samples
+
+    def _mark_tiles(self) -> None:
+        """A sample begins that may be shown before it is whole: none of its tiles is done."""
+        self._tallies_before = self._tally()
+        self._seen[:] = False
+        cl.enqueue_copy(self._renderer.device.queue, self._tallies, np.full_like(self._tallies_before, np.nan))
+
+    def _read_tallies(self) -> NDArray[np.float32]:
+        """By tile: segments, and the weight that was cut; NaN of tiles that the sample under way does not have yet."""
+        tallies = np.empty_like(self._tallies_before)
+        cl.enqueue_copy(self._renderer.device.queue, tallies, self._tallies)
+        return tallies
 
     def _tally(self) -> NDArray[np.float32]:
         """By tile: segments, and the weight that was cut; of the last sample."""
-        tallies = np.zeros((self._tiles[0] * self._tiles[1], TALLIES), np.float32)
-        if self.samples == 0:
-            return tallies
-        cl.enqueue_copy(self._renderer.device.queue, tallies, self._tallies)
-        return tallies
+        if self.samples_seen == 0:
+            return np.zeros_like(self._tallies_before)
+        tallies = self._read_tallies()
+        missing = np.isnan(tallies)
+        if self.samples == 0 and missing.any() and not missing.all():  # as of those that are done
+            return np.where(missing, np.nanmean(tallies, axis=0), tallies)
+        return np.where(missing, self._tallies_before, tallies)
 
     def error_estimate(self) -> float:
         """Root mean square error of `linear()` that its samples and its light map let expect, in radiance; NaN below
         two samples."""
-        light, own = self.light_error(), self._sums.radiance.error(self.samples)
+        light, own = self.light_error(), self._sums.radiance_error()
         return own if math.isnan(light) else math.hypot(own, light)
 
     def shown_error(self) -> float:
         """Root mean square error of what is shown, over pixels and colours from 0 (black) to 1 (white), that its
         samples let expect: what more of them would take away. NaN below two samples, and without `refine_until`."""
-        return self._sums.shown.error(self.samples)
+        return self._sums.shown_error()
 
     def light_error(self) -> float:
         """The light map's part of that, as on a white surface; NaN without a map, or before its passes tell."""

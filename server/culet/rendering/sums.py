@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -60,10 +61,15 @@ class Sums:
         self._width, self._height = width, height
         self._earlier: Any = allocate(self._size)
         self._later: Any = None
+        self.aside: Any = None
+        """On the device: the sum of samples that are shown until as many others are there; None: of none."""
+        self.samples_aside = 0
         self.radiance = Doublings()
         """Of linear colours."""
         self.shown = Doublings()
         """Of what a screen shows, while `compare_shown` is given."""
+        self._aside_radiance, self._aside_shown = Doublings(), Doublings()
+        """Of the samples that were put aside."""
         self.compare_shown: Callable[[Any, Any, int], Iterator[float]] | None = None
         """Of two runs of so many samples each: yields, of a part of the picture each time, the sum of the squared
         differences of their means as shown."""
@@ -90,6 +96,26 @@ class Sums:
         self.radiance.clear()
         self.shown.clear()
 
+    def put_aside(self) -> Iterator[None]:
+        """The samples that there are do not count any more, but are shown until as many others are there. Those that
+        are there begin anew; yields between pieces of work."""
+        pixels = self._width * self._height
+        if self.later > 0:
+            for _ in self._fold.pieces(self._earlier, self._later, pixels):
+                yield
+        if self.aside is None:
+            self.aside, self._earlier = self._earlier, self._allocate(self._size)
+        else:
+            for _ in self._fold.pieces(self.aside, self._earlier, pixels):
+                yield
+        self.samples_aside += self.samples
+        self._aside_radiance, self._aside_shown = copy(self.radiance), copy(self.shown)
+        self.restart()
+
+    def forget_aside(self) -> None:
+        """What was put aside is shown no more."""
+        self.aside, self.samples_aside = None, 0
+
     def target(self) -> tuple[Any, bool]:
         """Where the next sample goes, and whether it is added to what is there."""
         if self.samples > 0 and self._later is None:
@@ -99,6 +125,8 @@ class Sums:
     def added(self) -> Iterator[None]:
         """The sample is there, in all pixels. To be run to its end; yields between pieces of work."""
         self.samples += 1
+        if self.samples >= self.samples_aside:
+            self.forget_aside()
         if self.samples > 1 and self.samples == self.earlier:
             pixels, half = self._width * self._height, self.samples // 2
             if self.compare_shown is not None:
@@ -113,12 +141,26 @@ class Sums:
                 yield
             self.radiance.add(self.samples, squared / half**2, 3 * pixels)
 
+    def radiance_error(self) -> float:
+        """Estimated root mean square error of the linear colours of what is shown; NaN below two samples."""
+        return self._error(self.radiance, self._aside_radiance)
+
+    def shown_error(self) -> float:
+        """The same of what a screen shows."""
+        return self._error(self.shown, self._aside_shown)
+
+    def _error(self, own: Doublings, aside: Doublings) -> float:
+        """Samples that are put aside are made anew one by one: what is shown has as many different ones as they are."""
+        return own.error(self.samples) if self.samples_aside == 0 else aside.error(self.samples_aside)
+
     def mean(self, rows: slice = slice(None)) -> NDArray[np.floating[Any]]:
-        """(height, width, 4) of all samples, or those rows of it; zeros without any sample."""
-        counts = self.samples, self.later
-        runs = [self._read(buffer, rows) for buffer, count in zip(self.buffers, counts, strict=True) if count]
+        """(height, width, 4) of all samples that are shown, or those rows of it; zeros without any sample."""
+        counts = self.samples, self.later, self.samples_aside
+        sums = zip((*self.buffers, self.aside), counts, strict=True)
+        runs = [self._read(buffer, rows) for buffer, count in sums if count]
         height = len(range(*rows.indices(self._height)))
-        return sum(runs, np.zeros((height, self._width, 4), self._real)) / self._real(max(1, self.samples))
+        count = max(1, self.samples + self.samples_aside)
+        return sum(runs, np.zeros((height, self._width, 4), self._real)) / self._real(count)
 
     @property
     def _size(self) -> int:

@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +60,9 @@ class Resting:
     width: int
     height: int
     looks: Sequence[Look]
+    """Those that are not amid a sample."""
+    longest_gap: float
+    """s between two pictures that a viewer gets."""
     met: bool
     """Whether the last picture has the error that it was to have."""
     samples: int
@@ -98,9 +102,12 @@ def measure(
     renderer.picture(stage, *WARM_UP, effort=None).refine(2)
     picture, taken = renderer.picture(stage, width, height, effort=Effort.RESTING), list[tuple[float, int, Image]]()
     estimates = []
+    times = []
     for seconds in _at_rest(renderer, stage, picture, rest):
-        taken.append((seconds, picture.samples, picture.linear()))
-        estimates.append((picture.shown_error(), picture.error_estimate()))
+        times.append(seconds)
+        if not picture.under_way:
+            taken.append((seconds, picture.samples_seen, picture.linear()))
+            estimates.append((picture.shown_error(), picture.error_estimate()))
         progress(min(1.0, picture.samples / (rest.samples + samples)))
     met, own = picture.meets(rest), picture.samples
     if is_spectral(stage.scene) and stage.scene.optics.bands == "auto":
@@ -117,7 +124,8 @@ def measure(
         off = math.sqrt(np.mean(np.square(as_shown(image, film) - shown)))
         of_radiance = radiance_error(image, reference)["rmse"]
         looks.append(Look(seconds, count, off, shown_estimate, of_radiance, radiance_estimate))
-    return Resting(width, height, looks, met, samples)
+    gaps = [after - before for before, after in pairwise(times)]
+    return Resting(width, height, looks, max(gaps, default=0.0), met, samples)
 
 
 def _with_bands(stage: Stage, bands: int) -> Stage:
@@ -128,16 +136,18 @@ def _with_bands(stage: Stage, bands: int) -> Stage:
 def _at_rest(renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Target) -> Iterator[float]:
     """Yields the seconds that it took so far, whenever a viewer would get the picture."""
     shown, size, spent = Session("0" * 32, stage).shown, (picture.width, picture.height), 0.0
-    final = False
+    final, over = False, None
     while not final:
         begun = time.perf_counter()
-        first = picture.samples == 0
+        first = over is None
         work = FrameWork(Kind.FULL if first else Kind.REFINED, shown, size, Account(None), begun, picture=picture)
-        work.aim, work.now = None if first else rest, time.perf_counter
+        work.aim, work.over = None if first else rest, over
         work.start(renderer)
         for _ in work.pieces:
             pass
-        jpeg.encode(picture.rgb(), jpeg.RESTING_QUALITY)
+        assert work.frame is not None  # noqa: S101 - all pieces are done
+        over = work.frame.rgb
+        jpeg.encode(over, jpeg.RESTING_QUALITY)
         spent += time.perf_counter() - begun
         final = work.final
         yield spent
@@ -163,5 +173,4 @@ def described(found: Resting) -> Iterator[str]:
             words = "never" if until.seconds is None else f"after {until.seconds:.1f} s"
             note = " (extrapolated)" if until.extrapolated else ""
             yield f"error {kind} under {target:g}: {words}{note}"
-    gaps = [after.seconds - before.seconds for before, after in zip(found.looks, found.looks[1:], strict=False)]
-    yield f"longest time between two pictures: {max(gaps, default=0):.2f} s"
+    yield f"longest time between two pictures: {found.longest_gap:.2f} s"

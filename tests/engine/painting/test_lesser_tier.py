@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import simplejpeg
 
-from culet.engine.governing.thrift import GROWN, Allowance, Encoding
+from culet.engine.governing.thrift import FINAL_TIMES, GROWN, Allowance, Encoding
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
@@ -86,6 +86,22 @@ async def test_at_rest_it_has_the_bytes_that_there_are_for_a_picture_at_rest(fra
     resting = replace(frame, planned=False, encoding=None)
     most = len(resting.encoded(np.inf).data) // 3
     assert len(within(1, most).encoded(resting).data) <= most
+
+
+async def test_the_last_picture_at_rest_has_the_bytes_of_some_seconds(desk: Desk, frame: LiveFrame) -> None:
+    """Of either tier: none comes after it that could be better."""
+    resting = replace(frame, planned=False, encoding=None)
+    best = resting.encoded(np.inf)
+    most = int(len(best.data) / (0.8 * FINAL_TIMES))
+    coarse, last = (within(1, most).encoded(replace(resting, final=final)) for final in (False, True))
+    assert coarse.thrifty
+    assert len(coarse.data) <= most
+    assert last == best
+    desk.outgoing.allowance = Allowance(1, most)
+    for final in (False, True):
+        desk.frame = replace(resting, final=final)
+        await desk.publish()
+    assert [len(sent.payload) for sent in desk.sent] == [len(coarse.data), len(best.data)]
 
 
 async def test_it_goes_out_under_the_number_of_the_frame_by_a_topic_of_its_own(desk: Desk, frame: LiveFrame) -> None:

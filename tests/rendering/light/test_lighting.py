@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -215,27 +216,36 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
 def test_light_at_rest_is_shown_while_it_gets_better_and_ends_in_the_same_picture(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One sample after each pass, or all passes at once."""
+    """Samples and pieces of passes by turns, or all passes at once. What is seen has ever more samples, if only by
+    being sampled anew in the last light."""
     monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", 5)
-    monkeypatch.setattr("culet.rendering.renderer.PASSES_FOR_A_LOOK", 0.0)
+    monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
     stage, target = Stage.of(scene_of(emitters=[SUN])), Target(3)
     renderer.lighting.forget()
     expected = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
     for _ in expected.refine_until(target, math.inf):
         pass
+    assert expected.samples == expected.samples_seen == 3
     renderer.lighting.forget()
-    picture, looks = renderer.picture(stage, *SIZE, effort=Effort.RESTING), list[tuple[int, int]]()
+    picture, looks = renderer.picture(stage, *SIZE, effort=Effort.RESTING), list[tuple[int, int, int]]()
     while not picture.reached(target):
-        for _ in picture.refine_until(target, 1e-4, pause=lambda: True):
+        for _ in picture.refine_until(target, 1e-5, due=lambda _: True):
             pass
         found = renderer.lighting.of(stage)
         assert found is not None
-        looks.append((found.passes, picture.samples))
-    assert looks == [(1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (5, 2), (5, 3)]
+        looks.append((found.passes, picture.samples, picture.samples_seen))
+    passes, samples, seen = zip(*looks, strict=True)
+    assert list(passes) == sorted(passes)
+    assert passes[-1] == 5
+    assert len(looks) > 5 + 3, "some were amid a pass"
+    anew = next(number for number, (before, after) in enumerate(pairwise(samples), 1) if after < before)
+    assert samples[anew] == 1, "the light is as good as it gets"
+    assert list(seen[:-3]) == sorted(seen[:-3])
+    assert seen[anew] == samples[anew - 1]
     assert picture.linear().tobytes() == expected.linear().tobytes()
     renderer.lighting.forget()
     patient = renderer.picture(stage, *SIZE, effort=Effort.PATIENT)
-    for _ in patient.refine_until(target, 1e-4, pause=lambda: True):
+    for _ in patient.refine_until(target, 1e-4, due=lambda _: True):
         pass
     assert patient.light_error() == expected.light_error(), "a still waits for all its light"
 
@@ -379,12 +389,15 @@ def test_where_photons_would_take_too_long_a_moving_picture_says_that_it_has_sha
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("culet.rendering.light.lighting.MOVING_PHOTON_SECONDS", 1e-9)
+    monkeypatch.setattr("culet.rendering.light.lighting.PHOTON_PASSES", 1)
     stage = staged(scene_of(stones=[{"position": [0, 0.2, 0]}]), ring())
     picture, found = lit(renderer, stage, Effort.MOVING)
     assert picture.shows_shadows_only()
     assert picture.light_bound() == pytest.approx(1, abs=0.1)
     assert texels(renderer, found).max() < 1e-6
     picture, found = lit(renderer, stage, Effort.RESTING)
+    assert picture.shows_shadows_only(), "what is there already is soon seen in full"
+    picture.refine()
     assert not picture.shows_shadows_only(), "at rest there is time"
     assert texels(renderer, found).max() > 0.05
 

@@ -29,6 +29,8 @@ MEMORY = 0.3
 """Weight of the latest frame in how many times the measured bytes frames have,"""
 GROWN = 1.3
 """but one that has so many times the bytes that were expected counts in full: the next must not be as large."""
+FINAL_TIMES = 4
+"""Times the bytes of pictures at rest that the final one may have: some 3 s of a link, while the one before is seen."""
 WORTH = 0.96
 """A frame of another size must be expected to miss less than so many times what one of this size would: or with each
 small change of the link the picture would change its size."""
@@ -84,6 +86,10 @@ class Allowance:
     """Of a moving one, if frames come as often as the session's balance asks for."""
     at_rest: int | None = None
     """Of a picture at rest."""
+
+    def resting(self, *, final: bool) -> float:
+        """Bytes of a picture at rest, at most. One that is `final` is all that will come: it is worth more time."""
+        return math.inf if self.at_rest is None else self.at_rest * (FINAL_TIMES if final else 1)
 
     def room(self, asked: float, made: float) -> Room | None:
         """For frames that are asked for, and can be made, so many times a second."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import os
 import time
 from collections.abc import Callable, Collection
@@ -209,7 +208,8 @@ class FrameSender:
                     codecs |= {track.codec}  # as JPEG
                 else:
                     video[track] = frame.coded(track.codec, packet, track.sequence)
-            picture = await self._in_thread(frame.encoded, outgoing.allowance.at_rest or math.inf) if codecs else None
+            at_rest = outgoing.allowance.resting(final=frame.final)
+            picture = await self._in_thread(frame.encoded, at_rest) if codecs else None
             encode_seconds = time.perf_counter() - started
             if frame.encoding is not None:
                 for coded in [*video.values(), *([] if picture is None else [picture])]:

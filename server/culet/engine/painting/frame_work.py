@@ -7,6 +7,10 @@ from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from time import perf_counter
 
+import numpy as np
+import PIL.Image
+from numpy.typing import NDArray
+
 from culet.engine.governing.governor import Plan
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
@@ -18,8 +22,8 @@ from culet.rendering.target import Target
 from culet.stage import Stage
 
 REFRESH_SECONDS = 0.35
-"""After which a picture at rest that gets better is shown as it is after the sample under way: with that sample,
-developing, encoding and the way to the viewer less than half a second where a sample takes a tenth of one."""
+"""After which a picture at rest that gets better is shown as it is: with a sample that ends soon, developing, encoding
+and the way to the viewer that is half a second. A longer sample is shown where it is done."""
 
 
 class Kind(Enum):
@@ -55,6 +59,10 @@ class FrameWork:
     """To which what is refined is refined at last."""
     now: Callable[[], float] = perf_counter
     """s, the clock of `begun_at`."""
+    over: NDArray[np.uint8] | None = None
+    """(height, width, 3): what was seen last of the same; None: nothing that it could be shown over amid a sample."""
+    seen_at: float | None = None
+    """s, the same clock: when that was drawn, if not when this was begun."""
     piece_seconds: float = PIECE_SECONDS
     """That a launch is meant to take."""
     final: bool = False
@@ -71,6 +79,8 @@ class FrameWork:
     """Of the samples that is done."""
     frame: LiveFrame | None = None
     """When all is done."""
+    first_seconds: float | None = None
+    """s of rendering the picture's first sample, if it was this that made it whole."""
     pieces: Iterator[object] = field(init=False)
 
     @property
@@ -105,19 +115,25 @@ class FrameWork:
         if self.picture is None:
             effort = Effort.RESTING if self.plan is None else Effort.MOVING
             self.picture = renderer.picture(self.stage, width, height, effort=effort)
-        picture = self.picture
+        picture, sampled = self.picture, self.picture.sample_seconds > 0
         for part in self._samples(picture):
             self.part = part
             yield part
         self.render_seconds += picture.seconds + picture.light_seconds
-        started = perf_counter()
-        yield from picture.develop_in_pieces()
+        if not sampled and picture.sample_seconds > 0:
+            self.first_seconds = picture.sample_seconds
+        started, overlaid = perf_counter(), None
+        if picture.under_way and self.over is not None:
+            for overlaid in picture.overlaid(_resized(self.over, width, height)):
+                yield overlaid
+        else:
+            yield from picture.develop_in_pieces()
         develop_seconds = perf_counter() - started
         spent = self.simulate_seconds, self.render_seconds
         whole = (width, height) == self.wanted  # a smaller one is softened enough by being enlarged
         self.frame = LiveFrame.developed(
             picture, self.shown, self.plan, spent, develop_seconds, aim=self.aim, final=self.final, slow=self.slow,
-            soft=picture.samples == 1 and whole and not self.final,
+            soft=picture.samples_seen == 1 and whole and not self.final, overlaid=overlaid,
         )  # fmt: skip
 
     def _samples(self, picture: Picture) -> Iterator[float]:
@@ -125,14 +141,26 @@ class FrameWork:
 
         When frames are sent depends on the time, but which of them is final does not.
         """
-        if self.aim is None:
+        if self.aim is None and self.over is None:
             yield from picture.refine_in_pieces(1, self.piece_seconds)
-            return
-        more = replace(self.aim, samples=min(2 * max(1, picture.samples), self.aim.samples))
-        yield from picture.refine_until(
-            more, self.piece_seconds, pause=lambda: self.now() - self.begun_at > REFRESH_SECONDS
-        )
-        self.final = picture.reached(self.aim)
+        elif self.aim is None:
+            yield from picture.refine_until(Target(1), self.piece_seconds, pause=lambda: True, due=self._due)
+        else:
+            more = replace(self.aim, samples=min(2 * max(1, picture.samples_seen), self.aim.samples))
+            yield from picture.refine_until(more, self.piece_seconds, due=self._due)
+            self.final = picture.reached(self.aim)
+
+    def _due(self, seconds: float) -> bool:
+        """Whether what is made is to be seen when so many seconds have gone by."""
+        since = self.begun_at if self.seen_at is None else self.seen_at
+        return self.now() + seconds - since > REFRESH_SECONDS
+
+
+def _resized(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+    if rgb.shape == (height, width, 3):
+        return rgb
+    picture = PIL.Image.fromarray(np.ascontiguousarray(rgb))
+    return np.asarray(picture.resize((width, height), PIL.Image.Resampling.BILINEAR))
 
 
 def proceed(pieces: Iterator[object], clock: Callable[[], float], seconds: float = PIECE_SECONDS) -> bool:

@@ -39,7 +39,7 @@ class LesserTier:
         width, height = self.fitting(frame.size)
         if not frame.planned:
             quality = jpeg.MOVING_QUALITY if frame.shown.moving else jpeg.RESTING_QUALITY
-            most = self.allowance.at_rest or math.inf
+            most = self.allowance.resting(final=frame.final)
             picture = jpeg.encode_within(_shrunk(frame.rgb, width, height), quality, most)
             return Coded.of_jpeg(picture, thrifty=picture.quality < quality or picture.width < width)
         best = jpeg.MOVING_QUALITY if frame.encoding is None else frame.encoding.quality

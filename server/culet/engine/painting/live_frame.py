@@ -76,20 +76,24 @@ class LiveFrame:
         final: bool,
         slow: bool,
         soft: bool,
+        overlaid: NDArray[np.uint8] | None = None,
     ) -> LiveFrame:
-        """Of a picture that is done and developed, and took that long to simulate and to render.
+        """Of a picture that is done and developed, and took that long to simulate and to render; or that is amid a
+        sample and `overlaid`.
 
         Estimating its error costs nothing for the single sample of a moving one.
         """
         started = time.perf_counter()
-        rgb = picture.softened() if soft else picture.rgb()
+        rgb = overlaid
+        if rgb is None:
+            rgb = picture.softened() if soft else picture.rgb()
         cut, error = picture.cut(), picture.error_estimate()
         return cls(
             rgb=rgb,
             shown=shown,
             optics=picture.scene.optics,
-            bands=bands_seen(picture.scene, picture.samples),
-            samples=picture.samples,
+            bands=bands_seen(picture.scene, picture.samples_seen),
+            samples=picture.samples_seen,
             simulate_seconds=spent[0],
             render_seconds=spent[1],
             develop_seconds=develop_seconds + time.perf_counter() - started,

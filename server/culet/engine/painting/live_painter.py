@@ -119,7 +119,9 @@ class LivePainter:
             else None
         )
         kind = Kind.FULL if plan is None else Kind.PLANNED
-        work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated)
+        work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated, now=self._now)
+        if plan is None and shown is live.painted:
+            work.over, work.seen_at = live.seen, live.seen_at
         if self._share_of(live) >= 1:
             work.piece_seconds = ALONE_SECONDS
         work.slow = shown.moving and live.session.motion.pace.slow
@@ -136,7 +138,7 @@ class LivePainter:
         live.rest.weight = FINE_WEIGHT if fine else REST_WEIGHT
         work = FrameWork(
             Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, aim=self._rest,
-            now=self._now, render_seconds=live.render_seconds,
+            now=self._now, render_seconds=live.render_seconds, over=live.seen, seen_at=live.seen_at,
         )  # fmt: skip
         if fine and self._share_of(live) < 1:
             work.piece_seconds = FINE_SECONDS
@@ -169,8 +171,8 @@ class LivePainter:
         asked = live.frames_per_second, self._share_of(live)
         if work.plan is not None:
             governor.rendered(work.plan, seconds, work.spent - seconds, *asked)
-        elif work.kind is Kind.FULL:
-            governor.rested(work.shown.scene, work.wanted, seconds, *asked)
+        elif work.first_seconds is not None:
+            governor.rested(work.shown.scene, work.wanted, work.first_seconds, *asked)
         live.outgoing.lesser.room = live.quality.room(live.balance, live.outgoing.lesser.allowance)
         self._sender.publish(live.session, live.outgoing, live.quality.encoded, work.frame, work.begun_at)
 

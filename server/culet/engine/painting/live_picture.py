@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import assert_never
 
+import numpy as np
+from numpy.typing import NDArray
+
 from culet.engine.governing.governor import asked_rate
 from culet.engine.painting.frame_sender import Outgoing
 from culet.engine.painting.frame_work import FrameWork, Kind
@@ -91,6 +94,10 @@ class LivePicture:
     painted: Shown | None = None
     """What the picture drawn last shows, or what was refused."""
     painted_size: tuple[int, int] = (0, 0)
+    seen: NDArray[np.uint8] | None = None
+    """(height, width, 3): the frame that was drawn last, while a better one of the same is to come."""
+    seen_at: float = NEVER
+    """s, steady clock: when that was."""
     render_seconds: float = 0.0
     """Of all samples of the picture."""
     making: Making | None = None
@@ -202,8 +209,9 @@ class LivePicture:
                 self.state, self.picture = State.FULL, work.picture
             case _:
                 assert_never(work.kind)
+        self.seen, self.seen_at = None if work.frame is None else work.frame.rgb, now
         if work.final:
-            self.state, self.picture = State.FINAL, None
+            self.state, self.picture, self.seen = State.FINAL, None, None
 
     def outdated(self, now: float) -> bool:
         """Whether the frame in the making is to be given up."""
@@ -254,6 +262,7 @@ class LivePicture:
     def refuse(self, shown: Shown) -> None:
         """It cannot be rendered."""
         self.making, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
+        self.seen = None
 
     def try_again(self) -> None:
         """What could not be rendered may be rendered now."""
@@ -263,7 +272,7 @@ class LivePicture:
     def draw_anew(self) -> None:
         """The picture at rest is wanted in a form in which it was not sent; a frame under way brings it by itself."""
         if self.making is None and self.state in (State.FULL, State.FINAL):
-            self.picture, self.state = None, State.BLANK
+            self.picture, self.seen, self.state = None, None, State.BLANK
 
     def resize_lesser(self, size: tuple[int, int]) -> None:
         """Lesser pictures are to fill other windows. One at rest is made anew if it is smaller than that."""
@@ -278,7 +287,7 @@ class LivePicture:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
         if isinstance(self.making, FrameWork):
             self.making = None
-        self.picture = None
+        self.picture, self.seen = None, None
         self.session.motion.look_away()
         self.unwatched_at = now
         if self.state in (State.REDUCED, State.FULL):

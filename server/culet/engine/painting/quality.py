@@ -86,12 +86,15 @@ class Quality:
         """A frame is done."""
         self.gave_up = False
         match work.kind:
+            case Kind.FULL if work.first_seconds is None:  # it was shown amid its first sample
+                self.full_seconds = max(self.full_seconds, work.render_seconds)
             case Kind.FULL:
                 self.full_seconds = work.render_seconds
             case Kind.PLANNED:
                 self._planned_seconds += PACE_MEMORY * (work.spent - self._planned_seconds)
             case Kind.REFINED:
-                pass
+                if work.first_seconds is not None:
+                    self.full_seconds = work.render_seconds
             case _:
                 assert_never(work.kind)
 

@@ -37,6 +37,18 @@ class Picture(Protocol):
         """Samples per pixel so far."""
 
     @property
+    def samples_seen(self) -> int:
+        """Samples per pixel in what is shown, at least."""
+
+    @property
+    def under_way(self) -> bool:
+        """Whether it was left amid a sample, which some pixels have and others have not."""
+
+    @property
+    def sample_seconds(self) -> float:
+        """Render seconds of the last whole sample."""
+
+    @property
     def seconds(self) -> float:
         """Render seconds of the last refinement."""
 
@@ -50,8 +62,11 @@ class Picture(Protocol):
     def refine_in_pieces(self, samples: int, seconds: float) -> Iterator[float]:
         """Add samples to every pixel, about so many seconds at a time; yields the part that is done, between them."""
 
-    def refine_until(self, target: Target, seconds: float, *, pause: Callable[[], bool] = ...) -> Iterator[float]:
-        """The same until the target is reached; after each sample `pause` is asked whether to leave it at that."""
+    def refine_until(
+        self, target: Target, seconds: float, *, pause: Callable[[], bool] = ..., due: Callable[[float], bool] = ...
+    ) -> Iterator[float]:
+        """The same until the target is reached; after each sample `pause` is asked whether to leave it at that. `due`
+        tells whether somebody is to see it within so many seconds: then it may be left amid a sample too."""
 
     def reached(self, target: Target) -> bool:
         """Whether there is nothing left to do for it: its error is met, or its samples are there."""
@@ -65,6 +80,10 @@ class Picture(Protocol):
 
     def develop_in_pieces(self) -> Iterator[Any]:
         """Tone-map, yielding between short pieces of work."""
+
+    def overlaid(self, over: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
+        """Amid a sample: tone-mapped where that is done, over a picture (height, width, 3) of what was seen before;
+        yields it between short pieces of work, and at last whole."""
 
     def rgb(self) -> NDArray[np.uint8]:
         """(height, width, 3), tone-mapped; at once if that was done in pieces."""

@@ -23,16 +23,21 @@ def size_within(memory: Memory, size: tuple[int, int], film: Film, others: Itera
     """The size, or one of that shape whose picture takes no more than half of the memory that is free beside other live
     pictures."""
     width, height = size
-    needed = picture_bytes(width, height, film)
+    needed = _live_bytes(width, height, film)
     held = memory.held()
     taken = (
         sum(held.values())
         - held.get("pictures", 0)
-        + sum(picture_bytes(*other.size, other.session.scene.film) for other in others)
+        + sum(_live_bytes(*other.size, other.session.scene.film) for other in others)
     )
     room = max(0, memory.budget - taken) // 2
     if needed <= room:
         return size
     memory.make_room(2 * needed)
-    scale = math.sqrt(max(room, picture_bytes(*LEAST_LIVE_SIZE, film)) / needed)
+    scale = math.sqrt(max(room, _live_bytes(*LEAST_LIVE_SIZE, film)) / needed)
     return size if scale >= 1 else (max(1, int(width * scale)), max(1, int(height * scale)))
+
+
+def _live_bytes(width: int, height: int, film: Film) -> int:
+    """Of a live one, which has another sum while its light gets better, and what was seen of it before."""
+    return picture_bytes(width, height, film) + 19 * width * height

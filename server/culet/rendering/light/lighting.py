@@ -274,8 +274,10 @@ class Illumination:
 
         A map that is as fine as the cut-off asks serves a moving picture as it is. A map that was made for one is made
         anew for other pictures, which depend on their scene alone. Before the `first` sample of a resting picture it
-        takes one pass, so that there is something to see.
+        takes one pass, or whatever there is already, so that there is soon something to see.
         """
+        if effort is Effort.RESTING and first and self.passes > 0:
+            return
         if effort is Effort.MOVING:
             if self.passes == 0 or (self._provisional and self.cutoff > cutoff):
                 if self._running is None or (self._provisional and self._start > cutoff):
