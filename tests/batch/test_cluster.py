@@ -217,6 +217,32 @@ def test_a_search_by_workers_finds_what_one_process_finds(tmp_path: Path) -> Non
     assert by_workers.stdout == alone.stdout.replace("alone.csv", "workers.csv")
 
 
+@needs_dask
+@pytest.mark.soak
+def test_a_search_goes_on_without_a_killed_worker_and_ctrl_c_tells_what_was_found(tmp_path: Path) -> None:
+    table = tmp_path / "front.csv"
+    with started(*optimise("-o", table, "--workers", "2", evaluations=2000)) as command:
+        at_work = lambda: [busy_for(each) > 8 for each in workers_of(command)] == [True, True]  # noqa: E731
+        until(at_work, command)
+        killed(workers_of(command)[:1])
+        until(at_work, command)
+        interrupt(command)
+        code, out, err = ended(command)
+    assert (code, "culet: interrupted after " in err) == (130, True), err
+    graded = int(err.split("interrupted after ")[1].split()[0])
+    assert 1 < graded < 2000
+    assert f"no other of {graded} beats" in out
+    assert len(table.read_text().splitlines()) > 1
+
+
+def busy_for(process: psutil.Process) -> float:
+    """s of processor time; of one that is gone none."""
+    try:
+        return float(process.cpu_times().user)
+    except psutil.NoSuchProcess:
+        return 0.0
+
+
 @contextmanager
 def another_culet(folder: Path) -> Iterator[Path]:
     """A folder with a culet that differs in one line, whose pictures might."""
