@@ -137,6 +137,9 @@ class Render(Message):
     scene: dict[str, Any] | None = None
     session: SessionId | None = None
     step: int | None = None
+    stone: str | None = None
+    """Of a session: the stone that is rendered as `design`, a merge patch, has it."""
+    design: dict[str, Any] | None = None
     width: int | None = None
     height: int | None = None
     samples: int | None = None
@@ -181,6 +184,18 @@ class Measure(Message):
     scene: dict[str, Any] | None = None
     session: SessionId | None = None
     stone: str | None = None
+
+
+class ListTiers(Message):
+    """The tiers of a convex stone of a scene, or of what a session shows, the first if none is named, with their angles
+    and between which ends these may be; of the tier `reach` the ends at which meets are still kept. The reply's result
+    is a `culet.geometry.tier_angles.Tiers`."""
+
+    type: Literal["list_tiers"] = "list_tiers"
+    scene: dict[str, Any] | None = None
+    session: SessionId | None = None
+    stone: str | None = None
+    reach: int | None = None
 
 
 class TracePath(Message):
@@ -267,6 +282,7 @@ Request = (
     | Grade
     | DrawDiagram
     | Measure
+    | ListTiers
     | TracePath
     | PutMesh
     | PutSky

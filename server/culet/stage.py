@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Self
 
+from culet.geometry.designs.shipped import SHIPPED
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.optics.panoramas import STUDIO, Panorama, panorama_of
@@ -106,7 +107,7 @@ def uploads_of(scene: Scene, *environments: Environment) -> frozenset[str]:
     """Ids of the uploads that a scene and further environments name."""
     meshes = {stone.mesh for stone in scene.stones if stone.mesh is not None}
     skies = {sky.image for sky in (scene.environment, *environments) if isinstance(sky, ImageEnvironment)}
-    return frozenset(meshes | (skies - STUDIO.keys()))
+    return frozenset((meshes - SHIPPED) | (skies - STUDIO.keys()))
 
 
 def _resolved(scene: Scene) -> object:

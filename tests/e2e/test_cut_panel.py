@@ -101,13 +101,53 @@ def test_a_divider_has_the_kept_design_at_its_left_until_the_picture_changes(wid
     page.keyboard.press("d")
     assert divider.count() == 0
     assert view.problems == []
-    view.refusals.add(401)
-    page.route("**/api/render", lambda route: route.fulfill(status=401))  # as of a server's guest, who has no token
-    page.keyboard.press("d")
-    view.until("() => culet.problems.length > 0")
-    assert divider.count() == 0
-    (problem,) = view.problems
-    assert "needs this server's token" in problem
+
+
+def test_each_tier_has_a_slider_between_the_ends_at_which_meets_are_kept(wide_view: View, server: Server) -> None:
+    view = wide_view
+    page = view.page
+    page.get_by_role("button", name="Crown angles").click()
+    page.get_by_role("button", name="Pavilion angles").click()
+    main = page.get_by_role("spinbutton", name="main", exact=True)
+    assert main.input_value() == "40.75"
+    assert page.get_by_role("spinbutton", name="kite", exact=True).input_value() == "34.5"
+    assert violations(view) == []
+    with page.expect_response(lambda answer: "reach=" in answer.url) as answered:
+        main.focus()
+    (tier,) = (each for each in answered.value.json()["tiers"] if each["names"] == ["main"])
+    slider = page.get_by_role("slider", name="main", exact=True)
+    view.until(f"() => [...document.querySelectorAll('.tier input')].some(box => box.max === '{tier['most']}')")
+    assert slider.get_attribute("min") == str(tier["least"])
+    slider.focus()
+    before, after = view.change(lambda: page.keyboard.press("End"))
+    assert difference(before.pixels, after.pixels) > 0
+    (now,) = server.session(view.session)["scene"]["stones"]
+    assert list(now["recut"]["angles"]) == [str(tier["tier"])]
+    assert tier["most"] - 0.05 <= now["recut"]["angles"][str(tier["tier"])] <= tier["most"]
+    view.change(lambda: page.keyboard.press("Control+z"))
+    assert server.session(view.session)["scene"] == view.scene
+    view.until("() => culet.state.scene.stones[0].recut === null")
+    assert main.input_value() == "40.75"
+    assert view.problems == []
+
+
+def test_a_refused_angle_is_said_beside_its_slider_and_is_not_taken(wide_view: View, server: Server) -> None:
+    view = wide_view
+    page = view.page
+    view.refusals.add(503)
+    page.route("**/tiers?*reach=*", lambda route: route.fulfill(status=503))  # the ends at which meets are kept
+    page.get_by_role("button", name="Pavilion angles").click()
+    type_in(view, "main", "55")
+    refusal = page.locator(".refusal:visible")
+    refusal.wait_for()
+    assert "expected angles that keep all meets and facets, as far as" in refusal.inner_text()
+    assert page.locator(".toast.problem").count() == 0
+    assert server.session(view.session)["scene"]["stones"][0]["recut"] is None
+    view.until("() => [...document.querySelectorAll('.tier input')].some(box => box.value === '40.75')")
+    view.change(lambda: type_in(view, "main", "41"))
+    refusal.wait_for(state="hidden")
+    view.change(lambda: page.get_by_role("button", name="These angles as they were").click())
+    assert page.get_by_role("spinbutton", name="main", exact=True).input_value() == "40.75"
 
 
 def test_a_mesh_has_no_proportions_and_gives_way_to_a_cut(wide_view: View, server: Server, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from culet_protocol.watch import watch_id
-from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.conftest import SMALL, WITH_PANEL, ViewOf
 from e2e.server import Server
 from e2e.view import View, assert_same
 
@@ -104,3 +104,26 @@ def test_a_page_is_let_in_by_the_token_of_its_address_and_stays_in(guarded: Serv
         for page in (stranger, view):
             page.page.context.close()
         assert view.complaints == stranger.complaints == []
+
+
+def test_who_only_watches_sees_the_design_that_was_beside_the_one_that_comes(guarded: Server, browser: Browser) -> None:
+    """Without the server's token, by the watching link alone."""
+    with guarded as server:
+        view = View(browser.new_page(viewport=SMALL), server)
+        view.open(f"#token={TOKEN}")
+        guest = View(browser.new_context(viewport=SMALL).new_page(), server)
+        guest.open(f"?watch={watch_id(view.session)}")
+        guest.at_rest()
+        guest.page.keyboard.press("d")
+        guest.page.get_by_text("This design is kept: when another one comes", exact=False).wait_for()
+        patch = {"stones": {"stone": {"cut": "oval"}}}
+        assert server.http.patch(f"/api/sessions/{view.session}", json=patch).status_code == 200
+        kept = guest.page.get_by_alt_text("The kept design")
+        kept.wait_for()
+        assert guest.page.get_by_role("slider", name="Divider").input_value() == "50"
+        guest.page.keyboard.press("d")
+        kept.wait_for(state="detached")
+        assert guest.sent == []
+        for page in (guest, view):
+            page.page.context.close()
+        assert view.complaints == guest.complaints == []

@@ -326,6 +326,24 @@ async def test_who_watches_is_answered_of_a_session_that_the_engine_forgot(gatew
     assert session not in answer.text
 
 
+async def test_who_watches_sees_a_session_with_another_design_of_its_stone(gateway: Gateway) -> None:
+    """As a still of it: nothing changes, and the session's own id is in no answer."""
+    session = await gateway.session({"stones": [{"id": "a"}]})
+    watching = f"/api/sessions/{watch_id(session)}"
+    asked = {"stone": "a", "design": {"cut": "oval", "mesh": None, "recut": None}, "format": "png", **SMALL}
+    before = await gateway.http.get(f"{watching}/frame.png", params=SMALL)
+    beside = await gateway.http.post(f"{watching}/beside", json=asked)
+    assert (beside.status_code, beside.headers["Content-Type"]) == (200, "image/png"), beside.text
+    assert beside.content != before.content
+    own = await gateway.http.post(f"{watching}/beside", json=asked | {"design": {}})
+    assert own.content == before.content
+    assert (await gateway.http.get(watching)).json()["scene"]["stones"][0]["cut"]["name"] == "brilliant"
+    for change in ({"stone": "b"}, {"design": {"mesh": "x"}}, {"design": {"scale": 2}}, {"step": 2**62}):
+        refused = await gateway.http.post(f"{watching}/beside", json=asked | change)
+        assert refused.status_code == (404 if "step" in change else 422), refused.text
+        assert session not in refused.text
+
+
 async def test_what_the_engine_says_of_a_session_that_it_does_not_know_has_no_id(gateway: Gateway) -> None:
     session = await gateway.session()
     await gateway.parts.link.request(CloseSession(session=session))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import xml.etree.ElementTree as ET
+from typing import Any
 
+import httpx
 import pytest
 
 from gateway.running import Gateway
@@ -72,6 +74,33 @@ async def test_a_stone_of_a_scene_or_a_session_tells_its_proportions_as_it_is_cu
     wide = {"stones": {"a": {"recut": {"girdle_percent": 0.001, "crown_ratio": 7}}}}
     assert_problem(await gateway.http.patch(f"/api/sessions/{session}", json=wide), 422, "stones.a.recut.crown_ratio")
     await gateway.http.delete(f"/api/sessions/{session}")
+
+
+async def test_a_session_lists_tiers_with_the_ends_between_which_their_angles_may_be(gateway: Gateway) -> None:
+    session = await gateway.session({"stones": [{"id": "a"}]})
+    tiers = f"/api/sessions/{session}/tiers"
+
+    async def main_of(**asked: str | int) -> dict[str, Any]:
+        listed = (await gateway.http.get(tiers, params=asked)).json()["tiers"]
+        found: dict[str, Any] = next(tier for tier in listed if tier["names"] == ["main"])
+        return found
+
+    main = await main_of()
+    assert (main["side"], main["facets"], main["independent"]) == ("pavilion", 8, True)
+    near = await main_of(reach=main["tier"])
+    assert main["least"] < near["least"] < near["degrees"] < near["most"] < main["most"]
+
+    async def turned(degrees: float) -> httpx.Response:
+        patch = {"stones": {"a": {"recut": {"angles": {str(main["tier"]): degrees}}}}}
+        return await gateway.http.patch(f"/api/sessions/{session}", json=patch)
+
+    assert (await turned(near["most"])).status_code == 200
+    assert (await main_of(stone="a"))["degrees"] == pytest.approx(near["most"])
+    assert_problem(await turned(main["most"]), 422, "stones.0.recut.angles")
+    assert_problem(await gateway.http.get(tiers, params={"reach": 99}), 422, "angles")
+    assert_problem(await gateway.http.get(tiers, params={"stone": "b"}), 422, "stone")
+    heart = {"scene": {"stones": [{"cut": "heart"}]}}
+    assert "not" in (await gateway.http.post("/api/design/tiers", json=heart)).json()["detail"]
 
 
 async def test_a_client_is_graded_one_stone_at_a_time(gateway: Gateway) -> None:

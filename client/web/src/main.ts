@@ -14,6 +14,7 @@ import { KeyCard } from "./input/key-card";
 import { listenToKeys } from "./input/keys";
 import { Performing } from "./input/performing";
 import { steer } from "./input/steering";
+import { text } from "./json";
 import { Delays } from "./meter/delays";
 import { Meter } from "./meter/meter";
 import { showStatus } from "./meter/status-line";
@@ -43,7 +44,7 @@ import { Signs } from "./signs/signs";
 import { Toasts } from "./signs/toasts";
 import { Welcome } from "./signs/welcome";
 import { StoneCommands } from "./stones/stone-commands";
-import { idsOf, stonesOf } from "./stones/stones";
+import { idsOf, stoneOf, stonesOf } from "./stones/stones";
 import { fillPage } from "./words/fill";
 import { worded } from "./words/wording";
 import { words } from "./words/words";
@@ -107,13 +108,12 @@ const visit = new Visit(
   embedding,
 );
 const outline = new OutlineView(element("outline", SVGSVGElement), canvas);
+screen.refitted = (fit) => {
+  outline.refit(fit);
+  element("main", HTMLElement).classList.toggle("filled", fit === "filled");
+};
 /** Whoever steers sees what the session's picture is; whoever watches may want a full window of it. */
-const windowFit = watchesOnly()
-  ? new WindowFit(element("fit", HTMLButtonElement), (fit) => {
-      screen.fill(fit);
-      outline.refit(fit);
-    })
-  : null;
+const windowFit = watchesOnly() ? new WindowFit(element("fit", HTMLButtonElement), (fit) => screen.fill(fit)) : null;
 const legend = new Legend(element("legend", HTMLElement));
 const chosen = new ChosenStone({
   ask: (question) => visit.viewer?.ask(question),
@@ -196,7 +196,7 @@ const page = {
   note: (text: string) => void toasts.note(text),
 };
 const comparison = new Comparison();
-const division = new Division({ visit, canvas, comparison, complaints });
+const division = new Division({ visit, canvas, comparison, complaints, fits: () => screen.fits });
 const performing = new Performing({ visit, stones, saving, clips, page, complaints });
 const panel = new Panel(element("panel", HTMLElement), {
   perform,
@@ -214,11 +214,13 @@ const panel = new Panel(element("panel", HTMLElement), {
   divide,
   otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
+  tiers: (scene, reach) => rest.tiers(visit.session ?? "", text(stoneOf(scene).id, ""), reach),
   measure: (scene) => rest.proportions(scene),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
   share: () => attempt(() => share()),
   clamped,
 });
+complaints.shownElsewhere = (text, about) => panel.refused(text, about);
 const strip = new SceneStrip(element("scenes", HTMLElement), element("scenes-toggle", HTMLButtonElement));
 const shareCard = new ShareCard(
   element("share", HTMLDialogElement),
@@ -238,20 +240,23 @@ const meter = new Meter(
 );
 
 function perform(action: Action): void {
-  if (!embedding.ui && action.effect.kind !== "move" && !VIEWING.has(action.name)) return;
+  const views = VIEWING.has(action.name) || (visit.only && action.name === "divide");
+  if (!embedding.ui && action.effect.kind !== "move" && !views) return;
   performing.perform(action);
 }
 
 /** Keep the design of the chosen stone, or of the first. */
 function keepDesign(): void {
-  if (comparison.keep(visit.scene, visit.state.stone)) toasts.note(words.compare.kept);
+  const { kept, keptToWatch } = words.compare;
+  if (comparison.keep(visit.scene, visit.state.stone)) toasts.note(visit.only ? keptToWatch : kept);
   else complaints.tell(words.compare.noStone);
   division.kept();
 }
 
 /** Show both designs with a divider, or the one alone; without a kept one keep this. */
 function divide(): void {
-  if (!comparison.keeps(visit.scene)) keepDesign();
+  // Whoever watches has no other way to keep a design than to begin.
+  if (!comparison.keeps(visit.scene) || (visit.only && !division.on)) keepDesign();
   if (!comparison.keeps(visit.scene)) return;
   attempt(() => division.toggle());
 }

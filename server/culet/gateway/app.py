@@ -14,6 +14,7 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 
 from culet.gateway import (
+    beside_routes,
     catalogue,
     drain_routes,
     health,
@@ -55,6 +56,7 @@ PARTS = (
     turntables,
     session_list,
     session_routes,
+    beside_routes,
     stone_routes,
     path_routes,
     catalogue,

@@ -1,4 +1,4 @@
-"""What is asked about one stone of a scene or of a session: its grades, its proportions, its cutting diagram."""
+"""What is asked about one stone of a scene or of a session: grades, proportions, tiers, its cutting diagram."""
 
 from __future__ import annotations
 
@@ -15,21 +15,27 @@ from culet.gateway.problems import answers
 from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
 from culet.geometry.designs.measures import Proportions
+from culet.geometry.tier_angles import Tiers
 from culet.grading.answer import Report
 from culet.grading.rules import Convention
 from culet.scene import Scene
 from culet.scene.fields import Model
-from culet_protocol.engine import DrawDiagram, Grade, Measure, TracePath
+from culet_protocol.engine import DrawDiagram, Grade, ListTiers, Measure, TracePath
 
 router = APIRouter(tags=["stones"])
 
 SVG = "image/svg+xml"
 REPORT: TypeAdapter[Report] = TypeAdapter(Report)
 PROPORTIONS: TypeAdapter[Proportions] = TypeAdapter(Proportions)
+TIERS: TypeAdapter[Tiers] = TypeAdapter(Tiers)
 _EXAMPLES = ConfigDict(json_schema_extra={"examples": [{"scene": {"stones": [{"cut": "emerald"}]}}]})
 _DRAWING: dict[int | str, dict[str, Any]] = {200: {"content": {SVG: {"schema": {"type": "string"}}}}}
 
 StoneName = Annotated[str, Field(max_length=32, description="Id of the stone; without one the first.")]
+Reach = Annotated[
+    int,
+    Field(ge=1, le=1500, description="A tier: its ends are then those at which meets are kept, which takes longer."),
+]
 HeadDegrees = Annotated[float, Field(ge=0, le=90, description="Half the angle of the viewer's head; 10.")]
 
 
@@ -63,6 +69,12 @@ class StoneRequest(Model):
     stone: StoneName | None = None
 
     model_config = Model.model_config | _EXAMPLES
+
+
+class TierRequest(StoneRequest):
+    """A stone of a scene, and perhaps one of its tiers."""
+
+    reach: Reach | None = None
 
 
 @router.post("/api/grade", responses=answers(401, 413, 422, 429, 503))
@@ -119,6 +131,31 @@ async def proportions_of_session(
     return await _measured(http, gateway, Measure(session=session.id, stone=stone), session)
 
 
+@router.post("/api/design/tiers", responses=answers(401, 413, 422, 429, 503))
+async def tiers(http: Request, request: TierRequest, gateway: ThisGateway) -> Tiers:
+    """The sloping tiers of a convex stone of a scene: their angles, and the ends between which these may be."""
+    scene = request.scene.model_dump(mode="json")
+    return await _listed(http, gateway, ListTiers(scene=scene, stone=request.stone, reach=request.reach))
+
+
+@router.get("/api/sessions/{session_id}/tiers", responses=answers(404, 422, 429, 503))
+async def tiers_of_session(
+    http: Request,
+    session_id: str,
+    gateway: ThisGateway,
+    stone: StoneName | None = None,
+    reach: Reach | None = None,
+) -> Tiers:
+    """The sloping tiers of a convex stone of what a session shows."""
+    session = gateway.sessions.get(session_id)
+    return await _listed(http, gateway, ListTiers(session=session.id, stone=stone, reach=reach), session)
+
+
+async def _listed(http: Request, gateway: Gateway, message: ListTiers, session: SessionRecord | None = None) -> Tiers:
+    result, _ = await answered(http, gateway, message, session)
+    return TIERS.validate_python(result)
+
+
 async def _measured(
     http: Request, gateway: Gateway, message: Measure, session: SessionRecord | None = None
 ) -> Proportions:
@@ -141,7 +178,7 @@ async def _drawn(
 async def answered(
     http: Request,
     gateway: Gateway,
-    message: Grade | DrawDiagram | Measure | TracePath,
+    message: Grade | DrawDiagram | Measure | ListTiers | TracePath,
     session: SessionRecord | None,
 ) -> tuple[dict[str, Any], bytes | memoryview]:
     """The engine's answer, about the session if there is one, in a place of the client; grades and rays in the client's

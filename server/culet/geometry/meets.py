@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,6 +48,9 @@ LEVEL = 1e-9
 HALVINGS = 8
 """Of the way from where meets are kept to where they are not, to say how far angles may go."""
 
+END_HALVINGS = 5
+"""Of a step, for an end that is told before anybody asks for it: 0.03 degrees."""
+
 
 def with_angles(name: str, planes: Array, tiers: Sequence[int], degrees: Mapping[int, float]) -> Array:
     """(F, 4) planes of a closed convex stone, z up, in their order, the tiers named at so many degrees from the
@@ -55,6 +59,17 @@ def with_angles(name: str, planes: Array, tiers: Sequence[int], degrees: Mapping
     stone = _tiers_of(name, planes, tiers)
     wanted = {stone.group(tier): math.radians(angle) for tier, angle in degrees.items()}
     return stone.turned(wanted)
+
+
+def reach_of_tier(
+    name: str, planes: Array, tiers: Sequence[int], tier: int, degrees: Mapping[int, float]
+) -> tuple[float, float]:
+    """The least and the greatest angle of a tier, degrees, at which all meets are kept, FARTHEST from its own at most,
+    where other tiers are at `degrees` and stay there. MeshError as of `with_angles`."""
+    stone = _tiers_of(name, planes, tiers)
+    wanted = {stone.group(other): math.radians(angle) for other, angle in degrees.items()}
+    least, most = stone.reach(stone.group(tier), wanted)
+    return math.degrees(least), math.degrees(most)
 
 
 def independent_tiers(name: str, planes: Array, tiers: Sequence[int]) -> list[int]:
@@ -169,6 +184,36 @@ class _Tiers:
 
     def turned(self, wanted: Mapping[int, float]) -> Array:
         """Planes with the groups at angles from the horizontal, radians."""
+        return self._planes(self._settled(wanted))
+
+    def reach(self, group: int, wanted: Mapping[int, float]) -> tuple[float, float]:
+        """Of a group the least and the greatest angle from the horizontal, radians, others at theirs."""
+        setting = self._settled(wanted) if wanted else self.start
+        turned = np.array(sorted({*wanted, group}))
+        return self._end(setting, turned, group, -1), self._end(setting, turned, group, 1)
+
+    def _end(self, setting: _Setting, turned: NDArray[np.int64], group: int, sign: int) -> float:
+        """How far a group goes, less steep or steeper, from a setting in which others of `turned` stay as they are."""
+        slopes = setting.slope[turned]
+        up, place = bool(self.start.slope[group] < math.pi / 2), int(np.searchsorted(turned, group))
+        kept = begin = _level(float(slopes[place]))
+        last = _level(float(self.start.slope[group])) + sign * math.radians(FARTHEST)
+        last = min(max(last, LEVEL), math.pi / 2 - LEVEL)
+        steps = max(1, math.ceil(math.degrees(abs(last - begin)) / STEP))
+        lost = None
+        with suppress(_SpentError):  # then as far as it came
+            while kept != last and (lost is None or abs(lost - kept) > math.radians(STEP) / 2**END_HALVINGS):
+                there = kept + (last - begin) / steps if lost is None else (kept + lost) / 2
+                there = last if abs(there - last) < LEVEL else there
+                slopes[place] = there if up else math.pi - there
+                further = self._kept(setting, turned, slopes)
+                if further is None:
+                    lost = there
+                else:
+                    setting, kept = further, there
+        return kept
+
+    def _settled(self, wanted: Mapping[int, float]) -> _Setting:
         turned = np.array(sorted(wanted))
         up = self.start.slope[turned] < math.pi / 2
         ends = np.array([wanted[group] for group in turned.tolist()])
@@ -192,7 +237,7 @@ class _Tiers:
             if further is None:
                 raise self._refusal(setting, turned, begin, end, kept, part)
             setting, kept = further, part
-        return self._planes(setting)
+        return setting
 
     def _refusal(
         self, setting: _Setting, turned: NDArray[np.int64], begin: Array, end: Array, kept: float, lost: float

@@ -107,6 +107,13 @@ _ALL = (
         "other cuts",
         showcase.PORTUGUESE,
     ),
+    Preset(
+        "cutters-design",
+        "Cutter's design",
+        "Rock crystal by a cutter's file: under Cut turn it tier by tier.",
+        "other cuts",
+        showcase.CUTTERS_DESIGN,
+    ),
     Preset("trio", "Trio", "A diamond between a ruby and a sapphire that touch it.", "several stones", piles.TRIO),
     Preset("heap", "Heap", "A dozen stones that have fallen into a corner.", "several stones", piles.HEAP),
     Preset(

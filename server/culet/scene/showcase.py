@@ -113,6 +113,10 @@ PORTUGUESE = Scene(
     stones=(StoneSettings(cut=PortugueseCut(), material="quartz", position=(0, -0.292772, 0), spin=SPIN),),
     optics=SPECTRAL_AT_REST,
 )
+CUTTERS_DESIGN = Scene(
+    stones=(StoneSettings(mesh="standard-round-brilliant", material="quartz", position=(0, -0.407653, 0), spin=SPIN),),
+    optics=SPECTRAL_AT_REST,
+)
 OVAL = _coloured(
     "sapphire", 4, 1, cut=OvalCut(crown_degrees=40, pavilion_degrees=43), position=(0, -0.532682, 0),
     orientation=(0.929570, 0.366168, -0.039696, 0.015637),

@@ -96,7 +96,11 @@ class StoneSettings(Model):
         json_schema_extra=_no_default,
     )
     cut: Cut = "brilliant"
-    mesh: UploadId | None = Field(None, description="Id of an uploaded mesh; takes the place of the cut.")
+    mesh: UploadId | None = Field(
+        None,
+        description="Id of an uploaded mesh or design, or `standard-round-brilliant`, a cutter's design that comes "
+        "with culet; takes the place of the cut.",
+    )
     recut: Recut | None = Field(
         None, description="How the mesh or the design, or else the cut, is cut anew; of convex stones."
     )

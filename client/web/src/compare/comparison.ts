@@ -5,7 +5,7 @@
 
 import type { JsonObject } from "@culet/protocol/messages";
 import { text } from "../json";
-import { hasStone, stoneOf, stonesOf, withFirst } from "../stones/stones";
+import { hasStone, stoneOf, withFirst } from "../stones/stones";
 
 /** What a design is, of a stone; a merge patch takes a field away by null. */
 const FIELDS = ["cut", "mesh", "recut", "material"] as const;
@@ -15,6 +15,12 @@ interface Kept {
   design: JsonObject;
   /** Where the stone was that had it: another design lies on other facets. */
   pose: JsonObject;
+}
+
+/** A design in the place of a stone's own. */
+export interface Beside {
+  stone: string;
+  design: JsonObject;
 }
 
 export class Comparison {
@@ -60,16 +66,16 @@ export class Comparison {
   }
 
   /**
-   * What is shown of the scene, as the other design would have it, with all its stones; null if there is none to compare
-   * with. A stone that has been moved or has fallen lies as it is shown.
+   * The stone, and what is other about it as the other design has it, beside what is shown of the scene; null if there is
+   * none to compare with. A stone that has been moved or has fallen lies as it is shown.
    */
-  beside(shown: JsonObject, scene: JsonObject | null): JsonObject | null {
+  beside(shown: JsonObject, scene: JsonObject | null): Beside | null {
     const [now, seen] = [this.among(scene), this.among(shown)];
     if (!this.other || !now || !seen || !this.otherwise(scene)) return null;
     const { design, pose } = this.other;
     const places = [this.came ?? pose, only(POSE, now), only(POSE, seen)].map((place) => JSON.stringify(place));
     const laid = new Set(places).size === 1 ? { ...design, ...pose } : design;
-    return { ...shown, stones: stonesOf(shown).map((each) => (each.id === this.stone ? { ...each, ...laid } : each)) };
+    return { stone: this.stone, design: laid };
   }
 
   /** The scene with the stone first that is compared; null if it has gone. */

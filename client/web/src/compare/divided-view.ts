@@ -5,21 +5,18 @@
 
 import "./divided.css";
 import { element } from "../page";
-import { letterbox, type Size } from "../picture/picture-size";
+import { type Fit, placed, type Size } from "../picture/picture-size";
 import * as rest from "../session/rest";
 import { words } from "../words/words";
 import type { DivisionWorld } from "./division";
 
 /** ms for which the picture stays as it is before the other one is asked for. */
 const PATIENCE_MS = 300;
-/** HTTP's status of what a guest may not ask for. */
-const TOKEN_NEEDED = 401;
 /** Percent of the width. */
 const MIDDLE = 50;
 
 export class DividedView {
   private readonly world: DivisionWorld;
-  private readonly refused: () => void;
   private readonly room = document.createElement("section");
   private readonly picture = document.createElement("img");
   private readonly divider = document.createElement("input");
@@ -27,10 +24,8 @@ export class DividedView {
   private waiting: ReturnType<typeof setTimeout> | undefined;
   private giveUp = new AbortController();
 
-  /** `refused` is called where the server renders no scenes for this viewer. */
-  constructor(world: DivisionWorld, refused: () => void) {
+  constructor(world: DivisionWorld) {
     this.world = world;
-    this.refused = refused;
     const { room, picture, divider } = this;
     room.id = "divided";
     picture.alt = words.compare.keptPicture;
@@ -94,11 +89,12 @@ export class DividedView {
     this.giveUp = new AbortController();
     const { signal } = this.giveUp;
     try {
-      const scene = comparison.beside(await rest.sceneShown(session, lastFrame.step), visit.scene);
-      if (!scene) return;
-      const size = fitting(lastFrame, this.world.canvas);
+      const { step } = lastFrame;
+      const beside = comparison.beside(await rest.sceneShown(session, step), visit.scene);
+      if (!beside) return;
+      const size = fitting(lastFrame, this.world.canvas, this.world.fits());
       for (const samples of [1, null]) {
-        const blob = await rest.still(scene, size, samples, signal);
+        const blob = await rest.beside(session, { ...beside, step, ...size }, samples, signal);
         if (signal.aborted) return;
         this.forget();
         this.picture.src = URL.createObjectURL(blob);
@@ -107,10 +103,7 @@ export class DividedView {
         this.picture.hidden = false;
       }
     } catch (error) {
-      if (signal.aborted) return;
-      if (!(error instanceof rest.ProblemError) || error.status !== TOKEN_NEEDED) throw error;
-      this.refused();
-      throw new Error(words.compare.tokenNeeded);
+      if (!signal.aborted) throw error;
     }
   }
 
@@ -120,7 +113,7 @@ export class DividedView {
 }
 
 /** As many pixels as the canvas has for a picture of that shape: in motion it has fewer. */
-function fitting(picture: Size, canvas: Size): Size {
-  const { width, height } = letterbox(picture, canvas);
+function fitting(picture: Size, canvas: Size, fit: Fit): Size {
+  const { width, height } = placed(picture, canvas, fit);
   return { width: Math.max(1, Math.round(width)), height: Math.max(1, Math.round(height)) };
 }

@@ -1,5 +1,6 @@
 /** The mode that shows two designs with a divider between them: what draws it is loaded when it is first turned on. */
 
+import type { Fit } from "../picture/picture-size";
 import type { Visit } from "../session/visit";
 import type { Complaints } from "../signs/complaints";
 import type { Comparison } from "./comparison";
@@ -9,6 +10,8 @@ export interface DivisionWorld {
   visit: Visit;
   canvas: HTMLCanvasElement;
   comparison: Comparison;
+  /** How pictures of another shape than the canvas are shown. */
+  fits: () => Fit;
   complaints: Complaints;
 }
 
@@ -28,17 +31,15 @@ export class Division {
     if (!this.wanted) return;
     try {
       const { DividedView } = await import("./divided-view");
-      if (this.wanted && !this.view) this.view = new DividedView(this.world, () => this.close());
+      if (this.wanted && !this.view) this.view = new DividedView(this.world);
     } catch (error) {
       this.wanted = false;
       throw error;
     }
   }
 
-  private close(): void {
-    this.wanted = false;
-    this.view?.close();
-    this.view = null;
+  get on(): boolean {
+    return this.wanted;
   }
 
   /** Another picture is on the screen. */

@@ -25,7 +25,7 @@ export function shortened(value: number, { decimals }: Pick<Ends, "decimals">): 
 }
 
 export class Slider extends Control<number> {
-  private readonly ends: Ends;
+  private ends: Ends;
   private readonly range = document.createElement("input");
   private readonly box = document.createElement("input");
   private now = Number.NaN;
@@ -34,10 +34,9 @@ export class Slider extends Control<number> {
     super(label, "slider");
     this.ends = ends;
     const { range, box } = this;
-    const { least, most, step } = ends;
-    for (const input of [range, box]) Object.assign(input, { min: String(least), max: String(most) });
-    Object.assign(range, { type: "range", step: String(step) });
+    Object.assign(range, { type: "range" });
     Object.assign(box, { type: "number", step: "any", inputMode: "decimal", id: freshId() });
+    this.between(ends);
     this.text.htmlFor = box.id;
     this.text.id = freshId();
     range.setAttribute("aria-labelledby", this.text.id);
@@ -49,6 +48,16 @@ export class Slider extends Control<number> {
     range.onchange = () => this.tellSettled();
     box.onchange = () => this.typed(clamped);
     box.onkeydown = (event) => this.stepped(event);
+  }
+
+  /** Other ends. The value stays, and nobody is told. */
+  between(ends: Ends): this {
+    this.ends = ends;
+    const { range, box } = this;
+    for (const input of [range, box]) Object.assign(input, { min: String(ends.least), max: String(ends.most) });
+    range.step = String(ends.step);
+    if (Number.isFinite(this.now)) range.value = String(this.now);
+    return this;
   }
 
   get value(): number {

@@ -12,6 +12,8 @@ import { words } from "../words/words";
 import { cutName, cutOf, cutPatch, type Proportion, proportionsOf, shapeName, shapePatch } from "./cut";
 import { LiveControls } from "./live-controls";
 import { type Measure, RecutSliders } from "./recut-sliders";
+import { TierSliders } from "./tier-sliders";
+import { type ListTiers, SIDES, sharing } from "./tiers";
 
 type Send = (patch: Record<string, unknown>) => void;
 
@@ -20,6 +22,7 @@ export interface CutActions {
   clamped: Clamped;
   openDiagram: (stone: string) => void;
   measure: Measure;
+  tiers: ListTiers;
   keepDesign: () => void;
   changeDesigns: () => void;
   divide: () => void;
@@ -64,11 +67,12 @@ export class CutPanel {
   private readonly sliders = new Map<string, Sliders>();
   private readonly place: HTMLElement;
   private readonly anew: RecutSliders;
+  private readonly tiers: readonly TierSliders[];
   private scene: ViewState["scene"] = null;
 
   constructor(
     section: Section,
-    { patch: send, clamped, openDiagram, measure, keepDesign, changeDesigns, divide, otherwise }: CutActions,
+    { patch: send, clamped, openDiagram, measure, tiers, keepDesign, changeDesigns, divide, otherwise }: CutActions,
   ) {
     this.otherwise = otherwise;
     this.section = section.show(false);
@@ -81,8 +85,12 @@ export class CutPanel {
     this.shape.listen("cut", section.add(this.list));
     this.place = section.add({ element: document.createElement("div") }).element;
     this.anew = section.add(new RecutSliders(send, measure, clamped));
+    const shared = sharing(tiers);
+    this.tiers = SIDES.map((side) => {
+      return new TierSliders(section.section(words.cut.tiers[side]), side, send, shared, clamped);
+    });
     section.onFold((open) => this.anew.update(this.scene, open));
-    const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene) }));
+    const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene), recut: null }));
     this.usual = section.add(new Command(words.cut.usual, reset));
     section.add(new Command(words.compare.keep, keepDesign));
     this.change = section.add(new Command(words.compare.change, changeDesigns, "A")).show(false);
@@ -99,10 +107,16 @@ export class CutPanel {
     if (kind && !this.sliders.has(kind.name)) this.sliders.set(kind.name, this.slidersOf(kind));
     for (const [name, sliders] of this.sliders) sliders.update(name === now);
     this.anew.update(scene, this.section.open);
+    for (const tiers of this.tiers) tiers.update(scene);
     this.usual.show(kind !== undefined);
     const differs = this.otherwise(scene) !== null;
     this.change.show(differs);
     this.both.show(differs);
+  }
+
+  /** Whether why the server refused a change is shown beside the slider that it was made with. */
+  refused(why: string, field: string | undefined): boolean {
+    return this.tiers.some((tiers) => tiers.refused(why, field));
   }
 
   addCuts(cuts: readonly CutKind[], state: ViewState): void {

@@ -5,6 +5,7 @@ import { number, object, part, text } from "../json";
 import type { CutKind } from "../session/catalogue";
 import { hasStone, stoneOf, stonePatch } from "../stones/stones";
 import { words } from "../words/words";
+import { anglesOf } from "./tiers";
 
 /** A slider about one proportion. */
 export interface Proportion {
@@ -62,7 +63,11 @@ export function cutOf(scene: JsonObject | null, proportions: readonly Proportion
 
 /** The merge patch that changes one proportion and leaves the others. */
 export function cutPatch(scene: JsonObject | null, name: string, value: number): JsonObject {
-  return stonePatch(scene, { cut: { name: cutName(scene), [name]: value } });
+  const turned = Object.keys(anglesOf(scene)).length > 0;
+  return stonePatch(scene, {
+    cut: { name: cutName(scene), [name]: value },
+    ...(turned ? { recut: { angles: null } } : {}), // or the angles of tiers would stay where the cut's are changed
+  });
 }
 
 /** What the list of cuts shows: the cut's name, or that a file has the shape; nothing without a stone. */

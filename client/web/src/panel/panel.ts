@@ -24,6 +24,7 @@ import { type Ask, GradePanel } from "./grade-panel";
 import type { Measure } from "./recut-sliders";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { SurfacePanel } from "./surface-panel";
+import type { ListTiers } from "./tiers";
 import { TiltControl } from "./tilt-control";
 
 export interface PanelActions {
@@ -50,6 +51,8 @@ export interface PanelActions {
   otherwise: (scene: ViewState["scene"]) => ViewState["scene"];
   /** Ask for a stone's proportions. */
   measure: Measure;
+  /** Ask for a stone's tiers. */
+  tiers: ListTiers;
   /** Show a stone's cutting diagram. */
   openDiagram: (stone: string) => void;
   /** Show the session's links. */
@@ -153,6 +156,11 @@ export class Panel {
   /** On a narrow window the open panel lies where the table of a ray is to be. */
   makeRoom(): void {
     if (window.innerWidth < NARROW) this.root.fold(true);
+  }
+
+  /** Whether a refusal is shown in the panel, where the change was made. */
+  refused(why: string, field: string | undefined): boolean {
+    return this.cut.refused(why, field);
   }
 
   addCuts(cuts: readonly CutKind[]): void {

@@ -11,6 +11,7 @@ import {
   SHARP,
   type Size,
 } from "./picture-size";
+import { Settling } from "./settling";
 
 /** Device pixels. */
 const SLACK = 3;
@@ -28,6 +29,9 @@ export class Screen {
   private fade: { under: HTMLCanvasElement; since: number } | null = null;
   private next = 0;
   private fit: Fit = "whole";
+  private readonly settling = new Settling(() => this.settle());
+  /** Told when pictures of another shape are shown otherwise from now on. */
+  refitted: (fit: Fit) => void = () => undefined;
 
   constructor(canvas: HTMLCanvasElement, onResize: (size: Size) => void) {
     this.canvas = canvas;
@@ -52,12 +56,13 @@ export class Screen {
   /** From now on pictures of another shape are shown so. */
   fill(fit: Fit): void {
     this.fit = fit;
+    this.refitted(this.fits);
     this.draw();
   }
 
   /** How it is with pictures of another shape. */
   get fits(): Fit {
-    return this.fit;
+    return this.settling.on ? "filled" : this.fit;
   }
 
   /** Whether the picture has another shape than the canvas. */
@@ -100,6 +105,10 @@ export class Screen {
     const under = comesUp ? copyOf(this.canvas) : null;
     const larger = picture.width > this.quick.width || picture.height > this.quick.height;
     this.become(larger ? this.sharp : this.quick);
+    if (this.settling.on) {
+      this.settling.shown(!this.differs);
+      if (!this.settling.on) this.refitted(this.fit);
+    }
     if (!under) {
       this.draw();
       return;
@@ -135,7 +144,10 @@ export class Screen {
     this.quick = pictureSize(pixels.width, pixels.height);
     this.sharp = pictureSize(pixels.width, pixels.height, SHARP);
     if ([this.quick, this.sharp].every((size, kind) => isSame(size, before[kind] as Size))) return;
+    const fitted = this.picture !== null && !this.differs;
     this.become(this.quick);
+    this.settling.resized(fitted && this.differs);
+    if (this.settling.on) this.refitted(this.fits);
     this.draw(); // a canvas forgets its picture when its size changes
     this.ask(this.quick);
   }
@@ -151,7 +163,12 @@ export class Screen {
   }
 
   private place(picture: Size): Rectangle {
-    return placed(picture, this.canvas, this.fit);
+    return placed(picture, this.canvas, this.fits);
+  }
+
+  private settle(): void {
+    this.refitted(this.fit);
+    this.draw();
   }
 
   /** All of it, at once. */

@@ -469,3 +469,22 @@ export interface SkyAnswer {
   id: string;
   description: DescribedSky;
 }
+/**
+ * A tier of sloping facets that are all of one angle.
+ */
+export interface TierAngle {
+  tier: number;
+  names: string[];
+  facets: number;
+  side: "crown" | "pavilion";
+  degrees: number;
+  independent: boolean;
+  least: number;
+  most: number;
+}
+/**
+ * The sloping tiers of a stone, in their order of cutting.
+ */
+export interface Tiers {
+  tiers: TierAngle[];
+}

@@ -21,6 +21,8 @@ import type {
   Skies,
   Sky,
   SkyAnswer,
+  TierAngle,
+  Tiers,
 } from "./answers";
 import type { Upload } from "./catalogue";
 
@@ -170,6 +172,12 @@ export async function proportions(scene: JsonObject): Promise<Proportions> {
   return (await (await request("api/design/proportions", post({ scene }))).json()) as Proportions;
 }
 
+/** The sloping tiers of a session's stone; of the tier `reach` with the ends at which its meets are kept. */
+export async function tiers(session: string, stone: string, reach: string | null): Promise<TierAngle[]> {
+  const query = new URLSearchParams({ stone, ...(reach === null ? {} : { reach }) });
+  return ((await (await request(`api/sessions/${session}/tiers?${query}`)).json()) as Tiers).tiers;
+}
+
 /** All that becomes of the light of a pixel of what a session shows. */
 export async function path(session: string, pixel: Pixel, signal: AbortSignal): Promise<Path> {
   const query = new URLSearchParams(Object.entries(pixel).map(([name, value]) => [name, String(value)]));
@@ -222,15 +230,24 @@ function parseUpload<Description extends { findings: string[] }>(
   return { id, findings: said.length > 0 ? said : [otherwise(description ?? {})] };
 }
 
-/** A still of a scene; `samples` of each pixel, or as many as a still takes by itself. */
-export async function still(
-  scene: JsonObject,
-  { width, height }: { width: number; height: number },
+/** A picture of what a session shows, one of its stones of another design. */
+export interface BesideRequest {
+  stone: string;
+  design: JsonObject;
+  step: bigint;
+  width: number;
+  height: number;
+}
+
+/** With `samples` of each pixel, or as many as the live picture gets at rest. */
+export async function beside(
+  session: string,
+  { step, ...asked }: BesideRequest,
   samples: number | null,
   signal: AbortSignal,
 ): Promise<Blob> {
-  const asked = post({ scene, width, height, format: "webp", ...(samples === null ? {} : { samples }) });
-  return (await request("api/render", { ...asked, signal })).blob();
+  const body = post({ ...asked, step: Number(step), ...(samples === null ? {} : { samples }) });
+  return (await request(`api/sessions/${session}/beside`, { ...body, signal })).blob();
 }
 
 /** The state of that number, rendered at full quality. */

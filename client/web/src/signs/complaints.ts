@@ -7,6 +7,8 @@ const KEPT = 100;
 
 export class Complaints {
   readonly kept: string[] = [];
+  /** Whether a problem is shown in another place than the corner. */
+  shownElsewhere: (text: string, about: string | undefined) => boolean = () => false;
   private readonly toasts: Toasts;
 
   constructor(toasts: Toasts) {
@@ -16,7 +18,7 @@ export class Complaints {
   /** Of several `about` the same the newest is shown. */
   tell(text: string, about?: string): void {
     if (this.kept.push(text) > KEPT) this.kept.shift();
-    this.toasts.problem(text, about);
+    if (!this.shownElsewhere(text, about)) this.toasts.problem(text, about);
   }
 
   /** Run what may be refused, and tell the user why. */

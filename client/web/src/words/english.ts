@@ -346,6 +346,19 @@ export const cut = {
     table_percent: ["Table, %", "The top facet's width, of the stone's: it is cut higher or lower"],
   } satisfies Record<string, Named>,
   asItCame: "As the file has it",
+  /** Angles of single tiers. */
+  tiers: {
+    crown: "Crown angles",
+    pavilion: "Pavilion angles",
+    unnamed: (tier: string) => `Tier ${tier}`,
+    hint: (tier: string, facets: number, reach: { least: number; most: number } | null) =>
+      `Tier ${tier}, ${facets} ${facets === 1 ? "facet" : "facets"}: degrees from the horizontal. All meets are kept` +
+      (reach ? `, from ${reach.least}\u00b0 to ${reach.most}\u00b0` : ""),
+    angle: (tier: string, degrees: string) => `${tier} ${degrees}\u00b0`,
+    following: (tiers: string) => `These follow: ${tiers}.`,
+    none: "No tier of this side can be turned.",
+    asTheyWere: "These angles as they were",
+  },
   /** The name of a proportion, from the words of the scene's name for it, with its unit. */
   proportion: (said: string, unit: "percent" | "degrees" | null) => {
     const ending = { percent: ", %", degrees: ", \u00b0" };
@@ -363,12 +376,10 @@ export const compare = {
   keptSide: "kept",
   shownSide: "shown",
   at: (percent: number) => `${percent}\u00a0% of the picture is the kept design's`,
-  tokenNeeded:
-    "The kept design's picture needs this server's token: open the address that the server printed. A changes the two " +
-    "over without it.",
   kept:
     "This design is kept. Choose or change another one: the grades tell how they differ, the key A changes the two " +
     "over, and D shows both.",
+  keptToWatch: "This design is kept: when another one comes, both are shown with a divider. D ends it.",
   noStone: "There is no stone whose design could be kept.",
 };
 

@@ -34,6 +34,7 @@ WAITED_FOR = (
     protocol.Grade,
     protocol.DrawDiagram,
     protocol.Measure,
+    protocol.ListTiers,
     protocol.TracePath,
     protocol.PutMesh,
     protocol.PutSky,

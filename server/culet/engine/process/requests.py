@@ -123,6 +123,8 @@ class Requests:
                 return {}, await self._stones.diagram(request)
             case protocol.Measure():
                 return await self._stones.measure(request), None
+            case protocol.ListTiers():
+                return await self._stones.tiers(request), None
             case protocol.TracePath():
                 return {}, await self._stones.path(request)
             case protocol.PutMesh():

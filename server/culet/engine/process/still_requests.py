@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +16,11 @@ from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.picture_memory import picture_bytes
 from culet.engine.session import events
-from culet.errors import InputError
+from culet.errors import InputError, SceneError
 from culet.rendering.chains import band_count
 from culet.rendering.target import Target
 from culet.scene import Scene
+from culet.scene.patch import read_patched
 from culet.stage import Library, Stage
 from culet_protocol.engine import Render
 from culet_protocol.sizes import STILL_SIZE
@@ -127,7 +128,11 @@ class StillRequests:
         live = self._sessions.get(request.session)
         async with live.session.lock:
             past, before = live.session.recall(request.step), events.known_to(live.session)
-        stage = await asyncio.to_thread(events.past_stage, past, before, self._library)
+        if request.design is None:
+            stage = await asyncio.to_thread(events.past_stage, past, before, self._library)
+        else:
+            scene = _otherwise(past.scene, request.stone, request.design)
+            stage = await asyncio.to_thread(_staged, scene, self._library, before)
         return stage, live.size, past.step
 
     def _make_room_for(self, still: Still) -> None:
@@ -139,3 +144,17 @@ class StillRequests:
         needed = max(picture_bytes(still.pixels, 1, still.stage.scene.film), min(needed, most))
         with self._memory.reserved("stills", needed, f"a still of {still.width} x {still.height}"):
             pass
+
+
+def _otherwise(scene: Scene, stone: str | None, design: Mapping[str, Any]) -> Scene:
+    """The scene with one stone of another design; SceneError where there is no such stone, or no such design."""
+    there = [each.id for each in scene.stones]
+    if stone not in there:
+        raise SceneError(
+            f"stone: expected the id of a stone ({', '.join(there) or 'none'}), got {stone!r:.60}", "stone"
+        )
+    return read_patched(scene.model_dump(mode="json"), {"stones": {stone: design}})
+
+
+def _staged(scene: Scene, library: Library, before: Stage) -> Stage:
+    return Stage.of(scene, library, before=before)

@@ -1,4 +1,4 @@
-"""What is asked about one stone, or one ray: grades, proportions, a cutting diagram, the way of the light."""
+"""What is asked about one stone, or one ray: grades, proportions, tiers, a cutting diagram, the way of the light."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from culet.geometry.designs.measures import proportions_of
 from culet.geometry.designs.of_shape import design_of
 from culet.geometry.designs.solid import Solid
 from culet.geometry.shape import Shape
+from culet.geometry.tier_angles import tiers_of
 from culet.grading.answer import Report
 from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
@@ -35,7 +36,7 @@ from culet.rendering.features import MOST_HALF_SPACES
 from culet.rendering.light.effort import Effort
 from culet.scene import Scene
 from culet.stage import Library, Stage
-from culet_protocol.engine import DrawDiagram, Grade, Measure, TracePath
+from culet_protocol.engine import DrawDiagram, Grade, ListTiers, Measure, TracePath
 
 T = TypeVar("T")
 
@@ -46,7 +47,7 @@ LIGHT_SECONDS = 20.0
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
-    ends with its piece, and so does a ray's. Diagrams one at a time in another thread, and rays in a third."""
+    ends with its piece, and so does a ray's. Diagrams and tiers one at a time in another, rays in a third."""
 
     def __init__(self, sessions: OpenSessions, library: Library, limits: Limits) -> None:
         """Sessions and uploads that requests name."""
@@ -86,6 +87,11 @@ class StoneRequests:
         stage = await self._staged(request)
         return await _in(self._drawing, _measured, stage, request.stone)
 
+    async def tiers(self, request: ListTiers) -> dict[str, Any]:
+        """Tiers with their angles; InputError, NotFoundError."""
+        stage = await self._staged(request)
+        return await _in(self._drawing, _tiers, stage, self._library, request.stone, request.reach)
+
     async def path(self, request: TracePath) -> bytes:
         """JSON of all that becomes of a pixel's light, or a ray's; InputError, NotFoundError. What a session shows is
         soon another scene, so that its light map is made in one pass."""
@@ -114,7 +120,7 @@ class StoneRequests:
             self._sums = LightSums(open_device())
         return self._sums
 
-    async def _staged(self, request: Grade | DrawDiagram | Measure | TracePath) -> Stage:
+    async def _staged(self, request: Grade | DrawDiagram | Measure | ListTiers | TracePath) -> Stage:
         if (request.scene is None) == (request.session is None):
             raise InputError("expected either a scene or a session, got both or neither", "scene")
         if request.session is None:
@@ -147,6 +153,14 @@ def _measured(stage: Stage, stone: str | None) -> dict[str, Any]:
     place = place_of(stage, stone)
     shape = _of_few_facets(stage.shapes[place])
     return asdict(proportions_of(Solid(design_of(shape))))
+
+
+def _tiers(stage: Stage, library: Library, stone: str | None, reach: int | None) -> dict[str, Any]:
+    place = place_of(stage, stone)
+    stones = list(stage.scene.stones)
+    recut, stones[place] = stones[place].recut, stones[place].model_copy(update={"recut": None})
+    uncut = Stage.of(stage.scene.model_copy(update={"stones": tuple(stones)}), library, before=stage)
+    return asdict(tiers_of(stage.shapes[place], uncut.shapes[place], recut, reach))
 
 
 def _of_few_facets(shape: Shape) -> Shape:
