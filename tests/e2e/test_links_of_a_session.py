@@ -7,10 +7,10 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, ViewportSize
 
 from culet_protocol.watch import watch_id
-from e2e.conftest import SMALL, WITH_PANEL, ViewOf
+from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
 from e2e.view import View, assert_same
 
@@ -109,9 +109,10 @@ def test_a_page_is_let_in_by_the_token_of_its_address_and_stays_in(guarded: Serv
 def test_who_only_watches_sees_the_design_that_was_beside_the_one_that_comes(guarded: Server, browser: Browser) -> None:
     """Without the server's token, by the watching link alone."""
     with guarded as server:
-        view = View(browser.new_page(viewport=SMALL), server)
+        size = ViewportSize(width=384, height=216)
+        view = View(browser.new_context(viewport=size).new_page(), server)
         view.open(f"#token={TOKEN}")
-        guest = View(browser.new_context(viewport=SMALL).new_page(), server)
+        guest = View(browser.new_context(viewport=size).new_page(), server)
         guest.open(f"?watch={watch_id(view.session)}")
         guest.at_rest()
         guest.page.keyboard.press("d")
