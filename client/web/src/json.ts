@@ -10,6 +10,11 @@ export function object(value: unknown): JsonObject {
   return typeof value === "object" && value !== null ? (value as JsonObject) : {};
 }
 
+/** Whether it has members, which a list has not. */
+export function isObject(value: unknown): value is JsonObject {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
 export function list(value: unknown): JsonObject[] {
   return Array.isArray(value) ? value.map(object) : [];
 }

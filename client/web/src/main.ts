@@ -196,7 +196,7 @@ const page = {
   note: (text: string) => void toasts.note(text),
 };
 const comparison = new Comparison();
-const division = new Division({ visit, canvas, comparison, complaints, fits: () => screen.fits });
+const division = new Division({ visit, canvas, comparison, complaints });
 const performing = new Performing({ visit, stones, saving, clips, page, complaints });
 const panel = new Panel(element("panel", HTMLElement), {
   perform,

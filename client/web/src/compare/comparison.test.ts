@@ -35,6 +35,23 @@ describe("a comparison", () => {
     expect(comparison.change(scene())).toMatchObject({ stones: { a: { cut: FLAT.cut } } });
   });
 
+  it("takes away what only the design has that is shown, as the angle of a tier", () => {
+    const recut = (crown_ratio: number, angles: JsonObject) => ({ crown_ratio, table_percent: null, angles });
+    const [kept, shown] = [recut(1, { 3: 41, 5: 20 }), recut(1.1, { 4: 30, 5: 21 })];
+    const comparison = new Comparison();
+    comparison.keep(scene({ recut: kept, cut: { name: "oval", length: 1.2 } }), "a");
+    const patch = comparison.change(scene({ recut: shown, cut: { name: "emerald", pavilion_steps: 2 } }));
+    expect(patch).toMatchObject({
+      stones: {
+        a: { recut: { ...kept, angles: { 3: 41, 4: null, 5: 20 } }, cut: { name: "oval", pavilion_steps: null } },
+      },
+    });
+    const back = comparison.change(scene({ recut: kept, material: { name: "own", ior: [1, 2] } }));
+    expect(back).toMatchObject({ stones: { a: { recut: { ...shown, angles: { 3: null, 4: 30, 5: 21 } } } } });
+    const whole = comparison.change(scene({ material: { name: "own", ior: [2] } }));
+    expect(whole).toMatchObject({ stones: { a: { recut: kept, material: { ior: [1, 2] } } } });
+  });
+
   it("leaves a stone where it was moved to", () => {
     const comparison = new Comparison();
     comparison.keep(scene(), "a");

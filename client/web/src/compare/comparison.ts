@@ -4,7 +4,7 @@
  */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { text } from "../json";
+import { isObject, text } from "../json";
 import { hasStone, stoneOf, withFirst } from "../stones/stones";
 
 /** What a design is, of a stone; a merge patch takes a field away by null. */
@@ -54,7 +54,8 @@ export class Comparison {
     const stayed = JSON.stringify(left.pose) === JSON.stringify(this.came ?? pose);
     this.other = left;
     this.came = stayed ? pose : null;
-    return { stones: { [this.stone]: stayed ? { ...design, ...pose } : design } };
+    const patch = replacing(left.design, design);
+    return { stones: { [this.stone]: stayed ? { ...patch, ...pose } : patch } };
   }
 
   /** The scene as the other design would have it, its stone first; null if there is none to compare with. */
@@ -88,4 +89,14 @@ export class Comparison {
 function only(names: readonly string[], scene: JsonObject | null): JsonObject {
   const stone = stoneOf(scene);
   return Object.fromEntries(names.map((name) => [name, stone[name] ?? null]));
+}
+
+/** The merge patch that leaves nothing of `before`: what `after` does not have, such as the angle of a tier, is taken away. */
+function replacing(before: JsonObject, after: JsonObject): JsonObject {
+  const gone = Object.keys(before).filter((name) => !(name in after));
+  const kept = Object.entries(after).map(([name, value]) => {
+    const former = before[name];
+    return [name, isObject(value) && isObject(former) ? replacing(former, value) : value];
+  });
+  return Object.fromEntries([...gone.map((name) => [name, null]), ...kept]);
 }

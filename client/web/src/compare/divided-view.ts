@@ -5,7 +5,7 @@
 
 import "./divided.css";
 import { element } from "../page";
-import { type Fit, placed, type Size } from "../picture/picture-size";
+import { sizeWithin } from "../picture/picture-size";
 import * as rest from "../session/rest";
 import { words } from "../words/words";
 import type { DivisionWorld } from "./division";
@@ -92,7 +92,7 @@ export class DividedView {
       const { step } = lastFrame;
       const beside = comparison.beside(await rest.sceneShown(session, step), visit.scene);
       if (!beside) return;
-      const size = fitting(lastFrame, this.world.canvas, this.world.fits());
+      const size = sizeWithin(lastFrame, this.world.canvas); // a frame in motion has fewer pixels
       for (const samples of [1, null]) {
         const blob = await rest.beside(session, { ...beside, step, ...size }, samples, signal);
         if (signal.aborted) return;
@@ -110,10 +110,4 @@ export class DividedView {
   private forget(): void {
     URL.revokeObjectURL(this.picture.src);
   }
-}
-
-/** As many pixels as the canvas has for a picture of that shape: in motion it has fewer. */
-function fitting(picture: Size, canvas: Size, fit: Fit): Size {
-  const { width, height } = placed(picture, canvas, fit);
-  return { width: Math.max(1, Math.round(width)), height: Math.max(1, Math.round(height)) };
 }

@@ -1,6 +1,5 @@
 /** The mode that shows two designs with a divider between them: what draws it is loaded when it is first turned on. */
 
-import type { Fit } from "../picture/picture-size";
 import type { Visit } from "../session/visit";
 import type { Complaints } from "../signs/complaints";
 import type { Comparison } from "./comparison";
@@ -10,8 +9,6 @@ export interface DivisionWorld {
   visit: Visit;
   canvas: HTMLCanvasElement;
   comparison: Comparison;
-  /** How pictures of another shape than the canvas are shown. */
-  fits: () => Fit;
   complaints: Complaints;
 }
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { deviceLength, letterbox, pictureSize, SHARP } from "./picture-size";
+import { deviceLength, letterbox, pictureSize, SHARP, sizeWithin } from "./picture-size";
 
 describe("the size asked for", () => {
   it("is the device's pixels up to full HD, either way round", () => {
@@ -53,5 +53,11 @@ describe("the letterbox", () => {
       width: 200,
       height: 200,
     });
+  });
+
+  it("is all that is worth to be asked for beside a picture, even where that fills the window", () => {
+    const tall = { width: 1080, height: 1920 };
+    expect(sizeWithin(tall, { width: 2560, height: 1440 })).toEqual({ width: 810, height: 1440 });
+    expect(sizeWithin(tall, { width: 300, height: 0 })).toEqual({ width: 1, height: 1 });
   });
 });

@@ -57,3 +57,9 @@ export function placed(picture: Size, canvas: Size, fit: Fit): Rectangle {
   const height = Math.round(picture.height * scale);
   return { x: Math.floor((canvas.width - width) / 2), y: Math.floor((canvas.height - height) / 2), width, height };
 }
+
+/** The largest size of the picture's shape of which the canvas shows all: beyond it nobody sees a pixel more. */
+export function sizeWithin(picture: Size, canvas: Size): Size {
+  const { width, height } = letterbox(picture, canvas);
+  return { width: Math.max(1, width), height: Math.max(1, height) };
+}
