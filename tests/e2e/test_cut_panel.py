@@ -125,8 +125,8 @@ def test_each_tier_has_a_slider_between_the_ends_at_which_meets_are_kept(wide_vi
     assert list(now["recut"]["angles"]) == [str(tier["tier"])]
     assert tier["most"] - 0.05 <= now["recut"]["angles"][str(tier["tier"])] <= tier["most"]
     view.change(lambda: page.keyboard.press("Control+z"))
-    assert server.session(view.session)["scene"] == view.scene
     view.until("() => culet.state.scene.stones[0].recut === null")
+    assert server.session(view.session)["scene"] == view.scene
     assert main.input_value() == "40.75"
     assert view.problems == []
 

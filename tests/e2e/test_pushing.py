@@ -20,8 +20,7 @@ def push_from(view: View, x: float, y: float) -> None:
 def test_shift_and_drag_pushes_the_stone_and_leaves_the_camera(view: View) -> None:
     start = view.scene["camera"]
     push_from(view, SMALL["width"] / 2, SMALL["height"] / 2)  # the stone fills the middle
-    view.settle_messages()
-    assert view.state["falling"]
+    view.until("() => culet.state.falling")
     assert view.scene["camera"] == start
     assert [message["type"] for message in view.sent] == ["push"]
     assert view.sent[0]["right"] > 0
