@@ -214,7 +214,7 @@ const panel = new Panel(element("panel", HTMLElement), {
   divide,
   otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
-  tiers: (scene, reach) => rest.tiers(visit.session ?? "", text(stoneOf(scene).id, ""), reach),
+  tiers: (scene, reach, signal) => rest.tiers(visit.session ?? "", text(stoneOf(scene).id, ""), reach, signal),
   measure: (scene) => rest.proportions(scene),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
   share: () => attempt(() => share()),

@@ -52,6 +52,21 @@ describe("the cut of a stone", () => {
   );
 });
 
+describe("a proportion that is changed", () => {
+  it("takes the angles of tiers away, and nothing else of how the stone is cut anew", () => {
+    const stone = (recut: object | null) => ({ stones: [{ ...STONE, cut: CUT, recut }] });
+    const cut = { name: "brilliant", pavilion_degrees: 41 };
+    const change = (recut: object | null) => cutPatch(stone(recut), "pavilion_degrees", 41).stones;
+    const usual = { crown_ratio: 1, pavilion_ratio: 1, girdle_percent: null, table_percent: null };
+    expect(change(null)).toEqual({ ruby: { cut } });
+    expect(change({ ...usual, angles: {} })).toEqual({ ruby: { cut } });
+    expect(change({ ...usual, angles: { 3: 41 } })).toEqual({ ruby: { cut, recut: null } });
+    expect(change({ ...usual, crown_ratio: 1.1, angles: { 3: 41 } })).toEqual({
+      ruby: { cut, recut: { angles: { 3: null } } },
+    });
+  });
+});
+
 describe("the list of cuts", () => {
   it("shows the cut's name, a file's shape, or nothing without a stone", () => {
     expect(shapeName({ stones: [{ cut: { name: "oval" } }] })).toBe("oval");

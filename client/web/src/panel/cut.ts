@@ -5,7 +5,7 @@ import { number, object, part, text } from "../json";
 import type { CutKind } from "../session/catalogue";
 import { hasStone, stoneOf, stonePatch } from "../stones/stones";
 import { words } from "../words/words";
-import { anglesOf } from "./tiers";
+import { anglesOf, recutWithout } from "./tiers";
 
 /** A slider about one proportion. */
 export interface Proportion {
@@ -63,10 +63,10 @@ export function cutOf(scene: JsonObject | null, proportions: readonly Proportion
 
 /** The merge patch that changes one proportion and leaves the others. */
 export function cutPatch(scene: JsonObject | null, name: string, value: number): JsonObject {
-  const turned = Object.keys(anglesOf(scene)).length > 0;
+  const turned = Object.keys(anglesOf(scene));
   return stonePatch(scene, {
     cut: { name: cutName(scene), [name]: value },
-    ...(turned ? { recut: { angles: null } } : {}), // or the angles of tiers would stay where the cut's are changed
+    ...(turned.length > 0 ? { recut: recutWithout(scene, turned) } : {}), // or the angles of tiers would stay where the cut's are changed
   });
 }
 

@@ -5,20 +5,23 @@ import { Command } from "../controls/command";
 import type { Section } from "../controls/section";
 import { type Clamped, type Ends, Slider } from "../controls/slider";
 import type { TierAngle } from "../session/answers";
-import { isPassing, ProblemError } from "../session/rest";
 import { reasonOf } from "../signs/complaints";
 import { words } from "../words/words";
 import { LiveControls } from "./live-controls";
+import { ListRequests, passes, ReachRequests } from "./tier-requests";
 import {
   anglesOf,
   asTheyWerePatch,
+  bodyOf,
   isOfAngles,
+  kindOf,
   type ListTiers,
   othersOf,
   parted,
   type Side,
   shapeOf,
   tierPatch,
+  turned,
 } from "./tiers";
 
 const DEGREES = { step: 0.05, decimals: 2 };
@@ -29,21 +32,22 @@ type Degrees = Record<string, number>;
 
 interface Row {
   slider: Slider;
+  /** As the server last listed it. */
+  tier: TierAngle;
   /** Why the last angle was refused. */
   refusal: HTMLElement;
-  /** What the ends that it has are of. */
-  reach: string;
+  /** The stone whose angle was refused, but for that angle. */
+  refused: string;
   /** A finger is on it: other ends would move it from under the finger. */
   pressed: boolean;
-  /** With the ends that it gets once it is let go. */
-  next: TierAngle | null;
 }
 
 export class TierSliders {
   private readonly section: Section;
   private readonly side: Side;
   private readonly send: (patch: JsonObject) => void;
-  private readonly list: ListTiers;
+  private readonly lists: ListRequests;
+  private readonly reaches: ReachRequests;
   private readonly clamped: Clamped;
   private readonly place = document.createElement("div");
   /** Tiers that follow, or why there are none. */
@@ -53,41 +57,51 @@ export class TierSliders {
   private readonly rows = new Map<string, Row>();
   private scene: JsonObject | null = null;
   private tiers: readonly TierAngle[] = [];
-  /** What the list is of, or will be. */
-  private asked = "";
-  private asking = false;
+  /** The scene whose stone they are of, or which has none. */
+  private listedOf: JsonObject | null = null;
 
   constructor(section: Section, side: Side, send: (patch: JsonObject) => void, list: ListTiers, clamped: Clamped) {
     this.section = section.fold(true);
     this.side = side;
     this.send = send;
-    this.list = list;
+    this.lists = new ListRequests(list, {
+      listed: (tiers, of) => this.show(tiers, of),
+      failed: (error, of) => this.failed(error, of),
+    });
+    this.reaches = new ReachRequests(list, (tier) => this.span(this.rows.get(tier)));
     this.clamped = clamped;
     this.status.className = "tier-status";
     this.status.setAttribute("role", "status");
     section.add({ element: this.place });
     section.add({ element: this.status });
     this.reset = section.add(
-      new Command(words.cut.tiers.asTheyWere, () => send(asTheyWerePatch(this.scene, this.own.free))),
+      new Command(words.cut.tiers.asTheyWere, () => {
+        for (const row of this.rows.values()) row.refusal.hidden = true;
+        send(asTheyWerePatch(this.scene, this.turned));
+      }),
     );
     this.reset.show(false);
-    section.onFold(() => this.refresh());
+    section.onFold(() => this.look());
   }
 
   update(scene: JsonObject | null): void {
     this.scene = scene;
     this.section.show(shapeOf(scene) !== "");
+    if (this.listedOf && kindOf(scene) !== kindOf(this.listedOf)) this.clear(); // rows of another stone would turn tiers of this one
+    for (const [tier, { refusal, refused }] of this.rows) if (refused !== othersOf(scene, tier)) refusal.hidden = true;
+    this.reset.show(this.turned.length > 0);
     this.controls?.display();
-    this.refresh();
+    this.look();
   }
 
   /** Show there why an angle of these was refused; false if it was none of these. */
   refused(why: string, field: string | undefined): boolean {
     if (!isOfAngles(field) || !this.section.open) return false;
-    for (const { slider, refusal } of this.rows.values()) {
-      if (!slider.element.contains(document.activeElement)) continue;
-      refusal.textContent = why;
-      refusal.hidden = false;
+    for (const [tier, row] of this.rows) {
+      if (!row.slider.element.contains(document.activeElement)) continue;
+      row.refused = othersOf(this.scene, tier);
+      row.refusal.textContent = why;
+      row.refusal.hidden = false;
       return true;
     }
     return false;
@@ -97,53 +111,61 @@ export class TierSliders {
     return parted(this.tiers, this.side);
   }
 
-  /** Ask for the list of the stone as it is, once at a time, while somebody looks at it. */
-  private refresh(): void {
-    const shape = shapeOf(this.scene);
-    if (!this.section.open || this.asking || shape === this.asked || shape === "") return;
-    this.asked = shape;
-    this.asking = true;
-    void this.ask().finally(() => {
-      this.asking = false;
-      this.refresh();
-    });
+  /** The tiers of this side whose angle is asked for. */
+  private get turned(): string[] {
+    const { free, following } = this.own;
+    return turned(this.scene, [...free, ...following]);
   }
 
-  private async ask(): Promise<void> {
-    const { scene } = this;
-    try {
-      this.show(await this.list(scene ?? {}, null));
-    } catch (error) {
-      if (this.rows.size > 0 && error instanceof ProblemError && isPassing(error)) return; // a slider may be in use
-      this.show([]);
-      this.status.textContent = reasonOf(error);
-    }
+  private look(): void {
+    this.lists.look(this.scene, this.section.open);
+    this.reaches.look(this.scene);
+    if (!this.section.open) this.useNone();
   }
 
-  private show(tiers: readonly TierAngle[]): void {
+  private useNone(): void {
+    for (const by of ["focus", "pointer"] as const) this.reaches.use(by, null);
+  }
+
+  private failed(error: unknown, of: JsonObject): void {
+    const stays = this.rows.size > 0 && bodyOf(of) === bodyOf(this.listedOf);
+    if (stays && passes(error)) return; // a slider may be in use
+    this.clear();
+    this.listedOf = of;
+    this.status.textContent = reasonOf(error);
+  }
+
+  private clear(): void {
+    this.tiers = [];
+    this.listedOf = null;
+    this.lay([]);
+    this.status.textContent = "";
+    this.reset.show(false);
+  }
+
+  private show(tiers: readonly TierAngle[], of: JsonObject): void {
     const before = String(this.own.free.map(({ tier }) => tier));
     this.tiers = tiers;
+    this.listedOf = of;
     const { free, following } = this.own;
     if (String(free.map(({ tier }) => tier)) !== before) this.lay(free);
     for (const tier of free) {
       const row = this.rows.get(String(tier.tier));
       if (!row) continue;
+      row.tier = tier;
       row.slider.label(nameOf(tier));
-      if (row.reach !== othersOf(this.scene, String(tier.tier)) && !row.pressed) {
-        row.reach = "";
-        this.span(row, tier);
-      }
-      row.refusal.hidden = true;
+      this.span(row);
     }
     this.controls?.display();
     const said = words.cut.tiers;
     const listed = following.map((tier) => said.angle(nameOf(tier), tier.degrees.toFixed(1))).join(", ");
     this.status.textContent = listed ? said.following(listed) : free.length === 0 ? said.none : "";
-    this.reset.show(free.length > 0);
+    this.reset.show(this.turned.length > 0);
   }
 
   private lay(free: readonly TierAngle[]): void {
     this.rows.clear();
+    this.useNone();
     this.place.replaceChildren();
     this.controls = new LiveControls<Degrees>(
       () => this.degrees(),
@@ -159,33 +181,22 @@ export class TierSliders {
     refusal.className = "refusal";
     refusal.setAttribute("role", "alert");
     refusal.hidden = true;
-    const row: Row = { slider, refusal, reach: "", pressed: false, next: null };
+    const row: Row = { slider, tier, refusal, refused: "", pressed: false };
     this.rows.set(name, row);
-    this.span(row, tier);
+    this.span(row);
     this.controls?.listen(name, slider);
     slider.onInput(() => {
       refusal.hidden = true;
     });
-    for (const about of ["pointerenter", "focusin"])
-      slider.element.addEventListener(about, () => void this.askReach(name, row));
-    slider.element.addEventListener("pointerdown", () => this.press(row));
-    this.place.append(slider.element, refusal);
-  }
-
-  /** The ends at which meets are kept take the server a moment: those of a slider that is about to be used are asked for. */
-  private async askReach(name: string, row: Row): Promise<void> {
-    const { scene } = this;
-    const others = othersOf(scene, name);
-    if (row.reach === others) return;
-    row.reach = others;
-    try {
-      const tier = (await this.list(scene ?? {}, name)).find((each) => String(each.tier) === name);
-      if (!tier || row.reach !== others || this.rows.get(name) !== row) return;
-      if (row.pressed) row.next = tier;
-      else this.span(row, tier, true);
-    } catch {
-      row.reach = ""; // an angle beyond is refused with the server's reason
-    }
+    const { element } = slider;
+    element.addEventListener("pointerenter", () => this.reaches.use("pointer", name));
+    element.addEventListener("pointerleave", () => this.reaches.use("pointer", null));
+    element.addEventListener("focusin", () => this.reaches.use("focus", name));
+    element.addEventListener("focusout", ({ relatedTarget }) => {
+      if (!(relatedTarget instanceof Node && element.contains(relatedTarget))) this.reaches.use("focus", null);
+    });
+    element.addEventListener("pointerdown", () => this.press(row));
+    this.place.append(element, refusal);
   }
 
   private press(row: Row): void {
@@ -193,14 +204,17 @@ export class TierSliders {
     const letGo = () => {
       for (const end of ["pointerup", "pointercancel"]) window.removeEventListener(end, letGo);
       row.pressed = false;
-      if (row.next) this.span(row, row.next, true);
-      row.next = null;
+      this.span(row);
     };
     for (const end of ["pointerup", "pointercancel"]) window.addEventListener(end, letGo);
   }
 
-  private span({ slider }: Row, tier: TierAngle, known = false): void {
-    slider.between(endsOf(tier)).hint(words.cut.tiers.hint(String(tier.tier), tier.facets, known ? tier : null));
+  /** Give a slider the ends at which meets are kept, or what the list has where they are not known. */
+  private span(row: Row | undefined): void {
+    if (!row || row.pressed) return;
+    const known = this.reaches.ends(String(row.tier.tier));
+    const { tier, facets } = row.tier;
+    row.slider.between(endsOf(known ?? row.tier)).hint(words.cut.tiers.hint(String(tier), facets, known));
   }
 
   /** Of the scene, or as the server last listed it. */

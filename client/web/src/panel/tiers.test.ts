@@ -1,7 +1,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import { describe, expect, it, vi } from "vitest";
 import type { TierAngle } from "../session/answers";
-import { asTheyWerePatch, isOfAngles, othersOf, parted, sharing, tierPatch } from "./tiers";
+import { asTheyWerePatch, bodyOf, isOfAngles, kindOf, othersOf, parted, sharing, tierPatch, turned } from "./tiers";
 
 const scene = (recut: JsonObject | null): JsonObject => ({
   stones: [{ id: "a", cut: "brilliant", mesh: null, recut }],
@@ -21,9 +21,28 @@ const tier = (number: number, more: Partial<TierAngle> = {}): TierAngle => ({
 describe("tiers of a stone", () => {
   it("are turned one by one, and back", () => {
     expect(tierPatch(scene(null), "3", 41.2)).toEqual({ stones: { a: { recut: { angles: { 3: 41.2 } } } } });
-    expect(asTheyWerePatch(scene(null), [tier(3), tier(4)])).toEqual({
-      stones: { a: { recut: { angles: { 3: null, 4: null } } } },
-    });
+    const patch = (recut: JsonObject, ...tiers: string[]) => asTheyWerePatch(scene(recut), tiers);
+    const angles = { stones: { a: { recut: { angles: { 3: null } } } } };
+    const usual = { crown_ratio: 1, pavilion_ratio: 1, girdle_percent: null, table_percent: null };
+    expect(patch({ ...usual, angles: { 3: 41, 4: 30 } }, "3")).toEqual(angles);
+    expect(patch({ ...usual, table_percent: 55, angles: { 3: 41 } }, "3")).toEqual(angles);
+    expect(patch({ ...usual, crown_ratio: 1.1, angles: { 3: 41 } }, "3")).toEqual(angles);
+    expect(patch({ ...usual, angles: { 3: 41, 4: 30 } }, "3", "4")).toEqual({ stones: { a: { recut: null } } });
+  });
+
+  it("are told by their numbers where the scene asks for an angle", () => {
+    expect(turned(scene({ angles: { 3: 41, 5: 20 } }), [tier(3), tier(4)])).toEqual(["3"]);
+    expect(turned(scene(null), [tier(3)])).toEqual([]);
+  });
+
+  it("are those of a stone with its cut or mesh", () => {
+    const of = (more: JsonObject): JsonObject => ({ stones: [{ id: "a", cut: "oval", mesh: null, ...more }] });
+    const longer = of({ cut: { name: "oval", length: 1.4 } });
+    expect(bodyOf(of({ recut: { crown_ratio: 1.1 } }))).toBe(bodyOf(of({})));
+    expect(bodyOf(longer)).not.toBe(bodyOf(of({})));
+    expect(kindOf(longer)).toBe(kindOf(of({})));
+    for (const other of [{ id: "b" }, { cut: "emerald" }, { mesh: "m" }])
+      expect(kindOf(of(other))).not.toBe(kindOf(of({})));
   });
 
   it("reach as far as all others let them", () => {

@@ -1,7 +1,7 @@
 /** The tiers of a stone, as the server lists them, and the merge patches that change their angles. */
 
 import type { JsonObject } from "@culet/protocol/messages";
-import { number, part } from "../json";
+import { number, object, part, text } from "../json";
 import type { TierAngle } from "../session/answers";
 import { stoneOf, stonePatch } from "../stones/stones";
 
@@ -10,11 +10,25 @@ export type Side = (typeof SIDES)[number];
 
 /** The field of a scene that the server names where it refuses an angle. */
 const ANGLES = /^stones\.[^.]+\.recut\.angles\b/;
+/** Of `recut`, what leaves the stone as it is; null does of all else. */
+const UNCHANGED: JsonObject = { crown_ratio: 1, pavilion_ratio: 1 };
 
 /** What the stone's tiers depend on; empty without a stone. */
 export function shapeOf(scene: JsonObject | null): string {
   const { id, cut, mesh, recut } = stoneOf(scene);
   return id === undefined ? "" : JSON.stringify([id, cut, mesh ?? null, recut ?? null]);
+}
+
+/** The stone and what is cut anew of it: other tiers than those of the same. */
+export function bodyOf(scene: JsonObject | null): string {
+  const { id, cut, mesh } = stoneOf(scene);
+  return JSON.stringify([id, cut, mesh ?? null]);
+}
+
+/** The same but for the proportions of a cut, which seldom has other tiers with others. */
+export function kindOf(scene: JsonObject | null): string {
+  const { id, cut, mesh } = stoneOf(scene);
+  return JSON.stringify([id, text(cut, text(object(cut).name, "")), mesh ?? null]);
 }
 
 /** The degrees that the scene asks for, by tiers' numbers. */
@@ -36,9 +50,23 @@ export function tierPatch(scene: JsonObject | null, tier: string, degrees: numbe
   return stonePatch(scene, { recut: { angles: { [tier]: degrees } } });
 }
 
-/** The merge patch that has the tiers of a list where they were before anybody turned them. */
-export function asTheyWerePatch(scene: JsonObject | null, tiers: readonly TierAngle[]): JsonObject {
-  return stonePatch(scene, { recut: { angles: Object.fromEntries(tiers.map(({ tier }) => [tier, null])) } });
+/** The merge patch that has those tiers where they were before anybody turned them. */
+export function asTheyWerePatch(scene: JsonObject | null, tiers: readonly string[]): JsonObject {
+  return stonePatch(scene, { recut: recutWithout(scene, tiers) });
+}
+
+/** What a merge patch says of `recut` to take the angles of those tiers away: null if nothing of it is left then. */
+export function recutWithout(scene: JsonObject | null, tiers: readonly string[]): JsonObject | null {
+  const left = Object.keys(anglesOf(scene)).filter((tier) => !tiers.includes(tier));
+  const { angles: _, ...others } = part(stoneOf(scene), "recut");
+  const said = Object.entries(others).some(([name, value]) => value !== null && value !== UNCHANGED[name]);
+  return said || left.length > 0 ? { angles: Object.fromEntries(tiers.map((tier) => [tier, null])) } : null;
+}
+
+/** Those tiers of a list, by their numbers, whose angle the scene asks for. */
+export function turned(scene: JsonObject | null, tiers: readonly TierAngle[]): string[] {
+  const angles = anglesOf(scene);
+  return tiers.map(({ tier }) => String(tier)).filter((tier) => tier in angles);
 }
 
 /** Whether the refusal is of an angle. */
@@ -53,13 +81,13 @@ export function parted(tiers: readonly TierAngle[], side: Side): { free: TierAng
 }
 
 /** The server's list for a stone; the ends of the tier `reach` are those at which its meets are kept. */
-export type ListTiers = (scene: JsonObject, reach: string | null) => Promise<TierAngle[]>;
+export type ListTiers = (scene: JsonObject, reach: string | null, signal?: AbortSignal) => Promise<TierAngle[]>;
 
 /** One answer for crown and pavilion, which ask for the same stone one after the other. */
 export function sharing(list: ListTiers): ListTiers {
   let last: { of: string; answer: Promise<TierAngle[]> } | null = null;
-  return (scene, reach) => {
-    if (reach !== null) return list(scene, reach);
+  return (scene, reach, signal) => {
+    if (reach !== null) return list(scene, reach, signal);
     const of = shapeOf(scene);
     if (last?.of !== of) {
       const answer = list(scene, null);

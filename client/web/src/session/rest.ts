@@ -173,9 +173,14 @@ export async function proportions(scene: JsonObject): Promise<Proportions> {
 }
 
 /** The sloping tiers of a session's stone; of the tier `reach` with the ends at which its meets are kept. */
-export async function tiers(session: string, stone: string, reach: string | null): Promise<TierAngle[]> {
+export async function tiers(
+  session: string,
+  stone: string,
+  reach: string | null,
+  signal: AbortSignal | null = null,
+): Promise<TierAngle[]> {
   const query = new URLSearchParams({ stone, ...(reach === null ? {} : { reach }) });
-  return ((await (await request(`api/sessions/${session}/tiers?${query}`)).json()) as Tiers).tiers;
+  return ((await (await request(`api/sessions/${session}/tiers?${query}`, { signal })).json()) as Tiers).tiers;
 }
 
 /** All that becomes of the light of a pixel of what a session shows. */
