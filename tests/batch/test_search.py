@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import direct
 
 from culet.batch.angle_search import LEAST_REACH, angle_search, free_angles, search_angles
-from culet.batch.candidates import BRIGHTNESS, FIRE, Candidate, Candidates, Design, GradeTask
+from culet.batch.candidates import BRIGHTNESS, FIRE, Candidate, Candidates, GradeTask, TrialDesign
 from culet.batch.crew import IN_PROCESS, Done, InProcess, Item, More, Result, Task
 from culet.batch.metrics import light_sums
 from culet.batch.search import NO_STONE, divide, search_ratios
@@ -132,18 +132,19 @@ class Landscape(InProcess):
 
     def __init__(self, places: int) -> None:
         self._places = places
-        self.asked: list[Design] = []
+        self.asked: list[TrialDesign] = []
         self.most_at_a_time = 0
 
-    def places(self) -> int:
-        return self._places
+    @property
+    def alone(self) -> bool:
+        return self._places == 1
 
     def results(self, task: Task[Item, Result], more: More[Item]) -> Done[Item, Result]:
         """The last that was asked for first."""
         assert isinstance(task, GradeTask)
-        begun: list[Design] = []
+        begun: list[TrialDesign] = []
         while True:
-            begun += [item for item in more(self._places - len(begun)) if isinstance(item, Design)]
+            begun += [item for item in more(max(0, self._places - len(begun))) if isinstance(item, TrialDesign)]
             if not begun:
                 return
             self.most_at_a_time = max(self.most_at_a_time, len(begun))
@@ -152,7 +153,7 @@ class Landscape(InProcess):
             yield cast("tuple[Item, Result]", (design, self._graded(design)))  # of a GradeTask
 
     @staticmethod
-    def _graded(design: Design) -> dict[str, Number] | MeshError:
+    def _graded(design: TrialDesign) -> dict[str, Number] | MeshError:
         crown, pavilion = design.crown_ratio, design.pavilion_ratio
         if crown > 1.1:
             return MeshError("too steep")
@@ -201,11 +202,32 @@ def test_the_range_is_divided_as_one_design_after_the_other_would_divide_it() ->
     asked = []
 
     def lost(ratios: NDArray[np.float64]) -> float:
-        asked.append(Design.of(*ratios))
+        asked.append(TrialDesign.of(*ratios))
         return _lost(found.graded[asked[-1]])
 
     direct(lost, ends, maxfun=40)
     assert set(asked) == set(crew.asked)
+
+
+def test_workers_that_come_and_go_meanwhile_find_the_same_designs_each_once() -> None:
+    """One is left at times: what it grades next may wait already, as the others' did."""
+
+    class ComingAndGoing(Landscape):
+        alone = False
+
+        def places(self) -> int:
+            return self._places
+
+        def results(self, task: Task[Item, Result], more: More[Item]) -> Done[Item, Result]:
+            for done in super().results(task, more):
+                self._places = (1, 4, 2)[len(self.asked) % 3]
+                yield done
+
+    expected, crew = searched(1)[1], ComingAndGoing(4)
+    found = candidates(shape_of_cut(SingleCut()), crew)
+    whole_search(found, 60)
+    assert found.found == expected.found
+    assert len(crew.asked) == len(set(crew.asked)), "each once"
 
 
 @pytest.mark.parametrize("number", [0, 20, 45])

@@ -100,7 +100,7 @@ async def test_a_session_lists_tiers_with_the_ends_between_which_their_angles_ma
     assert_problem(await gateway.http.get(tiers, params={"reach": 99}), 422, "angles")
     assert_problem(await gateway.http.get(tiers, params={"stone": "b"}), 422, "stone")
     heart = {"scene": {"stones": [{"cut": "heart"}]}}
-    assert "not" in (await gateway.http.post("/api/design/tiers", json=heart)).json()["detail"]
+    assert_problem(await gateway.http.post("/api/design/tiers", json=heart), 422, "angles")
 
 
 async def test_a_client_is_graded_one_stone_at_a_time(gateway: Gateway) -> None:
@@ -115,6 +115,26 @@ async def test_a_client_is_graded_one_stone_at_a_time(gateway: Gateway) -> None:
         assert not second.done()
         assert len(gateway.parts.stills) == 1, "it has a place, and waits"
     assert await second == 422
+
+
+async def test_a_client_has_one_design_cut_at_a_time(gateway: Gateway) -> None:
+    """As the other one of a comparison, or for a tier's reach: both may take the engine seconds."""
+    session = f"/api/sessions/{await gateway.session({'stones': [{'id': 'a'}]})}"
+
+    async def asked() -> list[int]:
+        beside = gateway.http.post(f"{session}/beside", json={"stone": "b", "design": {}})
+        reach = gateway.http.get(f"{session}/tiers", params={"stone": "b", "reach": 4})
+        return [answer.status_code for answer in await asyncio.gather(beside, reach)]
+
+    assert await asked() == [422, 422], "the engine has what it needs to answer at once"
+    async with gateway.parts.designs.turn("127.0.0.1"):
+        both = asyncio.create_task(asked())
+        while len(gateway.parts.stills) < 2 and not both.done():  # noqa: ASYNC110 - each request is a task of its own
+            await asyncio.sleep(0.01)
+        for _ in range(5):  # longer than the engine takes to refuse
+            assert (await gateway.http.get(f"{session}/tiers")).status_code == 200, "the usual ends need no turn"
+        assert len(gateway.parts.stills) == 2, "both have places, and wait"
+    assert await both == [422, 422]
 
 
 async def test_what_cannot_be_graded_or_drawn_is_a_problem(gateway: Gateway) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import Bounds, minimize
 
-from culet.batch.candidates import ANGLE_DECIMALS, BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Design, Search
+from culet.batch.candidates import ANGLE_DECIMALS, BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Search, TrialDesign
 from culet.errors import MeshError
 from culet.geometry.meets import angle_of_tiers, independent_tiers
 from culet.geometry.recut import OF_A_SHAPE, recut_shape
@@ -57,14 +57,14 @@ def search_angles(candidates: Candidates, reach: float, evaluations: int) -> Non
 def angle_search(shape: Shape, start: Candidate, value: Value, reach: float, most: int) -> Search | None:
     """For a larger value within `reach` degrees of a start's angles. None of a shape without tiers that can be turned,
     or with more facets than angles are changed of; nor with room for less than two designs."""
-    ratios = Design.of(start.crown_ratio, start.pavilion_ratio)
+    ratios = TrialDesign.of(start.crown_ratio, start.pavilion_ratio)
     own = free_angles(recut_shape(shape, ratios.recut()))
     if not own or most < 2 or reach < LEAST_REACH:
         return None
     tiers, middle = list(own), np.round(list(own.values()), ANGLE_DECIMALS)
 
     def lost(ask: Ask, degrees: Any) -> float:  # noqa: ANN401 - as scipy gives them
-        each = ask(Design.of(start.crown_ratio, start.pavilion_ratio, dict(zip(tiers, degrees, strict=True))))
+        each = ask(TrialDesign.of(start.crown_ratio, start.pavilion_ratio, dict(zip(tiers, degrees, strict=True))))
         return -value(start) + WORSE if each is None else -value(each)
 
     bounds = Bounds(np.maximum(middle - reach, LEAST), np.minimum(middle + reach, MOST))

@@ -31,7 +31,7 @@ Angles = tuple[tuple[int, float], ...]
 
 
 @dataclass(frozen=True)
-class Design:
+class TrialDesign:
     """As it is cut."""
 
     crown_ratio: float = 1.0
@@ -40,10 +40,10 @@ class Design:
     """Tiers' numbers and degrees."""
 
     @staticmethod
-    def of(crown: float, pavilion: float, angles: Mapping[int, float] | None = None) -> Design:
+    def of(crown: float, pavilion: float, angles: Mapping[int, float] | None = None) -> TrialDesign:
         """The one that is graded in place of it."""
         turned = ((tier, round(float(degrees), ANGLE_DECIMALS)) for tier, degrees in (angles or {}).items())
-        return Design(round(float(crown), RATIO_DECIMALS), round(float(pavilion), RATIO_DECIMALS), tuple(turned))
+        return TrialDesign(round(float(crown), RATIO_DECIMALS), round(float(pavilion), RATIO_DECIMALS), tuple(turned))
 
     def recut(self) -> Recut:
         """Of the design that was given."""
@@ -76,7 +76,7 @@ class GradeTask:
     rules: Rules
     names: tuple[str, ...]
 
-    def __call__(self, design: Design) -> dict[str, Number] | MeshError:
+    def __call__(self, design: TrialDesign) -> dict[str, Number] | MeshError:
         """The grades by name; or why there are none, of what is no stone."""
         try:
             shape = recut_shape(self.shape, design.recut())
@@ -86,7 +86,7 @@ class GradeTask:
         return {name: number_of(grades, name) for name in self.names}
 
 
-Ask = Callable[[Design], Candidate | None]
+Ask = Callable[[TrialDesign], Candidate | None]
 """None of what is no stone; SpentError if no more may be graded."""
 
 
@@ -120,20 +120,21 @@ class Candidates:
         self.shape = shape
         self.found: list[Candidate] = []
         """In the order in which searches came upon them."""
-        self.graded: dict[Design, Candidate | None] = {}
+        self.graded: dict[TrialDesign, Candidate | None] = {}
+        self._listed: set[TrialDesign] = set()
         self._weights, self._crew, self._progress = weights, crew, progress
         self._task = GradeTask(shape, optics, rules, tuple(dict.fromkeys([BRIGHTNESS, FIRE, *weights])))
 
     def grade_given(self) -> None:
         """The design as it is, the first of those that are found; MeshError if it cannot be."""
-        given = Design()
+        given = TrialDesign()
         ((_, grades),) = self._crew.results(self._task, in_turn([given]))
         if isinstance(grades, MeshError):
             raise grades
         self._keep(given, grades)
         self._list([given])
 
-    def grade(self, designs: Sequence[Design]) -> None:
+    def grade(self, designs: Sequence[TrialDesign]) -> None:
         """Those that are not yet, side by side."""
         new = [design for design in dict.fromkeys(designs) if design not in self.graded]
         try:
@@ -150,9 +151,9 @@ class Candidates:
         and from its beginning again when that is.
         """
         known = frozenset(self.graded)
-        own: list[dict[Design, None]] = [{} for _ in searches]
-        missing: dict[Design, list[int]] = {}
-        to_do = deque[Design]()
+        own: list[dict[TrialDesign, None]] = [{} for _ in searches]
+        missing: dict[TrialDesign, list[int]] = {}
+        to_do = deque[TrialDesign]()
 
         def advance(number: int) -> None:
             for design in self._unknown(searches[number], known, own[number], room):
@@ -161,7 +162,7 @@ class Candidates:
                     to_do.append(design)
                 missing[design].append(number)
 
-        def more(most: int) -> list[Design]:
+        def more(most: int) -> list[TrialDesign]:
             return [to_do.popleft() for _ in range(min(most, len(to_do)))]
 
         try:
@@ -177,14 +178,14 @@ class Candidates:
             self._list(design for designs in own for design in designs)
 
     def _unknown(
-        self, search: Search, known: frozenset[Design], own: dict[Design, None], room: int
-    ) -> Sequence[Design]:
+        self, search: Search, known: frozenset[TrialDesign], own: dict[TrialDesign, None], room: int
+    ) -> Sequence[TrialDesign]:
         """What a search asks for next; nothing when it has ended. Where nobody grades beside this process there is no
         need to begin again."""
-        alone, asked = self._crew.places() == 1, 0
-        unknown: dict[Design, None] = {}
+        asked = 0
+        unknown: dict[TrialDesign, None] = {}
 
-        def ask(design: Design) -> Candidate | None:
+        def ask(design: TrialDesign) -> Candidate | None:
             nonlocal asked
             asked += 1
             if unknown and asked > search.together:
@@ -194,7 +195,7 @@ class Candidates:
                     raise SpentError
                 own[design] = None
             if design not in self.graded:
-                if not alone:
+                if not self._crew.alone:
                     unknown[design] = None
                     return None
                 self.grade([design])
@@ -217,7 +218,7 @@ class Candidates:
         """By the weighted sum."""
         return max(self.found, key=lambda each: each.total)
 
-    def _keep(self, design: Design, grades: Mapping[str, Number] | MeshError) -> None:
+    def _keep(self, design: TrialDesign, grades: Mapping[str, Number] | MeshError) -> None:
         if isinstance(grades, MeshError):
             self.graded[design] = None
         else:
@@ -227,10 +228,10 @@ class Candidates:
             )
         self._progress(len(self.graded))
 
-    def _list(self, designs: Iterable[Design]) -> None:
+    def _list(self, designs: Iterable[TrialDesign]) -> None:
         """Of those in their order, the ones that are stones and not yet listed, whoever was quicker."""
-        listed = {id(each) for each in self.found}
-        for design in dict.fromkeys(designs):
+        for design in designs:
             each = self.graded.get(design)
-            if each is not None and id(each) not in listed:
+            if each is not None and design not in self._listed:
+                self._listed.add(design)
                 self.found.append(each)

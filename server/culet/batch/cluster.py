@@ -122,6 +122,11 @@ class Cluster:
                 raise WorkersError(f"workers: {self._name} has had none for {PATIENCE_SECONDS} s") from error
             self._check()
 
+    @property
+    def alone(self) -> bool:
+        """However many workers there are at the time: they come and go."""
+        return False
+
     def places(self) -> int:
         """Threads of all workers."""
         with self._naming():

@@ -24,8 +24,9 @@ class Crew(Protocol):
     def results(self, task: Task[Item, Result], more: More[Item]) -> Done[Item, Result]:
         """Every item once, in any order; whoever stops listening ends the work. What the task raises is raised."""
 
-    def places(self) -> int:
-        """How many items are done at a time."""
+    @property
+    def alone(self) -> bool:
+        """Whether this process does all, one item after the other; the same as long as there is the crew."""
 
 
 class InProcess:
@@ -37,9 +38,10 @@ class InProcess:
             for item in items:
                 yield item, task(item)
 
-    def places(self) -> int:
-        """One, on all processors."""
-        return 1
+    @property
+    def alone(self) -> bool:
+        """On all processors."""
+        return True
 
 
 IN_PROCESS = InProcess()

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import direct, minimize
 
-from culet.batch.candidates import BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Design, Search, UnknownError
+from culet.batch.candidates import BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Search, TrialDesign, UnknownError
 
 Range = tuple[float, float]
 
@@ -48,7 +48,7 @@ def divide(candidates: Candidates, ends: list[Range], most: int, all_graded: int
     until a division has asked for what is not known yet; that is graded, and it is run again.
     """
     while True:
-        unknown: list[Design] = []
+        unknown: list[TrialDesign] = []
         with suppress(UnknownError):
             direct(
                 partial(_known_total, candidates, unknown), ends, maxfun=most, maxiter=10_000,
@@ -60,8 +60,8 @@ def divide(candidates: Candidates, ends: list[Range], most: int, all_graded: int
             return
 
 
-def _known_total(candidates: Candidates, unknown: list[Design], ratios: Any) -> float:  # noqa: ANN401 - as scipy's
-    design = Design.of(*ratios)
+def _known_total(candidates: Candidates, unknown: list[TrialDesign], ratios: Any) -> float:  # noqa: ANN401 - as scipy's
+    design = TrialDesign.of(*ratios)
     if design not in candidates.graded:
         unknown.append(design)
         return NO_STONE
@@ -69,7 +69,7 @@ def _known_total(candidates: Candidates, unknown: list[Design], ratios: Any) -> 
     return NO_STONE if found is None else -found.total
 
 
-def _end_division(unknown: list[Design], _: object) -> None:
+def _end_division(unknown: list[TrialDesign], _: object) -> None:
     if unknown:
         raise UnknownError
 
@@ -78,7 +78,7 @@ def _simplex_search(balance: float, start: Candidate, ends: list[Range], most: i
     """For the sum that has so much of fire."""
 
     def lost(ask: Ask, ratios: Any) -> float:  # noqa: ANN401
-        found = ask(Design.of(*ratios))
+        found = ask(TrialDesign.of(*ratios))
         return NO_STONE if found is None else -_balanced(balance, found)
 
     def search(ask: Ask) -> None:

@@ -1,7 +1,8 @@
 """POST /api/sessions/{id}/beside: what a session shows with another design of one stone, to be compared with it.
 
 Whoever may watch the session may ask, for what a still of the session may cost: one of the client's places, and no more
-pixels and samples than that has. Nothing of the session changes.
+pixels and samples than that has. A stone that is cut anew may take the engine seconds: of each client one design at a
+time is shown. Nothing of the session changes.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from culet_protocol.engine import Format, Render
 router = APIRouter(tags=["sessions"])
 
 
-class Design(Model):
+class OtherDesign(Model):
     """What is other about the stone, as a stone of a scene has it; what is not given stays, and null takes it away."""
 
     cut: str | dict[str, Any] | None = None
@@ -41,7 +42,7 @@ class BesideRequest(Model):
     """A stone of the session with another design, at the state `step`."""
 
     stone: StoneId
-    design: Design
+    design: OtherDesign
     step: Step | None = None
     width: Width | None = None
     height: Height | None = None
@@ -71,6 +72,11 @@ async def render_beside(http: Request, session_id: str, request: BesideRequest, 
         design=design, width=request.width, height=request.height, samples=request.samples, error=request.error,
         format=request.format, client=client,
     )  # fmt: skip
+
+    async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
+        async with gateway.designs.turn(client):
+            return await gateway.sessions.request(session, message, patient=True)
+
     with gateway.stills.place(client):
-        result, data = await while_waited_for(http, gateway.sessions.request(session, message, patient=True))
+        result, data = await while_waited_for(http, in_turn())
     return PictureResponse(data, media_type=MEDIA_TYPES[request.format], headers=quality_headers(result))

@@ -34,6 +34,8 @@ class Gateway:
     metrics: Metrics
     grades: ClientTurns = field(default_factory=ClientTurns)
     """The engine takes turns between the grades that are asked for at once; each client has one among them."""
+    designs: ClientTurns = field(default_factory=ClientTurns)
+    """The engine cuts stones that may take seconds one at a time; each client has one among those that wait."""
     turntables: StillPlaces = field(
         default_factory=lambda: StillPlaces(CLIENT_TURNTABLES, "turntables", MOST_TURNTABLES)
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from contextlib import AbstractAsyncContextManager, nullcontext
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -32,7 +32,7 @@ _EXAMPLES = ConfigDict(json_schema_extra={"examples": [{"scene": {"stones": [{"c
 _DRAWING: dict[int | str, dict[str, Any]] = {200: {"content": {SVG: {"schema": {"type": "string"}}}}}
 
 StoneName = Annotated[str, Field(max_length=32, description="Id of the stone; without one the first.")]
-Reach = Annotated[
+TierNumber = Annotated[
     int,
     Field(ge=1, le=1500, description="A tier: its ends are then those at which meets are kept, which takes longer."),
 ]
@@ -74,7 +74,7 @@ class StoneRequest(Model):
 class TierRequest(StoneRequest):
     """A stone of a scene, and perhaps one of its tiers."""
 
-    reach: Reach | None = None
+    reach: TierNumber | None = None
 
 
 @router.post("/api/grade", responses=answers(401, 413, 422, 429, 503))
@@ -144,7 +144,7 @@ async def tiers_of_session(
     session_id: str,
     gateway: ThisGateway,
     stone: StoneName | None = None,
-    reach: Reach | None = None,
+    reach: TierNumber | None = None,
 ) -> Tiers:
     """The sloping tiers of a convex stone of what a session shows."""
     session = gateway.sessions.get(session_id)
@@ -181,12 +181,18 @@ async def answered(
     message: Grade | DrawDiagram | Measure | ListTiers | TracePath,
     session: SessionRecord | None,
 ) -> tuple[dict[str, Any], bytes | memoryview]:
-    """The engine's answer, about the session if there is one, in a place of the client; grades and rays in the client's
-    turn."""
+    """The engine's answer, about the session if there is one, in a place of the client; grades, rays and reaches of
+    tiers in the client's turns."""
     client = client_of(http.scope)
+    if isinstance(message, Grade | TracePath):
+        turn: AbstractAsyncContextManager[None] = gateway.grades.turn(client)
+    elif isinstance(message, ListTiers) and message.reach is not None:
+        turn = gateway.designs.turn(client)
+    else:
+        turn = nullcontext()
 
     async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
-        async with gateway.grades.turn(client) if isinstance(message, Grade | TracePath) else nullcontext():
+        async with turn:
             if session is None:
                 return await gateway.uploads.request(message, patient=True)
             return await gateway.sessions.request(session, message, patient=True)

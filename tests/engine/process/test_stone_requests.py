@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, cast
 
 import pytest
@@ -26,7 +27,7 @@ SMALL = Grade(scene=DEFAULT, error=10)
 
 def requests(library: Library = NOTHING, grade_seconds: float = 60) -> StoneRequests:
     """Of scenes; there are no sessions."""
-    return StoneRequests(cast(OpenSessions, {}), library, Limits(grade_seconds=grade_seconds))
+    return StoneRequests(cast(OpenSessions, {}), library, Limits(grade_seconds=grade_seconds), ThreadPoolExecutor(1))
 
 
 async def test_grades_end_in_their_time_and_tell_what_is_known_by_then() -> None:

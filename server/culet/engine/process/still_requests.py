@@ -6,7 +6,9 @@ import asyncio
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from culet.engine.painting.painter import Painter
@@ -49,14 +51,17 @@ class StillRequests:
         library: Library,
         limits: Limits,
         memory: Memory,
+        cutting: Executor,
     ) -> None:
-        """The painter renders what the queue holds."""
+        """The painter renders what the queue holds; `cutting` makes other designs of sessions' stones, one at a
+        time."""
         self._painter = painter
         self._queue = queue
         self._sessions = sessions
         self._library = library
         self._limits = limits
         self._memory = memory
+        self._cutting = cutting
         self._awaited: set[Still] = set()
 
     def __iter__(self) -> Iterator[Still]:
@@ -132,7 +137,9 @@ class StillRequests:
             stage = await asyncio.to_thread(events.past_stage, past, before, self._library)
         else:
             scene = _otherwise(past.scene, request.stone, request.design)
-            stage = await asyncio.to_thread(_staged, scene, self._library, before)
+            stage = await asyncio.get_running_loop().run_in_executor(
+                self._cutting, partial(Stage.of, scene, self._library, before=before)
+            )
         return stage, live.size, past.step
 
     def _make_room_for(self, still: Still) -> None:
@@ -153,8 +160,9 @@ def _otherwise(scene: Scene, stone: str | None, design: Mapping[str, Any]) -> Sc
         raise SceneError(
             f"stone: expected the id of a stone ({', '.join(there) or 'none'}), got {stone!r:.60}", "stone"
         )
-    return read_patched(scene.model_dump(mode="json"), {"stones": {stone: design}})
-
-
-def _staged(scene: Scene, library: Library, before: Stage) -> Stage:
-    return Stage.of(scene, library, before=before)
+    before = scene.model_dump(mode="json")
+    stones = [
+        {name: value for name, value in each.items() if not (each["id"] == stone and name in design)}
+        for each in before["stones"]
+    ]  # or what is given would be merged into the stone's own, as angles of tiers
+    return read_patched(before | {"stones": stones}, {"stones": {stone: design}})

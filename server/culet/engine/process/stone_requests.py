@@ -6,7 +6,7 @@ import asyncio
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import asdict
 from typing import Any, TypeVar
 
@@ -47,15 +47,16 @@ LIGHT_SECONDS = 20.0
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
-    ends with its piece, and so does a ray's. Diagrams and tiers one at a time in another, rays in a third."""
+    ends with its piece, and so does a ray's. Diagrams and tiers one at a time in another, which
+    also cuts designs for stills, rays in a third."""
 
-    def __init__(self, sessions: OpenSessions, library: Library, limits: Limits) -> None:
-        """Sessions and uploads that requests name."""
+    def __init__(self, sessions: OpenSessions, library: Library, limits: Limits, cutting: Executor) -> None:
+        """Sessions and uploads that requests name; `cutting` does one thing at a time."""
         self._sessions = sessions
         self._library = library
         self._seconds = limits.grade_seconds
         self._grading = ThreadPoolExecutor(1, "grades")
-        self._drawing = ThreadPoolExecutor(1, "diagrams")
+        self._cutting = cutting
         self._tracing = ThreadPoolExecutor(1, "paths")
         self._sums: LightSums | None = None
         self._recorder: PathRecorder | None = None
@@ -80,17 +81,17 @@ class StoneRequests:
     async def diagram(self, request: DrawDiagram) -> bytes:
         """An SVG file; InputError, NotFoundError."""
         stage = await self._staged(request)
-        return await _in(self._drawing, _diagram, stage, request.stone)
+        return await _in(self._cutting, _diagram, stage, request.stone)
 
     async def measure(self, request: Measure) -> dict[str, Any]:
         """Proportions, in R; InputError, NotFoundError."""
         stage = await self._staged(request)
-        return await _in(self._drawing, _measured, stage, request.stone)
+        return await _in(self._cutting, _measured, stage, request.stone)
 
     async def tiers(self, request: ListTiers) -> dict[str, Any]:
         """Tiers with their angles; InputError, NotFoundError."""
         stage = await self._staged(request)
-        return await _in(self._drawing, _tiers, stage, self._library, request.stone, request.reach)
+        return await _in(self._cutting, _tiers, stage, self._library, request.stone, request.reach)
 
     async def path(self, request: TracePath) -> bytes:
         """JSON of all that becomes of a pixel's light, or a ray's; InputError, NotFoundError. What a session shows is
@@ -131,7 +132,7 @@ class StoneRequests:
         return await asyncio.to_thread(events.past_stage, past, before, self._library)
 
 
-async def _in(thread: ThreadPoolExecutor, work: Callable[..., T], *given: Any) -> T:  # noqa: ANN401 - of any work
+async def _in(thread: Executor, work: Callable[..., T], *given: Any) -> T:  # noqa: ANN401 - of any work
     return await asyncio.get_running_loop().run_in_executor(thread, work, *given)
 
 
