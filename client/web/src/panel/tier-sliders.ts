@@ -8,6 +8,7 @@ import type { TierAngle } from "../session/answers";
 import { reasonOf } from "../signs/complaints";
 import { words } from "../words/words";
 import { LiveControls } from "./live-controls";
+import { Refusal } from "./refusal";
 import { ListRequests, passes, ReachRequests } from "./tier-requests";
 import {
   anglesOf,
@@ -35,9 +36,7 @@ interface Row {
   /** As the server last listed it. */
   tier: TierAngle;
   /** Why the last angle was refused. */
-  refusal: HTMLElement;
-  /** The stone whose angle was refused, but for that angle. */
-  refused: string;
+  refusal: Refusal;
   /** A finger is on it: other ends would move it from under the finger. */
   pressed: boolean;
 }
@@ -76,7 +75,7 @@ export class TierSliders {
     section.add({ element: this.status });
     this.reset = section.add(
       new Command(words.cut.tiers.asTheyWere, () => {
-        for (const row of this.rows.values()) row.refusal.hidden = true;
+        for (const { refusal } of this.rows.values()) refusal.hide();
         send(asTheyWerePatch(this.scene, this.turned));
       }),
     );
@@ -88,7 +87,7 @@ export class TierSliders {
     this.scene = scene;
     this.section.show(shapeOf(scene) !== "");
     if (this.listedOf && kindOf(scene) !== kindOf(this.listedOf)) this.clear(); // rows of another stone would turn tiers of this one
-    for (const [tier, { refusal, refused }] of this.rows) if (refused !== othersOf(scene, tier)) refusal.hidden = true;
+    for (const [tier, { refusal }] of this.rows) refusal.about(othersOf(scene, tier));
     this.reset.show(this.turned.length > 0);
     this.controls?.display();
     this.look();
@@ -99,9 +98,7 @@ export class TierSliders {
     if (!isOfAngles(field) || !this.section.open) return false;
     for (const [tier, row] of this.rows) {
       if (!row.slider.element.contains(document.activeElement)) continue;
-      row.refused = othersOf(this.scene, tier);
-      row.refusal.textContent = why;
-      row.refusal.hidden = false;
+      row.refusal.tell(why, othersOf(this.scene, tier));
       return true;
     }
     return false;
@@ -177,17 +174,12 @@ export class TierSliders {
   private add(name: string, tier: TierAngle): void {
     const slider = new Slider(nameOf(tier), endsOf(tier), this.clamped);
     slider.element.classList.add("tier");
-    const refusal = document.createElement("p");
-    refusal.className = "refusal";
-    refusal.setAttribute("role", "alert");
-    refusal.hidden = true;
-    const row: Row = { slider, tier, refusal, refused: "", pressed: false };
+    const refusal = new Refusal();
+    const row: Row = { slider, tier, refusal, pressed: false };
     this.rows.set(name, row);
     this.span(row);
     this.controls?.listen(name, slider);
-    slider.onInput(() => {
-      refusal.hidden = true;
-    });
+    slider.onInput(() => refusal.hide());
     const { element } = slider;
     element.addEventListener("pointerenter", () => this.reaches.use("pointer", name));
     element.addEventListener("pointerleave", () => this.reaches.use("pointer", null));
@@ -196,7 +188,7 @@ export class TierSliders {
       if (!(relatedTarget instanceof Node && element.contains(relatedTarget))) this.reaches.use("focus", null);
     });
     element.addEventListener("pointerdown", () => this.press(row));
-    this.place.append(element, refusal);
+    this.place.append(element, refusal.element);
   }
 
   private press(row: Row): void {

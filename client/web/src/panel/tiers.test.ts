@@ -49,6 +49,15 @@ describe("tiers of a stone", () => {
     const at = (angles: JsonObject) => othersOf(scene({ crown_ratio: 1, angles }), "3");
     expect(at({ 3: 41 })).toBe(at({ 3: 42 }));
     expect(at({ 3: 41, 4: 30 })).not.toBe(at({ 3: 41 }));
+    const first = scene({
+      crown_ratio: 1,
+      pavilion_ratio: 1,
+      girdle_percent: null,
+      table_percent: null,
+      angles: { 3: 41 },
+    });
+    expect(othersOf(first, "3")).toBe(othersOf(scene(null), "3"));
+    expect(othersOf(scene({ crown_ratio: 1.1 }), "3")).not.toBe(othersOf(scene(null), "3"));
   });
 
   it("are refused by their field", () => {

@@ -39,10 +39,15 @@ export function anglesOf(scene: JsonObject | null): Record<string, number> {
 
 /** What a tier's reach depends on: everything but its own angle. */
 export function othersOf(scene: JsonObject | null, tier: string): string {
-  const { id, cut, mesh, recut } = stoneOf(scene);
+  const { id, cut, mesh } = stoneOf(scene);
   const { [tier]: _, ...angles } = anglesOf(scene);
-  const { angles: __, ...ratios } = (recut ?? {}) as JsonObject;
-  return JSON.stringify([tier, id, cut, mesh ?? null, ratios, angles]);
+  return JSON.stringify([tier, id, cut, mesh ?? null, ratiosOf(scene), angles]);
+}
+
+/** What `recut` changes but angles. */
+function ratiosOf(scene: JsonObject | null): [string, unknown][] {
+  const { angles: _, ...others } = part(stoneOf(scene), "recut");
+  return Object.entries(others).filter(([name, value]) => value !== null && value !== UNCHANGED[name]);
 }
 
 /** The merge patch that turns one tier and leaves the angles of the others that are asked for. */
@@ -58,9 +63,8 @@ export function asTheyWerePatch(scene: JsonObject | null, tiers: readonly string
 /** What a merge patch says of `recut` to take the angles of those tiers away: null if nothing of it is left then. */
 export function recutWithout(scene: JsonObject | null, tiers: readonly string[]): JsonObject | null {
   const left = Object.keys(anglesOf(scene)).filter((tier) => !tiers.includes(tier));
-  const { angles: _, ...others } = part(stoneOf(scene), "recut");
-  const said = Object.entries(others).some(([name, value]) => value !== null && value !== UNCHANGED[name]);
-  return said || left.length > 0 ? { angles: Object.fromEntries(tiers.map((tier) => [tier, null])) } : null;
+  const stays = left.length > 0 || ratiosOf(scene).length > 0;
+  return stays ? { angles: Object.fromEntries(tiers.map((tier) => [tier, null])) } : null;
 }
 
 /** Those tiers of a list, by their numbers, whose angle the scene asks for. */
