@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from culet.errors import MeshError
+from culet.geometry import meets
 from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.designs.shipped import SHIPPED, shipped_shape
 from culet.geometry.designs.solid import shape_of_design
@@ -22,14 +23,29 @@ def tier_of(shape: Shape, number: int, recut: Recut | None = None, *, reach: boo
     return next(each for each in tiers if each.tier == number)
 
 
-@pytest.mark.parametrize(("name", "number"), [("01_srb_from_angles", 3), ("06_oval_1.4", 21)])
+@pytest.mark.parametrize(("name", "number"), [("01_srb_from_angles", 2), ("01_srb_from_angles", 3)])
 def test_within_its_reach_a_tier_keeps_all_meets_and_beyond_it_does_not(name: str, number: int) -> None:
     shape = shape_of_design(design(name))
     usual, near = tier_of(shape, number), tier_of(shape, number, reach=True)
-    assert usual.least <= near.least < near.degrees < near.most < usual.most
-    recut_shape(shape, Recut(angles={number: near.most}))
-    with pytest.raises(MeshError, match="keep all meets"):
-        recut_shape(shape, Recut(angles={number: near.most + 0.06}))  # the end is known to 0.03 degrees
+    assert usual.least <= near.least < near.degrees < near.most <= usual.most + 0.011
+    for end, farthest, beyond in ((near.least, usual.least, -0.06), (near.most, usual.most, 0.06)):
+        recut_shape(shape, Recut(angles={number: end}))  # which is known to 0.03 degrees
+        refusal = "keep all meets" if abs(end - farthest) > 0.06 else "within 20 degrees"
+        with pytest.raises(MeshError, match=refusal):
+            recut_shape(shape, Recut(angles={number: end + beyond}))
+
+
+def test_ends_that_take_too_long_to_find_are_told_as_if_no_meet_were_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each for itself: that the lower one takes long leaves the upper one as it is."""
+    shape = shape_of_cut(BrilliantCut())
+    usual, near = tier_of(shape, 7), tier_of(shape, 7, reach=True)
+    monkeypatch.setattr(meets, "MOST_WORK", 3e7)
+    one_sided = tier_of(shape, 7, reach=True)
+    assert one_sided.most == near.most, "the upper end takes 1.3e7, the lower one 2.1e7"
+    assert one_sided.least <= near.least
+    monkeypatch.setattr(meets, "MOST_WORK", 1)
+    unknown = tier_of(shape, 7, reach=True)
+    assert (unknown.least, unknown.most) == pytest.approx((usual.least, usual.most), abs=0.011)
 
 
 def test_a_reach_is_less_or_more_where_another_tier_was_turned() -> None:

@@ -266,6 +266,16 @@ def test_a_formula_without_an_index_is_refused_when_its_index_is_needed() -> Non
     assert refusal.value.field == "stones.0.material.sellmeier"
 
 
+def test_a_recut_that_changes_nothing_is_none() -> None:
+    """As once tiers were turned and that was taken back; a proportion that is said stays."""
+    taken_back = Scene.read({"stones": [{"id": "a", "recut": {"crown_ratio": 1, "angles": {}}}]})
+    assert taken_back == Scene.read({"stones": [{"id": "a"}]})
+    assert taken_back.stones[0].recut is None
+    kept = Scene.read({"stones": [{"recut": {"girdle_percent": 3}}]}).stones[0].recut
+    assert kept is not None
+    assert kept.girdle_percent == 3
+
+
 def test_moving_the_stone_moves_nothing_else() -> None:
     scene = Scene.read(FULL)
     moved = scene.moved(((1, 2, 3), (0, 1, 0, 0)))

@@ -27,7 +27,7 @@ class Absence:
         self._since = now if self._since is None else self._since
         gone = now - self._since
         if self._end_after is not None and gone >= self._end_after:
-            raise WorkersError(f"workers: {self._name} has had none for {gone:.0f} s, and none came in their place")
+            raise WorkersError(f"workers: {self._name} has had none for {gone:.0f} s, and no new one has come")
         if self._told or gone < TELL_AFTER:
             return None
         self._told = True

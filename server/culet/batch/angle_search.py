@@ -16,7 +16,7 @@ from scipy.optimize import Bounds, minimize
 
 from culet.batch.candidates import ANGLE_DECIMALS, BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Search, TrialDesign
 from culet.errors import MeshError
-from culet.geometry.meets import angle_of_tiers, independent_tiers
+from culet.geometry.meets import LEAST_DEGREES, MOST_DEGREES, angle_of_tiers, independent_tiers
 from culet.geometry.recut import OF_A_SHAPE, recut_shape
 from culet.geometry.shape import Shape
 
@@ -28,8 +28,6 @@ WORSE = 10.0
 """Points by which angles that lose a meet count as worse than the start, so that models stay tame."""
 LEAST_REACH = 2 * 10**-ANGLE_DECIMALS
 """Degrees; in less the first step would not be told from none."""
-LEAST, MOST = 0.01, 89.99
-"""Degrees between which a tier's angle is searched; tiers beyond follow."""
 
 
 Value = Callable[[Candidate], float]
@@ -43,7 +41,8 @@ VALUES: tuple[Value, ...] = (
 
 
 def search_angles(candidates: Candidates, reach: float, evaluations: int) -> None:
-    """Grade so many more designs at most, within `reach` degrees of the angles of those that were found before."""
+    """Grade so many more designs at most, within `reach` degrees of the angles of those that were found before. Each
+    search has its part of them; what one that ends early leaves is not graded."""
     starts = [max(candidates.found, key=value) for value in VALUES]
     room = evaluations // len(VALUES)
     searches = [
@@ -67,7 +66,7 @@ def angle_search(shape: Shape, start: Candidate, value: Value, reach: float, mos
         each = ask(TrialDesign.of(start.crown_ratio, start.pavilion_ratio, dict(zip(tiers, degrees, strict=True))))
         return -value(start) + WORSE if each is None else -value(each)
 
-    bounds = Bounds(np.maximum(middle - reach, LEAST), np.minimum(middle + reach, MOST))
+    bounds = Bounds(np.maximum(middle - reach, LEAST_DEGREES), np.minimum(middle + reach, MOST_DEGREES))
     first = FIRST_STEP * reach
     options = {"maxfev": most, "initial_tr_radius": first, "final_tr_radius": min(SMALLEST_STEP, first)}
 
@@ -85,4 +84,4 @@ def free_angles(shape: Shape) -> dict[int, float]:
     except MeshError:
         return {}
     angles = angle_of_tiers(planes, tiers)
-    return {tier: angles[tier] for tier in free if LEAST <= angles.get(tier, 0) <= MOST}
+    return {tier: angles[tier] for tier in free if LEAST_DEGREES <= angles.get(tier, 0) <= MOST_DEGREES}

@@ -29,7 +29,8 @@ NO_STONE = 1e3
 
 
 def search_ratios(candidates: Candidates, crown: Range, pavilion: Range, evaluations: int) -> None:
-    """Grade the design as it is, and so many others at most. MeshError if it cannot be graded as it is."""
+    """Grade the design as it is, and so many others at most: each search by simplex has its part of them, and what one
+    that ends early leaves is not graded. MeshError if it cannot be graded as it is."""
     ends = [crown, pavilion]
     candidates.grade_given()
     begun = len(candidates.graded)

@@ -159,7 +159,10 @@ def optimise(
         ),
     ] = 2.0,
     evaluations: Annotated[
-        int, typer.Option(min=10, max=100_000, help="Designs to grade, at most; half of them of other angles.")
+        int,
+        typer.Option(
+            min=10, max=100_000, help="Designs to grade besides the given one, at most; half of them of other angles."
+        ),
     ] = 200,
     material: Material = None,
     index: Index = None,
@@ -211,7 +214,7 @@ def optimise(
                 write_whole(out, front_csv(candidates, weights), "out")
                 typer.echo(f"{out}: {len(candidates.front())} designs of {len(candidates.found)} that were graded")
         if isinstance(ended, KeyboardInterrupt):
-            typer.echo(f"culet: interrupted after {len(candidates.graded)} of {evaluations} designs", err=True)
+            typer.echo(f"culet: interrupted after {len(candidates.graded)} designs", err=True)
             raise typer.Exit(130)
         if ended is not None:
             raise ended

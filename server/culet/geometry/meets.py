@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,12 +27,15 @@ STEP = 1.0
 """Degrees that the angles are changed by at a time."""
 FARTHEST = 20.0
 """Degrees that an angle may change; a cutter's changes are of a few."""
+LEAST_DEGREES, MOST_DEGREES = 0.01, 89.99
+"""Between which angles are told of and searched: a tier beyond is taken for a level or an upright one."""
 MOST_FACETS, MOST_GROUPS = 400, 100
 """Of a stone whose angles are changed. Public designs have up to 304 facets."""
 ITERATIONS = 12
 MOST_WORK = 1e10
 """Multiplications, about 3 s of one processor, after which angles are given up: an engine's pictures wait meanwhile.
-Of the 400 facets and 100 groups that are the most, all of them in meets, they are 115 iterations."""
+Of the 400 facets and 100 groups that are the most, all of them in meets, they are 115 iterations. Each end of a reach
+has half of it: where that is spent, nothing is known of what is beyond, and FARTHEST is told."""
 DERIVATIVES = 130
 """Multiplications for each derivative that finding it takes as long as; as measured."""
 DONE = 1e-12
@@ -65,7 +67,8 @@ def reach_of_tier(
     name: str, planes: Array, tiers: Sequence[int], tier: int, degrees: Mapping[int, float]
 ) -> tuple[float, float]:
     """The least and the greatest angle of a tier, degrees, at which all meets are kept, FARTHEST from its own at most,
-    where other tiers are at `degrees` and stay there. MeshError as of `with_angles`."""
+    where other tiers are at `degrees` and stay there; FARTHEST too where following the meets takes too long, which a
+    change to there may then be refused for. MeshError as of `with_angles`."""
     stone = _tiers_of(name, planes, tiers)
     wanted = {stone.group(other): math.radians(angle) for other, angle in degrees.items()}
     least, most = stone.reach(stone.group(tier), wanted)
@@ -190,7 +193,11 @@ class _Tiers:
         """Of a group the least and the greatest angle from the horizontal, radians, others at theirs."""
         setting = self._settled(wanted) if wanted else self.start
         turned = np.array(sorted({*wanted, group}))
-        return self._end(setting, turned, group, -1), self._end(setting, turned, group, 1)
+        ends = []
+        for sign in (-1, 1):
+            self.work = MOST_WORK / 2  # each its own half, whatever the other one took
+            ends.append(self._end(setting, turned, group, sign))
+        return ends[0], ends[1]
 
     def _end(self, setting: _Setting, turned: NDArray[np.int64], group: int, sign: int) -> float:
         """How far a group goes, less steep or steeper, from a setting in which others of `turned` stay as they are."""
@@ -201,7 +208,7 @@ class _Tiers:
         last = min(max(last, LEVEL), math.pi / 2 - LEVEL)
         steps = max(1, math.ceil(math.degrees(abs(last - begin)) / STEP))
         lost = None
-        with suppress(_SpentError):  # then as far as it came
+        try:
             while kept != last and (lost is None or abs(lost - kept) > math.radians(STEP) / 2**END_HALVINGS):
                 there = kept + (last - begin) / steps if lost is None else (kept + lost) / 2
                 there = last if abs(there - last) < LEVEL else there
@@ -211,6 +218,8 @@ class _Tiers:
                     lost = there
                 else:
                     setting, kept = further, there
+        except _SpentError:
+            return last if lost is None else kept  # the former is not proven: a change to there is tried anyhow
         return kept
 
     def _settled(self, wanted: Mapping[int, float]) -> _Setting:
@@ -219,7 +228,7 @@ class _Tiers:
         ends = np.array([wanted[group] for group in turned.tolist()])
         begin, end = self.start.slope[turned], np.where(up, ends, math.pi - ends)
         far = np.degrees(abs(end - begin))
-        if far.max() > FARTHEST:
+        if far.max() > FARTHEST + math.degrees(SAME_TIER):  # an end that was told is not refused for its last digit
             most = int(far.argmax())
             own, tier = math.degrees(_level(begin[most])), self.tier_of_group[turned[most]]
             raise MeshError(

@@ -8,15 +8,21 @@ from dataclasses import dataclass
 from typing import Literal
 
 from culet.errors import MeshError
-from culet.geometry.meets import FARTHEST, FIELD, angle_of_tiers, independent_tiers, reach_of_tier
+from culet.geometry.meets import (
+    FARTHEST,
+    FIELD,
+    LEAST_DEGREES,
+    MOST_DEGREES,
+    angle_of_tiers,
+    independent_tiers,
+    reach_of_tier,
+)
 from culet.geometry.recut import OF_A_SHAPE, recut_shape
 from culet.geometry.shape import Shape
 from culet.scene.recut import Recut, TierAngles
 
 PARTS = 100
 """Of a degree, to which ends are rounded inward: finer than anybody cuts."""
-LEAST, MOST = 0.01, 89.99
-"""Degrees between which tiers are told of: a scene's angles are of neither level nor upright facets."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +70,8 @@ def tiers_of(stone: Shape, uncut: Shape, recut: Recut | None, reach: int | None 
     found = []
     for tier, degrees in now.items():
         facets = [k for k, name in enumerate(stone.names) if name.tier == tier]
-        if tier in before and LEAST <= before[tier] <= MOST:
-            ends = max(LEAST, _up(before[tier] - FARTHEST)), min(MOST, _down(before[tier] + FARTHEST))
+        if tier in before and LEAST_DEGREES <= before[tier] <= MOST_DEGREES:
+            ends = max(LEAST_DEGREES, _up(before[tier] - FARTHEST)), min(MOST_DEGREES, _down(before[tier] + FARTHEST))
             if tier == reach and reached is not None:
                 ends = reached
             found.append(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, field_validator, model_validator
 from pydantic.config import JsonDict
 
 from culet.scene.cuts import Cut
@@ -132,6 +132,12 @@ class StoneSettings(Model):
     )
     restitution: Annotated[float, Field(ge=0, le=1)] | None = Field(None, description="None: the simulation's.")
     friction: Annotated[float, Field(ge=0, le=1e3)] | None = Field(None, description="None: the simulation's.")
+
+    @field_validator("recut")
+    @classmethod
+    def _none_that_changes_nothing(cls, recut: Recut | None) -> Recut | None:
+        """So that a stone that is cut as it came is equal to itself before it was cut anew."""
+        return recut if recut is not None and recut.changes else None
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:
