@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pyopencl as cl
 import pytest
 from numpy.typing import NDArray
 
@@ -137,6 +138,30 @@ def test_a_picture_is_seen_amid_a_sample_where_that_is_done(
     assert picture.linear().tobytes() == at_once.linear().tobytes()
     assert picture.rgb().tobytes() == at_once.rgb().tobytes()
     assert (picture.cut(), picture.shown_error()) == (at_once.cut(), at_once.shown_error())
+
+
+def test_a_picture_is_left_after_a_sample_if_the_next_one_would_not_be_whole_in_time(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or that sample would not be seen until the next but one is whole."""
+    monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
+    picture = renderer.picture(Stage.of(SCENE), 48, 27, effort=Effort.RESTING)
+    for _ in picture.refine_until(Target(3), math.inf, due=lambda seconds: seconds > 0):
+        pass
+    assert (picture.samples, picture.under_way) == (1, False)
+
+
+def test_a_tile_that_is_dealt_is_not_done_and_says_nothing_yet(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A picture of one tile, where there was another picture's."""
+    picture = renderer.picture(Stage.of(SCENE), 40, 30, effort=Effort.RESTING)
+    cl.enqueue_fill_buffer(renderer.device.queue, picture._tallies, np.full(1, 9, np.float32), 0, picture._tallies.size)
+    monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: 20)
+    for part in picture.refine_until(Target(1), 1.0, due=lambda _: True):
+        assert part == 0
+    assert picture.under_way
+    assert (picture.cut(), picture.segments()) == (0, 0)
 
 
 def _away_from_tiles(size: tuple[int, int], tile: int) -> NDArray[np.bool_]:

@@ -27,9 +27,11 @@ QUEUE_SECONDS = 0.08
 """So long, besides the way there and back, all that is in flight may take the link: that is what a frame waits at most,
 and on a link that has become ten times as slow, a second."""
 FIRST_BYTES = 32_000
-"""Of a frame for a viewer of whose link nothing is known: a second of the slowest link that is of use, 240 kbit/s."""
+"""Of a frame for a viewer of whose link nothing is known: a second of the slowest link that is of use, 240 kbit/s.
+A final picture at rest may have `FINAL_TIMES` (of engines' thrift) times as many."""
 REST_SECONDS = 0.75
-"""Of the link for a picture at rest: it is looked at for long, but whatever comes next comes behind it."""
+"""Of the link for a picture at rest: it is looked at for long, but whatever comes next comes behind it. The
+final one, which nothing follows by itself, may take `FINAL_TIMES` times as long."""
 FULL_RATE = 60.0
 """Frames per second that a viewer who is never short of credit is said to take."""
 RATE_WINDOW_SECONDS = 1.0

@@ -233,7 +233,7 @@ class Picture:
         self._lighting: Iterator[object] | None = None
         """The light on its way to be good enough, the same."""
         self._under_way_seconds = self._part = 0.0
-        """Spent on the sample under way, s, and the part of its tiles that were begun."""
+        """Spent on the sample under way, s, and the part of its tiles that are done."""
         self._light_spent = self._samples_spent = 0.0
         """s on passes of light, and on samples, while the light got better."""
         self._renderer = renderer
@@ -326,6 +326,7 @@ class Picture:
             done = self.samples - before
             for part in self._sampled():
                 yield max(0.0, done + part) / samples
+        self._samples_spent = 0.0  # nobody could leave them: light owes them no time
 
     def refine_until(
         self,
@@ -340,15 +341,16 @@ class Picture:
 
         After each sample `pause` is asked whether to leave it at that for now. `due` tells whether somebody is to see
         the picture within so many seconds: it is left when that is so, amid a sample too if that does not end SOON
-        (`overlaid`), and a picture at rest shows samples in the light that there is, while that gets better. The
-        picture that reaches the target is the same to the last bit however often it was left, as long as its first two
-        samples were not made otherwise.
+        (`overlaid`), or after a sample if the next one would not be whole in time; and a picture at rest shows samples
+        in the light that there is, as many as it needs, while that gets better. The picture that reaches the target is
+        the same to the last bit however often it was left, as long as its first two samples were not made otherwise.
         """
         self.compare_as_shown()
         self.seconds = self.light_seconds = 0.0
         self.launch_seconds = seconds
         while not self.reached(target):
-            for _ in self._lit(due):
+            wanted = self.samples < self._needed(target)  # else those there are wait for the rest of their light
+            for _ in self._lit(due if wanted else lambda _: False):
                 yield min(self.samples / self._needed(target), 1.0)
             before, begun = self.samples, self.seconds
             for part in self._sampled():
@@ -357,7 +359,7 @@ class Picture:
                 tiles = self._fireflies is None and part < ALMOST  # what comes after them is short
                 if tiles and self._left > SOON and spent > 0 and due(0):
                     return
-            if pause() or due(0):
+            if pause() or due(max(0.0, self._left - SOON)):
                 break
         if self.reached(target):
             self._forget_aside()
@@ -386,6 +388,7 @@ class Picture:
         another, so do all samples.
 
         At rest it is left, and goes on later, when a sample is `due` and the light has had its share of the time.
+        Fireflies cannot be told from two lights: a picture without them has one sample in each until the last.
         """
         light = self._light
         if light is None:
@@ -396,16 +399,21 @@ class Picture:
             cutoff = self.scene.optics.caustics_cutoff
             self._lighting = iter(light.pieces(cutoff, self._effort, self.launch_seconds, first=not begun))
             final = begun or not shares
-        for _ in self._lighting:
-            self._spent_on_light(time.perf_counter() - started)
-            yield
-            started = time.perf_counter()
-            shared = self._light_spent >= LIGHT_FOR_SAMPLES * self._samples_spent
-            if shares and begun and shared and due(self._left):
-                final = False
-                break
-        else:
-            self._lighting = None
+        try:
+            for _ in self._lighting:
+                self._spent_on_light(time.perf_counter() - started)
+                yield
+                started = time.perf_counter()
+                shared = self._light_spent >= LIGHT_FOR_SAMPLES * self._samples_spent
+                other = self._fireflies is None or self._lit_by != light.version
+                if shares and begun and shared and other and due(self._left):
+                    final = False
+                    break
+            else:
+                self._lighting = None
+        except Exception:
+            self._lighting = None  # it has ended before it was good enough
+            raise
         self._spent_on_light(time.perf_counter() - started)
         if final:
             self._light_spent = self._samples_spent = 0.0
@@ -413,7 +421,8 @@ class Picture:
             self._lit_by = self._lit_by if self._lit_by == light.version else MIXED
             self._in_final_light = final and self._lit_by != MIXED
             return
-        if final and self.samples > 0 and self._lit_by != light.version:
+        anew = final or self._fireflies is not None
+        if anew and self.samples > 0 and self._lit_by != light.version:
             yield from self._put_aside()
         self._lit_by = light.version if self.samples == 0 or self._lit_by == light.version else MIXED
         self._in_final_light = final
@@ -425,7 +434,7 @@ class Picture:
         self._light_spent += seconds
 
     def _put_aside(self) -> Iterator[None]:
-        """Make all samples anew, which are shown until they are there. Fireflies cannot be told from two lights."""
+        """Make all samples anew, which are shown until they are there."""
         if self._effort is not Effort.RESTING or self._fireflies is not None:
             self.begin_anew()
             return
@@ -465,10 +474,13 @@ class Picture:
         """s that the sample under way, or else the next one, is still expected to take."""
         if self._sampling is None:
             return self.sample_seconds
-        return self._under_way_seconds * (1 - self._part) / self._part if self._part > 0 else math.inf
+        if self._part > 0:
+            return self._under_way_seconds * (1 - self._part) / self._part
+        as_before = self.sample_seconds - self._under_way_seconds
+        return as_before if as_before > 0 else math.inf
 
     def _one_sample(self) -> Iterator[float]:
-        """Yields the part of the tiles that were begun, between launches, and at last 1."""
+        """Yields the part of the tiles that are done, between launches, and at last 1."""
         device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
         tracing = self._tracings.of(self.samples)
         x, y = jitter(self.samples, self.scene.sampling.filter)
@@ -506,10 +518,10 @@ class Picture:
             self._under_way_seconds += taken
             under_way, steps = of_items.T
             tracing.pace.made(int(steps.max()), taken)
-            part = min(int(progress[TILES_DEALT]) / count, ALMOST)
-            if progress[TILES_DEALT] >= count and not under_way.any():
+            done = min(int(progress[TILES_DEALT]), count) - int(under_way.sum())
+            if done == count:
                 break
-            yield part
+            yield done / count
             start = time.perf_counter()
         self.sample_seconds = self._under_way_seconds
         if self._fireflies is not None:
@@ -609,7 +621,10 @@ class Picture:
 
     def _mark_tiles(self) -> None:
         """A sample begins that may be shown before it is whole: none of its tiles is done."""
-        self._tallies_before = self._tally()
+        if self.samples > 0 or self._sums.samples_aside > 0:
+            self._tallies_before = self._tally()
+        else:  # what their buffer holds is another picture's
+            self._tallies_before[:] = 0
         self._seen[:] = False
         cl.enqueue_copy(self._renderer.device.queue, self._tallies, np.full_like(self._tallies_before, np.nan))
 

@@ -19,6 +19,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
+from culet.engine.painting.frame_work import has_shape
 from culet.engine.painting.live_picture import SETTLE_SECONDS, LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import Still, StillQueue
@@ -73,6 +74,8 @@ class World:
         """Of the picture that got some last."""
         self.overlaid = 0
         """Times that a picture was shown amid a sample."""
+        self.most_behind = 0
+        """Whole samples that a tile lacked of a picture that was shown amid one, at most."""
         self.needed = 0
         """Samples that meet any error."""
         self.softened: list[tuple[int, tuple[int, int]]] = []
@@ -88,6 +91,8 @@ class World:
         self.compiled = threading.Event()
         """Set when more than the first sample of a picture can be made, as it is unless a test says otherwise."""
         self.compiled.set()
+        self.live: LivePicture | None = None
+        """While it is painted."""
         self.events: list[float] = []
         """When the camera turns a little."""
 
@@ -153,7 +158,10 @@ class TimedPicture:
     def __init__(self, world: World, scene: Scene, size: tuple[int, int]) -> None:
         self.scene, self.samples, self.seconds, self.light_seconds = scene, 0, 0.0, 0.0
         self.sample_seconds = self._left = 0.0
+        self._part_left = 0.0
         self._world, self._size = world, size
+        self._tiles = np.zeros(16, int)
+        """Samples of each, as shown last."""
         self._sampling: Iterator[float] | None = None
         self.clock = world
 
@@ -179,7 +187,8 @@ class TimedPicture:
             self._world.drawn.append(drawn)
         for piece in range(pieces):
             self.clock.spend(in_all / pieces)
-            self._left = in_all * (1 - (piece + 1) / pieces)
+            self._part_left = 1 - (piece + 1) / pieces
+            self._left = in_all * self._part_left
             yield (piece + 1) / pieces
         self.samples += samples
         self._world.samples = self.samples
@@ -204,12 +213,14 @@ class TimedPicture:
                     return
             self._sampling = None
             spent += self.seconds
-            if pause() or due(0):
+            if pause() or due(max(0.0, self.sample_seconds - SOON)):
                 break
         self.seconds = spent
 
     def overlaid(self, over: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
+        self._tiles[: int(len(self._tiles) * (1 - self._part_left))] = self.samples + 1
         self._world.overlaid += 1
+        self._world.most_behind = max(self._world.most_behind, self.samples - int(self._tiles.min()))
         yield over
 
     def reached(self, target: Target) -> bool:
@@ -229,7 +240,9 @@ class TimedPicture:
         return self.rgb()
 
     def rgb(self) -> NDArray[np.uint8]:
-        return np.zeros((16, 16, 3), np.uint8)
+        self._tiles[:] = self.samples
+        width, height = self._size
+        return np.zeros((max(1, round(16 * height / width)), 16, 3), np.uint8)
 
     def cut(self) -> float:
         return 0.0
@@ -284,7 +297,8 @@ async def play() -> AsyncIterator[Play]:
                     send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
                     still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
                 )  # fmt: skip
-                painter.pictures["a"] = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
+                world.live = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
+                painter.pictures["a"] = world.live
                 painters[id(world)] = painter
             end = world.now + seconds
             while world.now < end:
@@ -352,6 +366,43 @@ async def test_what_moves_does_not_wait_for_the_program_that_refines(play: Play)
         while world.samples == 1:
             await play(world, 0.1)
             await asyncio.sleep(0.001)  # the thread that waits for the compiler is a real one
+
+
+async def test_nor_does_a_picture_that_was_shown_amid_its_first_sample(play: Play) -> None:
+    world = World(2 * SLOW)
+    world.compiled.clear()
+    await play(world, 6)
+    assert world.overlaid > 0
+    assert world.samples == 1, "the second one's program is not there"
+    world.compiled.set()
+    async with asyncio.timeout(PATIENCE):
+        while world.samples == 1:
+            await play(world, 0.1)
+            await asyncio.sleep(0.001)  # as above
+
+
+async def test_a_slow_picture_in_another_size_is_seen_over_the_last_one_if_that_has_its_shape(play: Play) -> None:
+    world = World(4 * SLOW)
+    world.rest = Target(samples=1)
+    await play(world, 10)
+    assert Flags.FINAL in world.sent[-1][1].flags
+    assert world.live is not None
+    for size, is_seen in [((1440, 900), True), ((1000, 1000), False)]:
+        before = world.overlaid
+        world.live.size = size
+        await play(world, 2)
+        assert (world.overlaid > before) == is_seen
+        await play(world, 6)
+        assert Flags.FINAL in world.sent[-1][1].flags
+
+
+@pytest.mark.parametrize(
+    ("size", "fits"),
+    [((960, 540), True), ((321, 181), True), ((319, 180), True), ((540, 960), False), ((960, 600), False)],
+)
+def test_shapes_are_the_same_but_for_rounding(size: tuple[int, int], *, fits: bool) -> None:
+    width, height = size
+    assert has_shape(np.zeros((height, width, 3), np.uint8), (1280, 720)) == fits
 
 
 async def test_one_sample_of_each_pixel_asked_for_is_softened_and_nothing_else_is(play: Play) -> None:
@@ -455,6 +506,7 @@ async def test_a_picture_at_rest_is_refined_until_it_is_good_enough(
     assert [Flags.FINAL in frame.flags for _, frame in shown] == [False] * (len(samples) - 1) + [True]
     amid = full_seconds > 0.5
     assert all(before <= after <= 2 * before for before, after in pairwise(samples))
+    assert world.most_behind <= 1
     assert amid == (world.overlaid > 0) == any(before == after for before, after in pairwise(samples))
     assert max(after - before for before, after in pairwise(times)) < 0.5, "measured 0.43"
     assert world.alive() == 0, "it is final"

@@ -24,7 +24,8 @@ from culet.rendering.light.lighting import Illumination, Maker
 from culet.rendering.light.panorama_light import is_summed
 from culet.rendering.light.ray import Ray
 from culet.rendering.light.sources import rays_of
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.pace import Pace
+from culet.rendering.renderer import MIXED, Picture, Renderer
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
@@ -213,41 +214,76 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     assert (moving.linear() != fresh.linear()).any()
 
 
+@pytest.mark.parametrize("size", [SIZE, (150, 110)])
 def test_light_at_rest_is_shown_while_it_gets_better_and_ends_in_the_same_picture(
-    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int]
 ) -> None:
-    """Samples and pieces of passes by turns, or all passes at once. What is seen has ever more samples, if only by
-    being sampled anew in the last light."""
-    monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", 5)
+    """Samples and pieces of passes by turns, or all passes at once; of several tiles, amid both. What is seen has ever
+    more samples, if only by being sampled anew in the last light, and no more than are needed."""
+    many = size != SIZE
+    most = 20 if many else 5
+    monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", most)
     monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
-    stage, target = Stage.of(scene_of(emitters=[SUN])), Target(3)
+    stage, target = Stage.of(scene_of(emitters=[SUN])), Target(4)
     renderer.lighting.forget()
-    expected = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
+    expected = renderer.picture(stage, *size, effort=Effort.RESTING)
     for _ in expected.refine_until(target, math.inf):
         pass
-    assert expected.samples == expected.samples_seen == 3
+    assert expected.samples == expected.samples_seen == 4
+    if many:
+        monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: 600)
+        monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
     renderer.lighting.forget()
-    picture, looks = renderer.picture(stage, *SIZE, effort=Effort.RESTING), list[tuple[int, int, int]]()
+    picture, looks = renderer.picture(stage, *size, effort=Effort.RESTING), [(0, 0, 0)]
+    found, mixed = renderer.lighting.of(stage), 0
+    assert found is not None
+
+    def due(seconds: float) -> bool:
+        """Of several tiles amid samples, and then when there is another pass."""
+        return not many or seconds == 0 or found.passes != looks[-1][0]
+
     while not picture.reached(target):
-        for _ in picture.refine_until(target, 1e-5, due=lambda _: True):
+        for _ in picture.refine_until(target, 1e-3 if many else 1e-5, due=due):
             pass
-        found = renderer.lighting.of(stage)
-        assert found is not None
         looks.append((found.passes, picture.samples, picture.samples_seen))
+        mixed += picture.under_way and picture._lit_by == MIXED
     passes, samples, seen = zip(*looks, strict=True)
     assert list(passes) == sorted(passes)
-    assert passes[-1] == 5
-    assert len(looks) > 5 + 3, "some were amid a pass"
+    assert passes[-1] == most
+    assert mixed > 0 or not many
     anew = next(number for number, (before, after) in enumerate(pairwise(samples), 1) if after < before)
-    assert samples[anew] == 1, "the light is as good as it gets"
-    assert list(seen[:-3]) == sorted(seen[:-3])
-    assert seen[anew] == samples[anew - 1]
+    assert samples[anew] <= 1, "the light is as good as it gets"
+    assert list(seen) == sorted(seen)
+    assert passes[2] < most, "the passes went on meanwhile"
+    assert seen[anew] > samples[anew]
     assert picture.linear().tobytes() == expected.linear().tobytes()
     renderer.lighting.forget()
-    patient = renderer.picture(stage, *SIZE, effort=Effort.PATIENT)
+    patient = renderer.picture(stage, *size, effort=Effort.PATIENT)
     for _ in patient.refine_until(target, 1e-4, due=lambda _: True):
         pass
     assert patient.light_error() == expected.light_error(), "a still waits for all its light"
+
+
+def test_without_fireflies_a_picture_has_one_sample_in_each_light_until_the_last(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They cannot be told from two lights, and no look has fewer samples than the one before."""
+    monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", 5)
+    monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
+    stage, target = Stage.of(scene_of(emitters=[SUN], film={"fireflies": "hide"})), Target(3)
+    renderer.lighting.forget()
+    picture, seen = renderer.picture(stage, *SIZE, effort=Effort.RESTING), list[int]()
+    while not picture.reached(target):
+        for _ in picture.refine_until(target, 1e-5, due=lambda _: True):
+            pass
+        seen.append(picture.samples_seen)
+    assert seen[-3:] == [1, 2, 3]
+    assert seen == sorted(seen)
+    assert len(seen) > 3, "one look in each light"
+    expected = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
+    for _ in expected.refine_until(target, math.inf):
+        pass
+    assert picture.linear().tobytes() == expected.linear().tobytes()
 
 
 def test_a_pass_that_another_picture_has_begun_anew_adds_nothing(renderer: Renderer) -> None:
@@ -342,6 +378,15 @@ def test_a_pass_that_failed_is_made_anew(renderer: Renderer, monkeypatch: pytest
     monkeypatch.setattr(Beams, "pieces", made)
     list(found.pieces(1e-3, Effort.RESTING, 1, first=True))
     assert found.passes == 1
+    picture = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
+    picture.refine()
+    monkeypatch.setattr(Beams, "pieces", failing)
+    with pytest.raises(DeviceError):
+        picture.refine()
+    monkeypatch.setattr(Beams, "pieces", made)
+    assert not found.good_enough
+    picture.refine()
+    assert found.good_enough, "its light has not ended with the one that failed"
 
 
 def test_a_moving_pass_takes_the_rays_of_moving_pictures(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -30,7 +30,8 @@ MEMORY = 0.3
 GROWN = 1.3
 """but one that has so many times the bytes that were expected counts in full: the next must not be as large."""
 FINAL_TIMES = 4
-"""Times the bytes of pictures at rest that the final one may have: some 3 s of a link, while the one before is seen."""
+"""Times the bytes of pictures at rest that the final one may have: some 3 s of a link, while the one before is seen;
+some 4 s of the slowest one of use where nothing is known of it (`FIRST_BYTES` and `REST_SECONDS` of gateways)."""
 WORTH = 0.96
 """A frame of another size must be expected to miss less than so many times what one of this size would: or with each
 small change of the link the picture would change its size."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum, auto
 from time import perf_counter
 
@@ -116,7 +116,7 @@ class FrameWork:
             effort = Effort.RESTING if self.plan is None else Effort.MOVING
             self.picture = renderer.picture(self.stage, width, height, effort=effort)
         picture, sampled = self.picture, self.picture.sample_seconds > 0
-        for part in self._samples(picture):
+        for part in self._samples(picture, renderer):
             self.part = part
             yield part
         self.render_seconds += picture.seconds + picture.light_seconds
@@ -136,7 +136,7 @@ class FrameWork:
             soft=picture.samples_seen == 1 and whole and not self.final, overlaid=overlaid,
         )  # fmt: skip
 
-    def _samples(self, picture: Picture) -> Iterator[float]:
+    def _samples(self, picture: Picture, renderer: Renderer) -> Iterator[float]:
         """The first one; or as many more as there are, but no more than REFRESH_SECONDS allow, nor than are needed.
 
         When frames are sent depends on the time, but which of them is final does not.
@@ -146,14 +146,32 @@ class FrameWork:
         elif self.aim is None:
             yield from picture.refine_until(Target(1), self.piece_seconds, pause=lambda: True, due=self._due)
         else:
-            more = replace(self.aim, samples=min(2 * max(1, picture.samples_seen), self.aim.samples))
-            yield from picture.refine_until(more, self.piece_seconds, due=self._due)
+            most = 2 * max(1, picture.samples_seen)
+
+            def enough() -> bool:
+                return picture.samples >= most or self._waits(picture, renderer)
+
+            yield from picture.refine_until(self.aim, self.piece_seconds, pause=enough, due=self._due)
             self.final = picture.reached(self.aim)
 
+    def _waits(self, picture: Picture, renderer: Renderer) -> bool:
+        """Whether the next sample would wait for a compiler: the second may need another program than the first."""
+        return picture.samples == 1 and not renderer.is_ready(self.stage, 1)
+
     def _due(self, seconds: float) -> bool:
-        """Whether what is made is to be seen when so many seconds have gone by."""
+        """Whether what is made is to be seen when so many seconds have gone by, and can be: amid a sample it is shown
+        over something."""
+        if self.over is None:
+            return False
         since = self.begun_at if self.seen_at is None else self.seen_at
         return self.now() + seconds - since > REFRESH_SECONDS
+
+
+def has_shape(rgb: NDArray[np.uint8], size: tuple[int, int]) -> bool:
+    """Whether an image has the shape of that size, but for the rounding of its sides: else it is not over its pixels
+    when it is made as large."""
+    (height, width, _), (other_width, other_height) = rgb.shape, size
+    return bool(abs(width * other_height - height * other_width) <= max(size))
 
 
 def _resized(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:

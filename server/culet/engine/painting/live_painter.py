@@ -9,7 +9,7 @@ from typing import Protocol
 from culet.engine.painting.counters import Tally
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_sender import FrameSender
-from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, proceed
+from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, has_shape, proceed
 from culet.engine.painting.live_picture import (
     FINE_SAMPLES,
     FINE_SECONDS,
@@ -120,8 +120,8 @@ class LivePainter:
         )
         kind = Kind.FULL if plan is None else Kind.PLANNED
         work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated, now=self._now)
-        if plan is None and shown is live.painted:
-            work.over, work.seen_at = live.seen, live.seen_at
+        if plan is None and shown is live.painted and live.seen is not None and has_shape(live.seen, wanted):
+            work.over, work.seen_at = live.seen, None if live.state is State.FINAL else live.seen_at
         if self._share_of(live) >= 1:
             work.piece_seconds = ALONE_SECONDS
         work.slow = shown.moving and live.session.motion.pace.slow

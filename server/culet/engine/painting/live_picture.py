@@ -95,7 +95,7 @@ class LivePicture:
     """What the picture drawn last shows, or what was refused."""
     painted_size: tuple[int, int] = (0, 0)
     seen: NDArray[np.uint8] | None = None
-    """(height, width, 3): the frame that was drawn last, while a better one of the same is to come."""
+    """(height, width, 3): the frame that was drawn last, for a better or a larger one of the same."""
     seen_at: float = NEVER
     """s, steady clock: when that was."""
     render_seconds: float = 0.0
@@ -211,7 +211,7 @@ class LivePicture:
                 assert_never(work.kind)
         self.seen, self.seen_at = None if work.frame is None else work.frame.rgb, now
         if work.final:
-            self.state, self.picture, self.seen = State.FINAL, None, None
+            self.state, self.picture = State.FINAL, None
 
     def outdated(self, now: float) -> bool:
         """Whether the frame in the making is to be given up."""

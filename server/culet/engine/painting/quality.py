@@ -94,7 +94,7 @@ class Quality:
                 self._planned_seconds += PACE_MEMORY * (work.spent - self._planned_seconds)
             case Kind.REFINED:
                 if work.first_seconds is not None:
-                    self.full_seconds = work.render_seconds
+                    self.full_seconds = work.first_seconds
             case _:
                 assert_never(work.kind)
 

@@ -65,7 +65,8 @@ class Limits(Settings):
     special_programs: bool = Field(
         default=True,
         description="Compile a program of its own for each kind of scene, in the background, which takes some 3 s of a "
-        "processor once and renders faster from then on; without, the general programs render all.",
+        "processor once and renders faster from then on; without, the general programs render all: "
+        "of boxes and prisms then some three pixels in a million are dark, by up to 0.010.",
     )
     max_live_pixels: int = Field(
         2560 * 1440,

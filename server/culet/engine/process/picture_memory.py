@@ -11,6 +11,10 @@ from culet.scene.film import Film
 
 LEAST_LIVE_SIZE = (160, 90)
 """Pixels that a live picture has in any case."""
+ASIDE = 16
+"""Bytes of a pixel of the sum that is put aside while the light gets better: four float32."""
+SEEN = 3
+"""Bytes of a pixel of the frame that was drawn last."""
 
 
 def picture_bytes(width: int, height: int, film: Film) -> int:
@@ -39,5 +43,5 @@ def size_within(memory: Memory, size: tuple[int, int], film: Film, others: Itera
 
 
 def _live_bytes(width: int, height: int, film: Film) -> int:
-    """Of a live one, which has another sum while its light gets better, and what was seen of it before."""
-    return picture_bytes(width, height, film) + 19 * width * height
+    """Of a live one, which has another sum while its light gets better, and what was seen of it last."""
+    return picture_bytes(width, height, film) + (ASIDE + SEEN) * width * height
