@@ -369,10 +369,14 @@ async def test_what_moves_does_not_wait_for_the_program_that_refines(play: Play)
 
 
 async def test_nor_does_a_picture_that_was_shown_amid_its_first_sample(play: Play) -> None:
-    world = World(2 * SLOW)
+    """The second sample would be there in time, were it not for its program."""
+    world = World(0.3)
+    await play(world, 10)
     world.compiled.clear()
-    await play(world, 6)
-    assert world.overlaid > 0
+    world.turn(since=0, seconds=1 / POINTER_RATE)
+    before = world.overlaid
+    await play(world, 3)
+    assert world.overlaid > before
     assert world.samples == 1, "the second one's program is not there"
     world.compiled.set()
     async with asyncio.timeout(PATIENCE):
