@@ -27,7 +27,7 @@ PLAY = """async ([type, data]) => {
     canvas.drawImage(video, 0, 0);
     return canvas.getImageData(0, 0, video.videoWidth, video.videoHeight).data;
   };
-  const [first, last] = [await at(0), await at(0.9)];
+  const [first, last] = [await at(0), await at(1)];
   const changed = first.reduce((sum, value, k) => sum + Math.abs(value - last[k]), 0) / first.length;
   const brightness = first.reduce((sum, value) => sum + value, 0) / first.length;
   return { width: video.videoWidth, height: video.videoHeight, seconds: video.duration, changed, brightness };
@@ -46,12 +46,11 @@ def played(view: View, film: Path) -> dict[str, Any]:
 
 
 def turn(view: View) -> None:
-    """Turn the camera by keys, some pictures long."""
-    shown = view.number("framesShown")
+    """Turn the camera by keys, some pictures long, each of which is seen."""
     for _ in range(8):
+        step = view.page.evaluate("() => culet.lastFrame.step")
         view.page.keyboard.press("Shift+ArrowLeft")
-        view.until("shown => culet.framesShown > shown", shown)
-        shown = view.number("framesShown")
+        view.until("step => culet.lastFrame.step > step", step)
 
 
 def saved(view: View, tmp_path: Path, key: str) -> Path:

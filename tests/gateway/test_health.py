@@ -78,7 +78,7 @@ async def test_every_example_in_the_documentation_runs(gateway: Gateway) -> None
                 answer = await gateway.http.request(method, path.replace("{session_id}", session), json=example)
                 assert answer.status_code in (200, 201, 202), (path, answer.text)
                 ran += 1
-    assert ran == 11
+    assert ran == 13
 
 
 def test_a_server_without_a_page_says_so_when_it_starts(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
