@@ -23,8 +23,9 @@ PLAY = """async ([type, data, patience]) => {
   video.muted = true;
   video.src = `data:${type};base64,${data}`;
   await new Promise((done, fail) => { video.onloadeddata = done; video.onerror = () => fail(video.error.message); });
-  const context = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext("2d", { willReadFrequently: true });
-  const mean = (pixels, of) => pixels.reduce((sum, value, k) => k % 4 === 3 ? sum : sum + of(value, k), 0) / (0.75 * pixels.length);
+  const context = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext("2d");
+  const colours = pixels => pixels.filter((_, k) => k % 4 !== 3);
+  const mean = pixels => colours(pixels).reduce((sum, value) => sum + value, 0) / colours(pixels).length;
   const until = performance.now() + patience;
   // A place is found before its picture can be drawn: until then nothing is drawn, or the picture of the place before.
   const at = async (part, isDrawn) => {
@@ -39,9 +40,9 @@ PLAY = """async ([type, data, patience]) => {
     }
   };
   const first = await at(0, pixels => pixels[3] === 255);
-  const difference = pixels => mean(pixels, (value, k) => Math.abs(value - first[k]));
+  const difference = pixels => mean(pixels.map((value, k) => Math.abs(value - first[k])));
   const changed = difference(await at(1, pixels => difference(pixels) > CHANGED));
-  const brightness = mean(first, value => value);
+  const brightness = mean(first);
   return { width: video.videoWidth, height: video.videoHeight, seconds: video.duration, changed, brightness };
 }""".replace("CHANGED", str(CHANGED))
 
