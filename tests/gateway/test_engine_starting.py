@@ -5,12 +5,16 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import AsyncIterator
+from pathlib import Path
 
 import pytest
+import zmq.asyncio
 
 from culet.errors import EngineUnavailableError
+from culet.gateway import link as links
 from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.settings import GatewaySettings
+from culet_protocol.engine import REQUEST_NUMBER, Heartbeat
 from gateway.running import PATIENCE, Endpoints, Gateway, gateway_alone
 
 
@@ -54,3 +58,30 @@ async def test_an_engine_that_did_not_answer_a_greeting_in_time_is_greeted_again
         while len(greetings) < 2:  # noqa: ASYNC110 - the engine's heartbeats come by themselves
             await asyncio.sleep(0.01)
     assert greetings == [False, False]
+
+
+async def test_an_engine_that_falls_silent_counts_as_down_however_often_it_is_connected_to_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each new connection had counted as a word of the engine."""
+    monkeypatch.setattr(links, "REOPEN_SECONDS", 0.1)
+    control, frames = f"ipc://{tmp_path}/c", f"ipc://{tmp_path}/f"
+    link = EngineLink(GatewaySettings(control=control, frames=frames, engine_silence_seconds=1.1))
+    with zmq.asyncio.Context() as context, context.socket(zmq.ROUTER) as engine:
+        engine.setsockopt(zmq.LINGER, 0)
+        engine.bind(control)
+        running = asyncio.create_task(link.run())
+        try:
+            async with asyncio.timeout(PATIENCE):
+                gateway, *_ = await engine.recv_multipart()
+                heartbeat = Heartbeat(instance="one").model_dump_json().encode()
+                await engine.send_multipart([gateway, REQUEST_NUMBER.pack(0), heartbeat])
+                await link.ready.wait()
+                again, *_ = await engine.recv_multipart()
+                assert again != gateway
+                while link.ready.is_set():  # noqa: ASYNC110 - the link itself finds out
+                    await asyncio.sleep(0.01)
+        finally:
+            running.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await running

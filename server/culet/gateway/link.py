@@ -154,11 +154,11 @@ class EngineLink:
             monitor: zmq.asyncio.Socket = control.get_monitor_socket(zmq.EVENT_DISCONNECTED)
             self._show_keys(control, self._settings.control)
             control.connect(self._settings.control)
-            self._control, self._last_heard = control, asyncio.get_running_loop().time()
+            self._control = control
             readers = [
                 asyncio.create_task(self._read_control(control)),
                 asyncio.create_task(self._notice_disconnections(monitor)),
-                asyncio.create_task(self._silence(REOPEN_SECONDS)),
+                asyncio.create_task(self._silence(asyncio.get_running_loop().time(), REOPEN_SECONDS)),
             ]
             try:
                 done, _ = await asyncio.wait(readers, return_when=asyncio.FIRST_COMPLETED)
@@ -172,10 +172,10 @@ class EngineLink:
                 control.disable_monitor()
                 control.close(linger=0)
 
-    async def _silence(self, seconds: float) -> None:
-        """Return when nothing was heard from the engine for so long."""
+    async def _silence(self, since: float, seconds: float) -> None:
+        """Return when nothing was heard from the engine for so long, since that time of the loop at the earliest."""
         loop = asyncio.get_running_loop()
-        while (left := self._last_heard + seconds - loop.time()) > 0:  # noqa: ASYNC110 - until a time that moves
+        while (left := max(self._last_heard, since) + seconds - loop.time()) > 0:  # noqa: ASYNC110 - until a time that moves
             await asyncio.sleep(left)
 
     async def _notice_disconnections(self, monitor: zmq.asyncio.Socket) -> None:
