@@ -12,11 +12,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from culet.gateway.uploads import Uploads
 from culet.scene import PRESETS
 from culet.scene.cuts import CUTS
 from culet.scene.motion import Simulation
 from culet.scene.stone import MaterialName
 from culet_client import FrameSubscription
+from culet_protocol.engine import Grade
+from culet_protocol.messages import Message
 from culet_protocol.watch import watch_id
 from gateway.running import FOREIGN, PATIENCE, Endpoints, Gateway, eventually, gateway_before
 
@@ -464,9 +467,9 @@ async def test_sessions_are_capped(engine: Endpoints, tmp_path: Path) -> None:
 
 
 async def test_sessions_that_nobody_uses_expire(engine: Endpoints, tmp_path: Path) -> None:
-    async with gateway_before(engine, web=tmp_path, session_idle_seconds=0.3) as gateway:
-        watched, idle = await gateway.session(), await gateway.session()
-        async with gateway.viewer(watched) as viewer:
+    async with gateway_before(engine, web=tmp_path, session_idle_seconds=2) as gateway:
+        idle, watched = await gateway.session(), await gateway.session()
+        async with gateway.viewer(watched) as viewer:  # long before it would expire
             await viewer.frame()
 
             async def one_left() -> bool:
@@ -477,9 +480,39 @@ async def test_sessions_that_nobody_uses_expire(engine: Endpoints, tmp_path: Pat
             assert (await gateway.http.get(f"/api/sessions/{watched}")).status_code == 200
 
 
+async def test_a_session_about_which_somebody_waits_for_an_answer_does_not_expire(
+    engine: Endpoints, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Grades and their tilt curves may take longer than a session that nobody watches is kept."""
+    request, answered = Uploads.request, asyncio.Event()
+
+    async def late(uploads: Uploads, message: Message, *arguments: Any, **options: Any) -> Any:  # noqa: ANN401
+        if isinstance(message, Grade):
+            await answered.wait()
+        return await request(uploads, message, *arguments, **options)
+
+    monkeypatch.setattr(Uploads, "request", late)
+    async with gateway_before(engine, web=tmp_path, unwatched_session_seconds=2) as gateway:
+        asked = await gateway.session()
+        answer = asyncio.create_task(gateway.http.get(f"/api/sessions/{asked}/grade", params={"stone": "nobody's"}))
+        await gateway.session()
+
+        async def one_left() -> bool:
+            return len(gateway.parts.sessions) == 1
+
+        async def none_left() -> bool:
+            return len(gateway.parts.sessions) == 0
+
+        await eventually(one_left)
+        assert asked in gateway.parts.sessions
+        answered.set()
+        assert_problem(await answer, 422, "stone")
+        await eventually(none_left)
+
+
 async def test_a_session_that_only_a_native_viewer_watches_does_not_expire(engine: Endpoints, tmp_path: Path) -> None:
-    async with gateway_before(engine, web=tmp_path, session_idle_seconds=0.3) as gateway:
-        watched, idle = await gateway.session(), await gateway.session()
+    async with gateway_before(engine, web=tmp_path, session_idle_seconds=2) as gateway:
+        idle, watched = await gateway.session(), await gateway.session()
         with FrameSubscription(engine.frames, watch_id(watched)) as subscription:
             await asyncio.to_thread(subscription.receive, PATIENCE)
 
@@ -509,7 +542,11 @@ async def test_a_still_whose_client_left_is_not_rendered(gateway: Gateway) -> No
     await eventually(none_waits)
     small = await gateway.http.post("/api/render", json=TINY)
     assert small.status_code == 200
-    assert 'culet_http_answers_total{status="499"} 1' in (await gateway.http.get("/metrics")).text
+
+    async def given_up() -> bool:
+        return 'culet_http_answers_total{status="499"} 1' in (await gateway.http.get("/metrics")).text
+
+    await eventually(given_up)
 
 
 async def test_too_many_stills_at_once_are_refused(gateway: Gateway) -> None:

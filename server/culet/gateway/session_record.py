@@ -77,6 +77,8 @@ class SessionRecord:
         self.latest: tuple[Frame, bytes] | None = None
         """The last frame that came, if it is a picture of its own."""
         self.used = time.monotonic()
+        self.asked = 0
+        """Requests about it that the engine has not answered."""
         self.watched = False
         """Whether anybody ever watched it, or had a picture of it."""
         self.viewer_left = -float("inf")

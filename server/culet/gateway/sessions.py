@@ -205,6 +205,7 @@ class Sessions:
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         """As `Uploads.request`, about a session; one that the engine does not know, because it is new, is opened there
         first."""
+        session.asked += 1
         try:
             return await self._uploads.request(message, session.scene, patient=patient)
         except NotFoundError:
@@ -213,6 +214,9 @@ class Sessions:
             if not await self._in_engine(session):  # or else a step of it is not kept, which is no loss to its viewers
                 await self._give_again(session)
             return await self._uploads.request(message, session.scene, patient=patient)
+        finally:
+            session.asked -= 1
+            session.used = time.monotonic()
 
     async def describe(self, session: SessionRecord) -> dict[str, Any]:
         """What the engine says of the session now."""
@@ -307,7 +311,8 @@ class Sessions:
                 limit = self._settings.session_idle_seconds
                 if not session.watched:
                     limit = min(limit, self._settings.unwatched_session_seconds)
-                unused = not session.viewers and time.monotonic() - session.used > limit
+                needed = session.viewers or session.asked
+                unused = not needed and time.monotonic() - session.used > limit
                 if unused and self._link.ready.is_set():
                     with contextlib.suppress(CuletError):
                         await self._expire(session)
@@ -315,7 +320,7 @@ class Sessions:
     async def _expire(self, session: SessionRecord) -> None:
         """Close a session, unless somebody watches it straight from the engine, or has come meanwhile."""
         session.used = time.monotonic()  # looked at again only after a while, should it stay
-        if not await self._watched_elsewhere(session) and not session.viewers:
+        if not await self._watched_elsewhere(session) and not session.viewers and not session.asked:
             await self.close(session, "nobody used the session")
 
     async def _watched_elsewhere(self, session: SessionRecord) -> bool:
