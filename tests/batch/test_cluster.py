@@ -24,7 +24,7 @@ from culet.batch.animation import Animation, times_of, turntable
 from culet.batch.edition import edition
 from culet.scene import Scene
 from culet.stage import Stage
-from e2e.units import free_port
+from shared.ports import free_port
 
 SIZE, SAMPLES = (96, 54), 2
 FRAMES = 60

@@ -67,7 +67,7 @@ def until(stream: ControlStream, kind: type[T]) -> T:
 
 
 def test_a_viewer_is_greeted_and_shown_more_than_its_window_of_frames(server: str, session: str) -> None:
-    with ControlStream(server, session) as stream:
+    with ControlStream(server, session, timeout_seconds=PATIENCE) as stream:
         assert until(stream, Hello).session == session
         stream.send(Resize(width=64, height=36))
         stream.send(ToggleFall())
@@ -87,7 +87,9 @@ def test_every_frame_is_acknowledged() -> None:
     with serve(send_three, "127.0.0.1", 0, subprotocols=[Subprotocol(SUBPROTOCOL)]) as server:
         threading.Thread(target=server.serve_forever).start()
         try:
-            with ControlStream(f"http://127.0.0.1:{server.socket.getsockname()[1]}", SESSION) as stream:
+            with ControlStream(
+                f"http://127.0.0.1:{server.socket.getsockname()[1]}", SESSION, timeout_seconds=PATIENCE
+            ) as stream:
                 assert [until(stream, Frame).sequence for _ in range(3)] == [5, 6, 9]
                 with pytest.raises(ClientError, match="closed the stream"):
                     stream.receive(PATIENCE)
@@ -97,7 +99,7 @@ def test_every_frame_is_acknowledged() -> None:
 
 
 def test_an_event_changes_what_is_shown(server: str, session: str) -> None:
-    with ControlStream(server, session) as stream:
+    with ControlStream(server, session, timeout_seconds=PATIENCE) as stream:
         before = until(stream, Frame)
         stream.send(Orbit(yaw=0.3, pitch=0))
         while (frame := until(stream, Frame)).step == before.step:
@@ -106,7 +108,7 @@ def test_an_event_changes_what_is_shown(server: str, session: str) -> None:
 
 
 def test_a_refusal_names_the_field(server: str, session: str) -> None:
-    with ControlStream(server, session) as stream:
+    with ControlStream(server, session, timeout_seconds=PATIENCE) as stream:
         until(stream, State)
         stream.send(PatchScene(patch={"floor": {"kind": "lava"}}))
         assert until(stream, Problem).field == "floor.kind"

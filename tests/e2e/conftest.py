@@ -15,9 +15,9 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, expect, sync_playwright
 
-from e2e.server import Server
+from e2e.server import PATIENCE, Server
 from e2e.view import View
 
 REPOSITORY = Path(__file__).parents[2]
@@ -77,6 +77,7 @@ def browser() -> Iterator[Browser]:
     """Chromium without a network: it can resolve no name, and reach nothing but this machine."""
     executable = os.environ.get("CULET_CHROMIUM") or shutil.which("chromium")
     assert executable, "there is no chromium on the PATH; name one by CULET_CHROMIUM"
+    expect.set_options(timeout=PATIENCE * 1e3)
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=executable, args=ARGUMENTS)
         yield chromium
@@ -110,13 +111,18 @@ def view(view_of: ViewOf) -> View:
     return view_of().open()
 
 
-@pytest.fixture
-def bouncing(view_of: ViewOf, server: Server) -> View:
-    """A page on a stone that falls, and bounces for ever; the default one lies still after two seconds."""
+def bouncing_in(view_of: ViewOf, server: Server, **options: Any) -> View:  # noqa: ANN401 - as ViewOf
+    """A page on a stone that bounces for ever once it falls; the default one lies still after two seconds."""
     lively = {"restitution": 1, "friction": 0, "rolling_resistance": 0, "tangential_damping": 1}
     scene: dict[str, Any] = {"floor": {"kind": "matte"}, "simulation": lively}
     answer = server.http.post("/api/sessions", json={"scene": scene})
-    view = view_of().open(f"?session={answer.json()['id']}")
+    return view_of(**options).open(f"?session={answer.json()['id']}")
+
+
+@pytest.fixture
+def bouncing(view_of: ViewOf, server: Server) -> View:
+    """A page on a stone that falls, and bounces for ever."""
+    view = bouncing_in(view_of, server)
     view.page.keyboard.press("p")
     view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.1")
     return view

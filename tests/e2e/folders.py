@@ -13,7 +13,8 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from e2e.server import PATIENCE, waited_until
-from e2e.units import HAPROXY, free_port
+from e2e.units import HAPROXY
+from shared.ports import free_port
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "deploy.md"
 NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ PATIENCE = patience.PATIENCE
 SHOP = "http://shop.example"
 """A site that may show the page and its pictures."""
 EMBEDDING = ("--frame-ancestor", SHOP, "--allow-embedding")
+SILENCE_SECONDS = "10"
+"""Without a heartbeat, of which one comes a second, until an engine counts as down: other work may hold it up."""
 
 
 class Server:
@@ -39,6 +42,7 @@ class Server:
                 [sys.executable, "-m", "culet", "serve", "--port", str(self._port), *EMBEDDING, *self._options],
                 stdout=subprocess.PIPE,
                 stderr=messages,
+                env={"CULET_ENGINE_SILENCE_SECONDS": SILENCE_SECONDS} | os.environ,
             )
         self.url = self._announced()
         self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)
@@ -90,21 +94,47 @@ class Server:
     def engine_pid(self) -> int:
         """Process id of the engine that works: the eldest, as the one that stands by was started after it."""
         for pid in _children(self._process.pid):
-            if b"engine" in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
+            if b"engine" in _words(pid):
                 return pid
         raise AssertionError("the server has no engine")
 
     def gateway_pid(self) -> int:
         """Process id of the gateway that works, likewise."""
         for pid in _children(self._process.pid):
-            if b"culet.gateway.inherited" in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
+            if b"culet.gateway.inherited" in _words(pid):
                 return pid
         raise AssertionError("the server has no gateway")
+
+    @contextmanager
+    def engine_held(self) -> Iterator[None]:
+        """The engine stands still, and nobody replaces it, for as long as the `with` lasts."""
+        held = self._process.pid, self.engine_pid()
+        for pid in held:
+            os.kill(pid, signal.SIGSTOP)
+        try:
+            self.until_equal("engine_up", 0)
+            yield
+        finally:
+            for pid in reversed(held):
+                os.kill(pid, signal.SIGCONT)
+
+    @contextmanager
+    def engine_gone(self) -> Iterator[None]:
+        """The engine is killed, and no other one is started for as long as the `with` lasts."""
+        engine = self.engine_pid()
+        os.kill(self._process.pid, signal.SIGSTOP)
+        try:
+            os.kill(engine, signal.SIGKILL)
+            self.until_equal("engine_up", 0)
+            yield
+        finally:
+            os.kill(self._process.pid, signal.SIGCONT)
 
     def kill_all(self) -> None:
         """Both processes at once, and those that stand by: what none but the page knows is lost."""
         for pid in _children(self._process.pid):
-            os.kill(pid, signal.SIGKILL)
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
 
     @property
     def is_running(self) -> bool:
@@ -120,8 +150,9 @@ class Server:
         """Wait until no process compiles for the engine: what it makes renders the picture anew."""
         threads = Path(f"/proc/{self.engine_pid()}/task")
         for _ in self._looks():
-            if not any(thread.read_text() for thread in threads.glob("*/children")):
-                return
+            with suppress(FileNotFoundError, ProcessLookupError):  # a thread that has ended meanwhile
+                if not any(thread.read_text() for thread in threads.glob("*/children")):
+                    return
 
     def _announced(self) -> str:
         """The URL that it prints once it is ready."""
@@ -150,3 +181,10 @@ def waited_until(condition: Callable[[], bool]) -> None:
 
 def _children(pid: int) -> list[int]:
     return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def _words(pid: int) -> list[bytes]:
+    """Of the command of a process; none if it has ended."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        return Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
+    return []

@@ -94,7 +94,7 @@ def test_a_first_visit_is_told_what_to_do_until_something_is_done(view_of: ViewO
     line.wait_for(state="hidden")
     card = view.page.get_by_role("dialog", name="Keys")
     for name in ("Fall or pause", "Throw the stone", "Save the picture"):
-        assert card.get_by_text(name).is_visible()
+        card.get_by_text(name).wait_for()
     view.page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     view.page.reload()

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from e2e.conftest import ViewOf
 from e2e.server import Server
@@ -58,7 +59,7 @@ def test_an_address_asks_for_a_background_of_live_pictures_and_for_the_legend_al
     assert np.abs(corner - (0x1F, 0x3A, 0x5F)).max() <= 4  # a JPEG's; without it 0, 0, 0
     assert view.scene["film"]["background"] == "#1f3a5f"
     legend = view.page.locator("#legend")
-    assert "Your head" in legend.inner_text()
+    expect(legend).to_contain_text("Your head")
     assert not view.page.locator("#panel").is_visible()
     view.page.goto(view.page.url.replace("&legend=1", ""))
     view.until("() => window.culet && culet.framesShown > 0")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect
 
 from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
@@ -34,6 +35,7 @@ def test_the_sliders_are_the_proportions_that_the_server_lists(wide_view: View, 
     cut = server.http.get("/api/cuts").json()["cuts"][0]
     numbers = [schema for schema in cut["proportions"].values() if schema["type"] == "number"]
     boxes = wide_view.page.locator("#panel .section .section", has_text="Pavilion").get_by_role("spinbutton")
+    expect(boxes).to_have_count(len(numbers))  # the server's lists come after the first picture
     assert [float(box.input_value()) for box in boxes.all()] == [schema["default"] for schema in numbers]
 
 
@@ -48,7 +50,7 @@ def test_a_proportion_cuts_the_stone_anew_and_leaves_the_others(wide_view: View,
     assert now | {"cut": stone["cut"]} == stone
     view.change(lambda: view.page.get_by_role("button", name="The usual proportions").click())
     assert server.session(view.session)["scene"]["stones"] == [stone]
-    assert view.page.get_by_role("spinbutton", name="Pavilion, \u00b0").input_value() == "40.75"
+    expect(view.page.get_by_role("spinbutton", name="Pavilion, \u00b0")).to_have_value("40.75")
     assert view.problems == []
 
 
@@ -73,9 +75,9 @@ def test_a_kept_design_and_the_shown_one_are_changed_over_by_the_button_and_by_t
     assert not other.is_visible()
     view.change(lambda: type_in(view, "Pavilion, \u00b0", "39"))
     view.change(lambda: view.page.keyboard.press("a"))  # Enter has left the number
-    assert pavilion.input_value() == "40.75"
+    expect(pavilion).to_have_value("40.75")
     view.change(other.click)
-    assert pavilion.input_value() == "39"
+    expect(pavilion).to_have_value("39")
     assert view.problems == []
 
 
@@ -93,13 +95,13 @@ def test_a_divider_has_the_kept_design_at_its_left_until_the_picture_changes(wid
     divider = page.get_by_role("slider", name="Divider")
     left = kept.evaluate("image => getComputedStyle(image).clipPath")
     divider.press("ArrowRight")
-    assert divider.input_value() == "51"
+    expect(divider).to_have_value("51")
     assert kept.evaluate("image => getComputedStyle(image).clipPath") != left
     assert violations(view) == []
     view.change_by("o")  # as for any other picture
     kept.wait_for()
     page.keyboard.press("d")
-    assert divider.count() == 0
+    expect(divider).to_have_count(0)
     assert view.problems == []
 
 
@@ -109,15 +111,15 @@ def test_each_tier_has_a_slider_between_the_ends_at_which_meets_are_kept(wide_vi
     page.get_by_role("button", name="Crown angles").click()
     page.get_by_role("button", name="Pavilion angles").click()
     main = page.get_by_role("spinbutton", name="main", exact=True)
-    assert main.input_value() == "40.75"
-    assert page.get_by_role("spinbutton", name="kite", exact=True).input_value() == "34.5"
+    expect(main).to_have_value("40.75")
+    expect(page.get_by_role("spinbutton", name="kite", exact=True)).to_have_value("34.5")
     assert violations(view) == []
     with page.expect_response(lambda answer: "reach=7" in answer.url) as answered:  # not of a row under the pointer
         main.focus()
     (tier,) = (each for each in answered.value.json()["tiers"] if each["names"] == ["main"])
     slider = page.get_by_role("slider", name="main", exact=True)
     view.until(f"() => [...document.querySelectorAll('.tier input')].some(box => box.max === '{tier['most']}')")
-    assert slider.get_attribute("min") == str(tier["least"])
+    expect(slider).to_have_attribute("min", str(tier["least"]))
     slider.focus()
     before, after = view.change(lambda: page.keyboard.press("End"))
     assert difference(before.pixels, after.pixels) > 0
@@ -127,7 +129,7 @@ def test_each_tier_has_a_slider_between_the_ends_at_which_meets_are_kept(wide_vi
     view.change(lambda: page.keyboard.press("Control+z"))
     view.until("() => culet.state.scene.stones[0].recut === null")
     assert server.session(view.session)["scene"] == view.scene
-    assert main.input_value() == "40.75"
+    expect(main).to_have_value("40.75")
     assert view.problems == []
 
 
@@ -147,7 +149,7 @@ def test_a_refused_angle_is_said_beside_its_slider_and_is_not_taken(wide_view: V
     view.change(lambda: type_in(view, "main", "41"))
     refusal.wait_for(state="hidden")
     view.change(lambda: page.get_by_role("button", name="These angles as they were").click())
-    assert page.get_by_role("spinbutton", name="main", exact=True).input_value() == "40.75"
+    expect(page.get_by_role("spinbutton", name="main", exact=True)).to_have_value("40.75")
 
 
 def test_a_mesh_has_no_proportions_and_gives_way_to_a_cut(wide_view: View, server: Server, tmp_path: Path) -> None:
@@ -157,17 +159,17 @@ def test_a_mesh_has_no_proportions_and_gives_way_to_a_cut(wide_view: View, serve
     shape, pavilion = view.page.get_by_label("Shape"), view.page.get_by_role("spinbutton", name="Pavilion, \u00b0")
     view.change(lambda: view.open_file("Open a mesh", file))
     assert not pavilion.is_visible()
-    assert shape.input_value() == "A file's"
+    expect(shape).to_have_value("A file's")
     before, after = view.change(lambda: shape.select_option(label="Emerald cut"))
     assert difference(before.pixels, after.pixels) > SEEN
-    assert pavilion.input_value() == "56"
+    expect(pavilion).to_have_value("56")
     view.change(lambda: type_in(view, "Pavilion steps", "2"))
     (stone,) = server.session(view.session)["scene"]["stones"]
     assert stone["mesh"] is None
     assert {"name": "emerald", "pavilion_steps": 2}.items() <= stone["cut"].items()
     view.change(lambda: shape.select_option(label="Oval"))
     assert server.session(view.session)["scene"]["stones"][0]["cut"] == "oval"
-    assert pavilion.locator("visible=true").input_value() == "41"
+    expect(pavilion.locator("visible=true")).to_have_value("41")
     assert view.problems == []
 
 
@@ -176,7 +178,7 @@ def test_a_coloured_stone_can_be_larger(wide_view: View, server: Server) -> None
     size = view.page.get_by_role("spinbutton", name="Radius, mm")
     assert not size.is_visible()
     view.change(lambda: view.page.get_by_label("Material", exact=True).select_option(label="Sapphire"))
-    assert size.input_value() == "3.25"
+    expect(size).to_have_value("3.25")
     scene = view.scene
     before, after = view.change(lambda: type_in(view, "Radius, mm", "12"))
     assert server.session(view.session)["scene"] == scene | {"millimetres": 12}

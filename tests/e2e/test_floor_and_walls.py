@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from playwright.sync_api import expect
 
 from culet_protocol.frame import Flags
 from e2e.conftest import BESIDE_PANEL, WITH_PANEL, ViewOf
@@ -29,7 +30,7 @@ def test_stones_throw_caustics_or_their_shadows_alone(view: View, server: Server
     assert difference(with_flecks.pixels, without.pixels) > FLECKS
     assert not with_flecks.frame["flags"] & Flags.SHADOWS_ONLY
     assert without.frame["flags"] & Flags.SHADOWS_ONLY
-    assert "shadows without caustics" in (view.page.locator("#status").text_content() or "")
+    expect(view.page.locator("#status")).to_contain_text("shadows without caustics")  # told twice a second
     assert server.session(view.session)["scene"]["optics"]["caustics"] == "off"
 
 
@@ -55,8 +56,8 @@ def test_a_cell_beyond_the_slider_is_said_and_a_mirror_has_no_colour(view: View)
     cell = view.page.get_by_role("spinbutton", name="Floor, cell, R")
     cell.fill("99")
     cell.press("Enter")
+    view.page.get_by_text("99 is beyond the slider: 8 is taken.").wait_for()  # now: it goes by itself
     view.until("() => culet.state.scene.floor.checker.cell === 8")
-    view.page.get_by_text("99 is beyond the slider: 8 is taken.").wait_for()
     view.page.get_by_label("Mirror").click()
     view.until("() => culet.state.mirror")
     for label in ("Floor", "Walls"):

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from playwright.sync_api import expect
 
-from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.conftest import WITH_PANEL, ViewOf, bouncing_in
 from e2e.server import Server
 from e2e.view import View, assert_same, difference
 
@@ -120,7 +121,7 @@ def test_keys_with_a_modifier_or_in_a_field_are_not_ours(view_of: ViewOf) -> Non
     field.focus()
     view.page.keyboard.type("crime")
     view.settle_messages()
-    assert field.input_value() == "crime"
+    expect(field).to_have_value("crime")
     assert view.sent == []
     assert view.state["target"] == "camera"
 
@@ -223,7 +224,8 @@ def test_f_brings_the_camera_back(view: View, server: Server) -> None:
     assert_same(after.pixels, start.pixels)
 
 
-def test_p_starts_and_pauses_the_fall_and_r_puts_the_stone_back(view: View, server: Server) -> None:
+def test_p_starts_and_pauses_the_fall_and_r_puts_the_stone_back(view_of: ViewOf, server: Server) -> None:
+    view = bouncing_in(view_of, server)
     start = view.at_rest()
     view.page.keyboard.press("p")
     view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0.4")

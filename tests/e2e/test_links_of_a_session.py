@@ -7,7 +7,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, ViewportSize
+from playwright.sync_api import Browser, ViewportSize, expect
 
 from culet_protocol.watch import watch_id
 from e2e.conftest import WITH_PANEL, ViewOf
@@ -121,7 +121,7 @@ def test_who_only_watches_sees_the_design_that_was_beside_the_one_that_comes(gua
         assert server.http.patch(f"/api/sessions/{view.session}", json=patch).status_code == 200
         kept = guest.page.get_by_alt_text("The kept design")
         kept.wait_for()
-        assert guest.page.get_by_role("slider", name="Divider").input_value() == "50"
+        expect(guest.page.get_by_role("slider", name="Divider")).to_have_value("50")
         guest.page.keyboard.press("d")
         kept.wait_for(state="detached")
         assert guest.sent == []

@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
-from e2e.conftest import SMALL
+from playwright.sync_api import expect
+
 from e2e.server import Server
 from e2e.view import View
 
 MOVING_STATUS = " \u00b7 ".join(
     (
-        r"^\d+\.\d frames/s( \u00b7 limited by [a-z ]+)?",
+        r"^\d+\.\d frames/s( \u00b7 limited by [a-z ]+)?( \u00b7 slow motion)?",
         r"server [\d.]+ ms \(simulate [\d.]+, render [\d.]+, encode [\d.]+\)",
         r"round trip [\d.]+ ms",
-        r"frontier's error [\d.]+",
-        rf"{SMALL['width']}\u00d7{SMALL['height']} (JPEG|H\.264)",
+        r"frontier's error [\d.]+( \u00b7 [^\u00b7]+)?",
+        r"\d+\u00d7\d+ (JPEG|H\.264)",
         "1 sample",
         "1 viewer$",
     )
 )
+"""On a machine that does much else, stones fall in slow motion, in smaller pictures that lack some of their light."""
 
 
 def test_frames_are_shown_in_order_while_the_stone_falls(bouncing: View) -> None:
     view = bouncing
     view.record()
-    view.until("() => culet.framesShown > 20 && culet.lastFrame.simulationTime > 1.5")
+    view.until("() => record.length > 5 && culet.framesShown > 20 && culet.lastFrame.simulationTime > 1.5")
     record = view.recorded
-    assert len(record) > 5
     for before, after in pairwise(record):
         for clock in ("sequence", "simulationTime", "timestamp"):
             assert after[clock] >= before[clock], f"{clock} went back"
@@ -37,12 +39,10 @@ def test_frames_are_shown_in_order_while_the_stone_falls(bouncing: View) -> None
 
 def test_the_status_line_tells_rate_cost_and_latency(bouncing: View) -> None:
     view = bouncing
-    status = view.page.locator("#status")
     view.until("pattern => RegExp(pattern).test(document.querySelector('#status .all').textContent)", MOVING_STATUS)
     view.page.keyboard.press("p")
     view.at_rest()
-    view.until("() => document.querySelector('#status .all').textContent.startsWith('still picture')")
-    assert "16 samples" in (status.text_content() or "")
+    expect(view.page.locator("#status .all")).to_have_text(re.compile("^still picture.* 16 samples"))
 
 
 def test_a_finished_picture_is_sent_again_and_not_rendered_again(bouncing: View, server: Server) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from playwright.sync_api import expect
+
 from documents.pages import read
 from e2e.conftest import ViewOf
 from e2e.test_accessibility import violations
@@ -24,31 +26,26 @@ def test_a_lessons_ray_is_drawn_and_told_and_the_arrow_keys_go_through_it(view_o
     rows = page.locator("#ray-card tbody tr")
     rows.first.wait_for()
     assert rows.nth(2).inner_text().split("\t")[2:4] == ["totally reflected at pavilion 1 side", "45.0\N{DEGREE SIGN}"]
-    assert (
-        "100\N{NO-BREAK SPACE}% of this pixel comes from the sky"
-        in page.locator("#ray-card [role=status]").inner_text()
-    )
-    assert page.locator("#ray .light line").count() > 6  # red, green and blue of some steps
+    expect(page.locator("#ray-card [role=status]")).to_contain_text("100\N{NO-BREAK SPACE}% of this pixel")
+    view.until("() => document.querySelectorAll('#ray .light line').length > 6")  # red, green and blue of some steps
     page.locator("#ray-card tr[aria-selected=true]").focus()
     page.keyboard.press("ArrowDown")
     page.keyboard.press("ArrowDown")
     chosen = page.locator("#ray-card tr[aria-selected=true]")
-    assert chosen.locator("td").first.inner_text() == "2"
-    assert "Critical angle" in page.locator("#ray-card dl").inner_text()
+    expect(chosen.locator("td").first).to_have_text("2")
+    expect(page.locator("#ray-card dl")).to_contain_text("Critical angle")
     page.locator("#ray .marks circle").first.wait_for()
     before = page.locator("#ray .light line").last.get_attribute("x2")
     page.mouse.move(600, 300)
     page.mouse.down()
     page.mouse.move(680, 330, steps=4)
     page.mouse.up()
-    page.wait_for_function(
-        "x => document.querySelector('#ray .light line:last-child')?.getAttribute('x2') !== x", arg=before
-    )
+    view.until("x => [...document.querySelectorAll('#ray .light line')].at(-1)?.getAttribute('x2') !== x", before)
     assert violations(view) == []
     chosen.focus()
     page.keyboard.press("Escape")
     page.locator("#ray-card").wait_for(state="detached")
-    assert page.locator("#ray").count() == 0
+    expect(page.locator("#ray")).to_have_count(0)
     assert view.problems == []
 
 

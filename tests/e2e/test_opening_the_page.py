@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import re
-import signal
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Request
+from playwright.sync_api import Request, expect
 
 from e2e.conftest import SMALL, ViewOf
 from e2e.server import Server
@@ -59,6 +57,7 @@ def test_a_page_asks_for_its_session_before_the_lists_of_what_there_is(view_of: 
     view.page.on("request", lambda request: asked.append(urlsplit(request.url).path))
     view.open()
     view.page.locator("#scenes button").first.wait_for(state="attached")
+    view.settle_messages()  # all lists are asked for at once
     interface = [path for path in asked if path.startswith("/api/")]
     assert interface[0] == "/api/sessions"
     assert {"/api/presets", "/api/materials", "/api/cuts", "/api/skies", "/api/integrators"} <= set(interface[1:])
@@ -67,19 +66,15 @@ def test_a_page_asks_for_its_session_before_the_lists_of_what_there_is(view_of: 
 def test_a_page_opened_while_the_engine_is_away_opens_by_itself_once_it_is_back(
     view_of: ViewOf, server: Server
 ) -> None:
-    view, engine = view_of(), server.engine_pid()
+    view = view_of()
     view.refusals.add(503)
-    os.kill(engine, signal.SIGSTOP)
-    try:
-        server.until_equal("engine_up", 0)
+    with server.engine_held():
         view.page.goto(f"{server.url}/?preset=matte")
         card = view.page.get_by_role("alertdialog")
         card.get_by_text(re.compile(r"Trying again in ([2-9]|\d\d) s")).wait_for()  # the fourth pause, or a later one
-        assert "the render process is not running" in card.inner_text()
+        expect(card).to_contain_text("the render process is not running")
         card.get_by_role("button", name="Try now").click()
         card.get_by_text(re.compile(r"Trying again in ([4-9]|\d\d) s")).wait_for()  # meanwhile it may have tried itself
-    finally:
-        os.kill(engine, signal.SIGCONT)
     view.until("() => culet.framesShown > 0")
     assert not card.is_visible()
     assert view.problems == []

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from playwright.sync_api import expect
 
-from e2e.conftest import WITH_PANEL, ViewOf
+from e2e.conftest import WITH_PANEL, ViewOf, bouncing_in
 from e2e.server import Server
 from e2e.view import View, difference
 
@@ -26,7 +27,7 @@ def test_the_page_opens_on_a_picture_of_every_scene(
 ) -> None:
     view = view_of(**options).open()
     entries = view.page.locator("#scenes button")
-    entries.first.wait_for()
+    expect(entries).to_have_count(len(presets))
     assert sorted(entries.all_inner_texts()) == sorted(preset["title"] for preset in presets)
     assert all(entries.evaluate_all("buttons => buttons.map(({title}) => title)")), "a sentence about each"
     entries.last.scroll_into_view_if_needed()
@@ -79,8 +80,10 @@ def test_a_scene_chosen_on_a_phone_has_its_stone_in_view(view_of: ViewOf, preset
 
 
 @pytest.mark.parametrize("options", [{"viewport": DESK}, PHONE], ids=["desk", "phone"])
-def test_a_round_button_lets_the_stone_fall_and_pauses_it(view_of: ViewOf, options: dict[str, Any]) -> None:
-    view = view_of(**options).open()
+def test_a_round_button_lets_the_stone_fall_and_pauses_it(
+    view_of: ViewOf, server: Server, options: dict[str, Any]
+) -> None:
+    view = bouncing_in(view_of, server, **options)
     button = view.page.locator("#fall")
     button.click()
     view.until("() => culet.state.falling && culet.lastFrame.simulationTime > 0")
@@ -114,4 +117,4 @@ def test_arrow_keys_reach_every_material_and_move_nothing(view_of: ViewOf, serve
     assert materials.evaluate("list => list === document.activeElement")
     view.page.keyboard.press("m")
     view.until("() => culet.state.mirror")
-    assert materials.input_value() == names[-1], "a letter is the page's while the list is folded"
+    expect(materials).to_have_value(names[-1])  # a letter is the page's while the list is folded

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import FloatRect, Locator
+from playwright.sync_api import FloatRect, Locator, expect
 
 from e2e.conftest import WITH_PANEL, ViewOf
 from e2e.server import Server
@@ -87,7 +87,7 @@ def test_the_panel_shows_the_state_and_every_key(view_of: ViewOf) -> None:
         view.change_by(key)
         assert checkbox.is_checked()
     view.page.keyboard.press("2")
-    assert view.page.get_by_label("What", exact=True).input_value() == "light_2"
+    expect(view.page.get_by_label("What", exact=True)).to_have_value("light_2")
 
 
 def box(part: Locator) -> FloatRect:

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import random
 import shutil
-import socket
 import ssl
 import subprocess
 import tempfile
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from pathlib import Path
 
 import httpx
 
 from e2e.server import PATIENCE, Server, waited_until
+from shared.ports import free_port
 
 REPOSITORY = Path(__file__).parents[2]
 CONFIGURATION = REPOSITORY / "docker" / "haproxy.cfg"
+SILENCE = ("--engine-silence-seconds", "4")
 TOKEN = "a-token-of-these-units"  # noqa: S105 - of these tests alone
 HAPROXY = shutil.which("haproxy") or shutil.which("haproxy", path="/usr/sbin")
 WHY_NOT = "there is no haproxy on the PATH; Debian has it as the package haproxy"
@@ -47,14 +47,6 @@ def certificate(folder: Path) -> Path:
     subprocess.run(["openssl", "req", "-x509", *options, "-keyout", key, "-out", own], check=True, capture_output=True)
     (folder / "certificates" / "site.pem").write_text(own.read_text() + key.read_text())
     return own
-
-
-def free_port() -> int:
-    """That nobody listens on now, below those that the system gives to connections, of which there are always some."""
-    for port in random.SystemRandom().sample(range(20_000, 30_000), 100):
-        with suppress(OSError), socket.create_server(("127.0.0.1", port)):
-            return port
-    raise AssertionError("a hundred ports are taken")
 
 
 class Units:
@@ -90,9 +82,10 @@ class Units:
         number = len(self.units)
         folder = self._folder / f"unit{number + 1}"
         folder.mkdir()
-        options = ("--no-spare", "--trusted-proxy", "127.0.0.1", "--token", TOKEN, "--drain-seconds", "300")
+        options = ("--no-spare", "--trusted-proxy", "127.0.0.1", "--token", TOKEN, "--drain-seconds", "300", *SILENCE)
         unit = Server(folder, *options, port=self.ports[number], stops_by_killing=True)
         self.units.append(self._stack.enter_context(unit))
+        unit.http.headers["Authorization"] = f"Bearer {TOKEN}"  # or it would not say how it is
         return unit
 
     def client(self) -> httpx.Client:

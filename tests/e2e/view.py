@@ -29,7 +29,7 @@ MILLISECONDS = 1e3
 POLL_MILLISECONDS = 20
 THUMB = 16.0
 """CSS pixels of a range input's thumb in Chromium: its middle goes from one half of that to the other."""
-OF_ONE_VIEWER = ("ack", "decoders", "ping", "resize", "visibility")
+OF_ONE_VIEWER = ("ack", "decoders", "ping", "reach", "resize", "visibility")
 """Messages that change nothing in the session."""
 
 RECORD = """() => {
@@ -41,6 +41,39 @@ RECORD = """() => {
   };
   look();
 }"""
+KEEP_THE_STREAM = """(() => {
+  window.WebSocket = class extends WebSocket {
+    constructor(...given) {
+      super(...given);
+      this.told = {};
+      window.stream = this;
+      this.addEventListener("message", ({ data }) => {
+        if (typeof data !== "string") return;
+        const notice = JSON.parse(data);
+        this.told[notice.type] = notice;
+      });
+    }
+  };
+})()"""
+"""From the start of a page: `stream` is its newest, whose `told` has the last notice of each type."""
+
+ASK_WHAT_SHOWS_ALL = """number => {
+  const { stream } = window;
+  if (stream?.readyState !== WebSocket.OPEN) return false;
+  if (stream.asked !== number) stream.send(JSON.stringify({ type: "reach", number }));
+  stream.asked = number;
+  return stream.told.reached?.number === number;
+}"""
+"""True once the engine has said which step is the first that shows all that the page has sent before."""
+
+AT_REST = """([step, final]) => {
+  const { lastFrame, state, fading } = culet;
+  const { width, height } = document.getElementById("picture");
+  const settled = state.viewers > 1 || (lastFrame?.width === width && lastFrame.height === height);
+  return lastFrame?.step > step && lastFrame.flags & final && !fading && settled;
+}"""
+"""Before a page has said its size, the server renders for one of its own; of several pages one has the say."""
+
 READ_THE_CANVAS = "() => [culet.lastFrame, document.getElementById('picture').toDataURL('image/png')]"
 
 
@@ -68,9 +101,13 @@ class View:
     """Its gateway goes away: Chromium warns of a stream that the page gave up before it was open."""
     foreign: list[str] = field(default_factory=list)
     """Requests to anything but the server."""
+    streams: int = 0
+    """WebSockets that it has opened."""
 
     def __post_init__(self) -> None:
-        self.page.set_default_timeout(PATIENCE * MILLISECONDS)
+        self._questions = 0
+        self.page.context.set_default_timeout(PATIENCE * MILLISECONDS)  # also of pages that this one opens
+        self.page.add_init_script(KEEP_THE_STREAM)
         self.page.on("console", self._logged)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", self._requested)
@@ -84,8 +121,9 @@ class View:
 
     @property
     def session(self) -> str:
-        """The session's id, from the page's address."""
-        return parse_qs(urlsplit(self.page.url).query)["session"][0]
+        """The session's id, from the page's address; its watch id, if the page only watches."""
+        query = parse_qs(urlsplit(self.page.url).query)
+        return (query.get("session") or query["watch"])[0]
 
     @property
     def state(self) -> dict[str, Any]:
@@ -129,6 +167,42 @@ class View:
                 return False
             raise
 
+    def until_streams(self, number: int) -> None:
+        """Wait until the page has opened so many streams."""
+        deadline = time.monotonic() + PATIENCE
+        while self.streams < number:
+            assert time.monotonic() < deadline, f"{self.streams} streams in {PATIENCE} s, expected {number}"
+            self.page.wait_for_timeout(POLL_MILLISECONDS)
+
+    def frame_when(self, condition: str, argument: object = None) -> dict[str, Any]:
+        """The header of the first frame that is seen of which a JavaScript function of it and the argument is true."""
+        script = f"argument => culet.lastFrame && ({condition})(culet.lastFrame, argument) ? culet.lastFrame : null"
+        deadline = time.monotonic() + PATIENCE
+        while (frame := self.page.evaluate(script, argument)) is None:
+            assert time.monotonic() < deadline, f"never true in {PATIENCE} s: {condition} of {argument}"
+            self.page.wait_for_timeout(POLL_MILLISECONDS)
+        return cast(dict[str, Any], frame)
+
+    def reach(self) -> int:
+        """The step whose picture is the first to show all that the page has sent; the engine has taken all of it."""
+        self.settle_messages()
+        self._questions += 1
+        number = 2**31 + self._questions  # the page's own are small
+        self.until(ASK_WHAT_SHOWS_ALL, number)
+        return cast(int, self.page.evaluate("() => stream.told.reached.step"))
+
+    def until_told(self) -> int:
+        """As `reach`; when it returns the page knows what the engine does: states are told 25 times a second, and
+        neither before a picture nor before an answer."""
+        step = self.reach()
+        known = self.server.session(self.session)
+        known = {name: known[name] for name in ("scene", "falling", "exactness", "pinned")}
+        deadline = time.monotonic() + PATIENCE
+        while {name: self.state[name] for name in known} != known:
+            assert time.monotonic() < deadline, f"not told in {PATIENCE} s: {known}"
+            self.page.wait_for_timeout(POLL_MILLISECONDS)
+        return step
+
     def look(self) -> Seen:
         """The canvas and its frame, in one go."""
         frame, url = self.page.evaluate(READ_THE_CANVAS)
@@ -136,10 +210,7 @@ class View:
 
     def at_rest(self, after: int = -1) -> Seen:
         """The canvas once it shows the finished picture of a step later than that."""
-        self.until(
-            "([step, final]) => culet.lastFrame?.step > step && culet.lastFrame.flags & final && !culet.fading",
-            [after, int(Flags.FINAL)],
-        )
+        self.until(AT_REST, [after, int(Flags.FINAL)])
         return self.look()
 
     def record(self) -> None:
@@ -152,10 +223,11 @@ class View:
         return cast(list[dict[str, Any]], self.page.evaluate("() => window.record"))
 
     def change(self, act: Callable[[], object]) -> tuple[Seen, Seen]:
-        """Do something that changes the picture: the finished pictures before and after."""
+        """Do something that changes the picture: the finished pictures before and after, which shows all of it."""
         before = self.at_rest()
         act()
-        return before, self.at_rest(after=before.frame["step"])
+        self.until("step => culet.lastFrame.step > step", before.frame["step"])  # what was done may have to be sent yet
+        return before, self.at_rest(after=self.until_told() - 1)
 
     def change_by(self, key: str) -> tuple[Seen, Seen]:
         """As `change`, by a key."""
@@ -164,13 +236,17 @@ class View:
     def drag_slider(self, name: str, *to: float) -> None:
         """Take a slider from its start to parts of its length, and let it go at the last."""
         slider = self.page.get_by_role("slider", name=name)
-        slider.scroll_into_view_if_needed()
-        box = slider.bounding_box()
-        assert box is not None
-        start, length, y = box["x"] + THUMB / 2, box["width"] - THUMB, box["y"] + box["height"] / 2
         mouse = self.page.mouse
-        mouse.move(start, y)
+        while True:  # what is loaded above it may move it away
+            slider.scroll_into_view_if_needed()
+            box = slider.bounding_box()
+            assert box is not None
+            start, length, y = box["x"] + THUMB / 2, box["width"] - THUMB, box["y"] + box["height"] / 2
+            mouse.move(start, y)
+            if slider.evaluate("(slider, [x, y]) => document.elementFromPoint(x, y) === slider", [start, y]):
+                break
         mouse.down()
+        assert slider.evaluate("slider => slider === document.activeElement")
         for part in to:
             mouse.move(start + part * length, y)
             self.settle_messages()
@@ -209,6 +285,7 @@ class View:
     def _connected(self, websocket: WebSocket) -> None:
         if urlsplit(websocket.url).netloc != urlsplit(self.server.url).netloc:
             self.foreign.append(websocket.url)
+        self.streams += 1
         websocket.on("framesent", self._sent)
 
     def _sent(self, payload: str | bytes) -> None:

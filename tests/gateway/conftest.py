@@ -15,8 +15,9 @@ from gateway.running import PATIENCE, Endpoints, Gateway, engine_process, gatewa
 @pytest.fixture(scope="session")
 def engine() -> Iterator[Endpoints]:
     """The endpoints of an engine process."""
+    patient = ("--grade-seconds", str(PATIENCE))  # beside other work, more than is answered with what is known by then
     room = ("--max-sessions", "1000")  # the tests' web servers come and go, and leave their sessions to it
-    with engine_process(partial(engine_command, options=room)) as endpoints:
+    with engine_process(partial(engine_command, options=(*room, *patient))) as endpoints:
         yield endpoints
 
 

@@ -68,7 +68,7 @@ def quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connection_guard, "PROGRESS_SECONDS", 0.2)
     for module in (connection_guard, guarded_http, lingering_transport):
         monkeypatch.setattr(module, "LINGER_SECONDS", 0.2)
-    monkeypatch.setattr(connection_guard, "UNREAD_SECONDS", 2.0)
+    monkeypatch.setattr(connection_guard, "UNREAD_SECONDS", 4.0)
 
 
 @pytest.mark.usefixtures("quick_looks")
@@ -89,13 +89,13 @@ async def test_what_is_not_sent_in_time_is_not_waited_for(said: bytes, answer: b
 
 @pytest.mark.usefixtures("quick_looks")
 async def test_a_slow_body_that_makes_progress_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connection_guard, "PROGRESS_SECONDS", 1.0)  # longer than this process stands still
+    monkeypatch.setattr(connection_guard, "PROGRESS_SECONDS", 2.0)  # longer than this process stands still
     body = b'{"preset": "no such"}'
     typed = HALF_A_BODY.replace(b"\r\n\r\n{", b"\r\nContent-Type: application/json\r\n\r\n")
     head = typed.replace(b"99", str(len(body)).encode()) + body[:1]
     async with gateway_alone(head_seconds=1, min_body_rate=1) as gateway, peers(gateway, head) as (peer,):
         for byte in body[1:]:
-            await asyncio.sleep(0.1)
+            await asyncio.sleep(0.15)
             peer.writer.write(bytes([byte]))
         async with asyncio.timeout(PATIENCE):
             assert b" 404 " in await peer.reader.readline()

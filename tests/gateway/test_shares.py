@@ -56,7 +56,10 @@ async def test_a_client_that_fills_the_server_makes_room_for_one_that_has_less(c
         assert (await open_session(crowded, MODEST)).status_code == 429, "all have about the same"
 
 
-async def test_a_session_whose_page_is_being_reloaded_makes_no_room(crowded: Gateway) -> None:
+async def test_a_session_whose_page_is_being_reloaded_makes_no_room(
+    crowded: Gateway, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session_places, "RELOAD_SECONDS", PATIENCE)
     held = await open_sessions(crowded, GREEDY, 4)
     for session in held:
         async with crowded.viewer(session, additional_headers=GREEDY) as viewer:
@@ -86,13 +89,14 @@ async def test_opened_all_at_once_sessions_are_no_more_than_the_limit(crowded: G
 
 
 async def test_a_session_that_was_never_watched_goes_first(engine: Endpoints, tmp_path: Path) -> None:
-    async with gateway_before(engine, web=tmp_path, unwatched_session_seconds=1) as gateway:
+    async with gateway_before(engine, web=tmp_path, unwatched_session_seconds=3) as gateway:
         (seen,) = await open_sessions(gateway, {}, 1)
         async with gateway.viewer(seen) as viewer:
             await viewer.notice("hello")
-        pictured, never = await open_sessions(gateway, {}, 2)
+        (pictured,) = await open_sessions(gateway, {}, 1)
         size = {"width": 16, "height": 16}
         assert (await gateway.http.get(f"/api/sessions/{pictured}/frame.png", params=size)).status_code == 200
+        (never,) = await open_sessions(gateway, {}, 1)
 
         async def two_left() -> bool:
             return len(gateway.parts.sessions) == 2

@@ -19,6 +19,7 @@ from culet_client import ClientError, FrameSubscription, SilenceError, connect
 from culet_protocol.keys import ClientKeys, EngineKeys, KeysError, make_keys
 from culet_protocol.watch import watch_id
 from gateway.running import PATIENCE, Endpoints, engine_process, gateway_before
+from shared.ports import free_port
 
 
 def test_each_machine_gets_a_folder_that_only_its_owner_reads(tmp_path: Path) -> None:
@@ -58,12 +59,6 @@ def test_keys_that_cannot_be_used_are_refused_with_what_to_do(tmp_path: Path) ->
         check_trusted("tcp://0.0.0.0:5556", "frames", trusted=False)
 
 
-def port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        free: int = taken.getsockname()[1]
-        return free
-
-
 async def test_an_engine_with_keys_serves_who_has_them_and_nobody_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -72,7 +67,7 @@ async def test_an_engine_with_keys_serves_who_has_them_and_nobody_else(
     # A stranger who knows the engine's public key, and is not one of those it knows.
     engine_key = (tmp_path / "ours" / "gateway" / "engine.key").read_bytes()
     (tmp_path / "theirs" / "stranger" / "engine.key").write_bytes(engine_key)
-    control, frames = f"tcp://127.0.0.1:{port()}", f"tcp://127.0.0.1:{port()}"
+    control, frames = f"tcp://127.0.0.1:{free_port()}", f"tcp://127.0.0.1:{free_port()}"
 
     def command(own_control: str, own_frames: str) -> list[str]:
         del own_control
@@ -96,7 +91,8 @@ async def test_an_engine_with_keys_serves_who_has_them_and_nobody_else(
                         with pytest.raises(SilenceError):
                             await asyncio.to_thread(connect, frames, control=control, keys=keys, timeout_seconds=0.5)
                 monkeypatch.setenv("CULET_KEYS", str(tmp_path / "ours" / "viewer"))
-                with await asyncio.to_thread(connect, frames, session=session) as connection:
+                ours_by_default = partial(connect, frames, session=session, timeout_seconds=PATIENCE)
+                with await asyncio.to_thread(ours_by_default) as connection:
                     await asyncio.to_thread(connection.image, PATIENCE)
     monkeypatch.setenv("CULET_KEYS", str(tmp_path))
     with pytest.raises(ClientError, match="cannot read the secret key"):
