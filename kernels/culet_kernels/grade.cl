@@ -63,13 +63,43 @@ static inline double sum_lanes(realL value) {
   return sum;
 }
 
+// Rows of numbers of rays that wait until they fill a packet: chains have very different lengths, and a packet that went on until
+// its longest one has ended would have most of its lanes idle. The latest is taken first, so that few wait.
+#define MOST_WAITING (3 * LANES) // a packet may come while all but one of another wait, and is written whole
+#define IDLE_LANES 2
+
+// Which lanes of a packet that is taken hold a ray; the rows begin at `count` then.
+static inline maskL take_waiting(int *count, real *rows, int numbers) {
+  const int taken = min(*count, LANES);
+  *count -= taken;
+  if (taken < LANES) // no lane holds what was never written
+    for (int k = 0; k < numbers; k++)
+      for (int lane = taken; lane < LANES; lane++) rows[k * MOST_WAITING + lane] = rows[k * MOST_WAITING];
+  return widen(LANE_INDEX < (intL)(taken));
+}
+
+// Light that leaves, which waits to be told apart by its elevation.
+typedef struct {
+  real cosine[MOST_WAITING], light[MOST_WAITING]; // to the dome's axis
+  int count;
+} leavingL;
+
 // By degrees of elevation: angles to the dome's axis of so many lanes' light.
-static inline void note_elevations(double *sums, realL cosine, realL light, maskL mask) {
-  real elevation[LANES], amount[LANES];
-  store_lanes((real)90 - TO_DEGREES * acos(clamp(cosine, (realL)-1, (realL)1)), elevation);
-  store_lanes(only(mask, light), amount);
-  for (int k = 0; k < LANES; k++)
-    sums[ELEVATIONS + clamp((int)floor(elevation[k]) + DEGREES / 2, 0, DEGREES - 1)] += amount[k];
+static inline void note_elevations(double *sums, realL cosine, const real *amount, int count) {
+  int degree[LANES];
+  const realL elevation = (real)90 - TO_DEGREES * acos(clamp(cosine, (realL)-1, (realL)1));
+  store_ints(clamp(reals_to_int(floor_lanes(elevation)) + DEGREES / 2, (intL)0, (intL)(DEGREES - 1)), degree);
+  for (int k = 0; k < count; k++) sums[ELEVATIONS + degree[k]] += amount[k];
+}
+
+static inline void wait_to_leave(leavingL *leaving, double *sums, realL cosine, realL light, maskL mask) {
+  const packing_t packing = packing_of(mask);
+  pack_lanes(packing, cosine, leaving->cosine + leaving->count);
+  pack_lanes(packing, light, leaving->light + leaving->count);
+  leaving->count += packing.count;
+  if (leaving->count < LANES) return;
+  leaving->count -= LANES;
+  note_elevations(sums, load_lanes(leaving->cosine + leaving->count), leaving->light + leaving->count, LANES);
 }
 
 // Light that comes from the dome: adds what the lanes bring to each ray's ISO.
@@ -116,16 +146,142 @@ static inline exitL follow(chainsL *chains, rows_t rows, chainL eta, realL absor
   return exit;
 }
 
-// Light that two wavelengths bring: of each half. They part where they meet different facets, or one is totally reflected.
-static inline void part_wavelengths(domeL dome, realL *sums, rows_t rows, chainsL blue, chainsL red, chainL eta_blue,
-                                    chainL eta_red, real threshold, real cutoff, int bounces) {
-  maskL together = blue.alive & red.alive;
+// Light that comes in through a facet.
+static inline chainsL refracted(vec3L point, vec3L direction, vec3L normal, realL cos_a, chainL eta, maskL mask) {
+  const realL cos_s = cosine_in_stone(cos_a, eta), ratio = splat(1) / eta;
+  const chainsL chains = {point, normalise(along(scale3(ratio, direction), ratio * cos_a - cos_s, normal)),
+                          1 - fresnel_exact(cos_a, cos_s, eta), mask};
+  return chains;
+}
+
+// Of one colour, with what of its ray's ISO is known and how many facets it has met.
+typedef struct {
+  chainsL chains;
+  realL own, met;
+} followedL;
+
+// Of two wavelengths of one ray: they are together as long as they meet the same facets and none is totally reflected alone.
+typedef struct {
+  chainsL blue, red;
+  realL together, met;
+} pairL;
+
+// This list and the next are all that says how waiting rays are kept. A weight of 0 is one of a chain that has ended.
+#define CHAIN_NUMBERS 7
+#define EACH_OF_CHAIN(of, WITH)                                                                                        \
+  WITH((of).origin.x)                                                                                                  \
+  WITH((of).origin.y)                                                                                                  \
+  WITH((of).origin.z)                                                                                                  \
+  WITH((of).direction.x)                                                                                               \
+  WITH((of).direction.y)                                                                                               \
+  WITH((of).direction.z)                                                                                               \
+  WITH((of).weight)
+#define PACK(number)                                                                                                   \
+  pack_lanes(packing, number, rows);                                                                                   \
+  rows += MOST_WAITING;
+#define LOAD(number)                                                                                                   \
+  number = load_lanes(rows);                                                                                           \
+  rows += MOST_WAITING;
+
+#define FOLLOWED_NUMBERS (CHAIN_NUMBERS + 2)
+typedef struct {
+  real number[FOLLOWED_NUMBERS][MOST_WAITING];
+  int count;
+} waiting_chainsL;
+
+static inline void wait_as_chain(waiting_chainsL *waiting, followedL ray, packing_t packing) {
+  real *rows = waiting->number[0] + waiting->count;
+  EACH_OF_CHAIN(ray.chains, PACK)
+  PACK(ray.own)
+  PACK(ray.met)
+  waiting->count += packing.count;
+}
+
+static inline followedL next_chains(waiting_chainsL *waiting) {
+  followedL ray;
+  ray.chains.alive = take_waiting(&waiting->count, waiting->number[0], FOLLOWED_NUMBERS);
+  const real *rows = waiting->number[0] + waiting->count;
+  EACH_OF_CHAIN(ray.chains, LOAD)
+  LOAD(ray.own)
+  LOAD(ray.met)
+  return ray;
+}
+
+#define PAIR_NUMBERS (2 * CHAIN_NUMBERS + 2)
+typedef struct {
+  real number[PAIR_NUMBERS][MOST_WAITING];
+  int count;
+} waiting_pairsL;
+
+static inline void wait_as_pair(waiting_pairsL *waiting, pairL ray, packing_t packing) {
+  real *rows = waiting->number[0] + waiting->count;
+  ray.blue.weight = only(ray.blue.alive, ray.blue.weight);
+  ray.red.weight = only(ray.red.alive, ray.red.weight);
+  EACH_OF_CHAIN(ray.blue, PACK)
+  EACH_OF_CHAIN(ray.red, PACK)
+  PACK(ray.together)
+  PACK(ray.met)
+  waiting->count += packing.count;
+}
+
+static inline pairL next_pairs(waiting_pairsL *waiting) {
+  pairL ray;
+  const maskL taken = take_waiting(&waiting->count, waiting->number[0], PAIR_NUMBERS);
+  const real *rows = waiting->number[0] + waiting->count;
+  EACH_OF_CHAIN(ray.blue, LOAD)
+  EACH_OF_CHAIN(ray.red, LOAD)
+  LOAD(ray.together)
+  LOAD(ray.met)
+  ray.blue.alive = taken & (ray.blue.weight > 0);
+  ray.red.alive = taken & (ray.red.weight > 0);
+  return ray;
+}
+
+typedef struct {
+  chainL eta, eta_blue, eta_red;
+  real absorption, cutoff, threshold;
+  int bounces, kind;
+} rulesL;
+
+// A packet of chains, until too many of its lanes are idle.
+static inline void follow_chains(waiting_chainsL *waiting, leavingL *leaving, domeL dome, rows_t rows, rulesL rules,
+                                 realL *sums, double *numbers) {
+  followedL ray = next_chains(waiting);
+  packing_t packing;
+  do {
+    const chainsL before = ray.chains;
+    const exitL exit = follow(&ray.chains, rows, rules.eta, splat(rules.absorption), &sums[ABSORBED]);
+    sums[LOST] += only(before.alive & !ray.chains.alive, before.weight); // rounding put them past an edge
+    const realL cosine = dot3(exit.direction, dome.axis);
+    maskL leaves = exit.leaves;
+    if (rules.kind & CROWN_ALONE) leaves = leaves & (dot3(exit.normal, dome.up) > (real)1e-6);
+    take_from_dome(dome, sums, &ray.own, exit.direction, exit.light, leaves);
+    const realL under = only(leaves & (cosine <= 0), exit.light);
+    sums[LEAK] += under;
+    sums[WINDOW] += only(ray.met == 0, under);
+    wait_to_leave(leaving, numbers, cosine, exit.light, leaves);
+    ray.met += 1;
+    const maskL ends_here = ray.chains.alive & ((ray.chains.weight < rules.cutoff) | (ray.met >= (real)rules.bounces));
+    sums[LOST] += only(ends_here, ray.chains.weight);
+    ray.chains.alive &= !ends_here;
+    const maskL ended = before.alive & !ray.chains.alive;
+    sums[SQUARES] += only(ended, ray.own * ray.own);
+    sums[DARK] += only(ended & (ray.own < DARK_BELOW), splat(1));
+    packing = packing_of(ray.chains.alive);
+  } while (packing.count > 0 && packing.count >= LANES - IDLE_LANES);
+  wait_as_chain(waiting, ray, packing);
+}
+
+// The same of light of two wavelengths, half of each. They part where they meet different facets, or one is totally reflected.
+static inline void follow_pairs(waiting_pairsL *waiting, domeL dome, rows_t rows, rulesL rules, realL *sums) {
+  pairL ray = next_pairs(waiting);
+  packing_t packing;
   realL absorbed = splat(0);
-  for (int bounce = 0; bounce < bounces && any_lane(blue.alive | red.alive); bounce++) {
-    const exitL b = follow(&blue, rows, eta_blue, splat(0), &absorbed);
-    const exitL r = follow(&red, rows, eta_red, splat(0), &absorbed);
+  do {
+    const exitL b = follow(&ray.blue, rows, rules.eta_blue, splat(0), &absorbed);
+    const exitL r = follow(&ray.red, rows, rules.eta_red, splat(0), &absorbed);
     const vec3L between = along(b.normal, splat(-1), r.normal);
-    together &= dot3(between, between) < (real)1e-6;
+    const maskL together = (ray.together > 0) & (dot3(between, between) < (real)1e-6);
     const vec3L apart = along(b.direction, splat(-1), r.direction);
     const realL chord = sqrt(dot3(apart, apart));
     const realL degrees = 2 * TO_DEGREES * asin(fmin((real)0.5 * chord, (realL)1));
@@ -134,20 +290,17 @@ static inline void part_wavelengths(domeL dome, realL *sums, rows_t rows, chains
     const realL of_red = only(r.leaves & (cosine_r > 0) & (cosine_r <= dome.head), (real)0.5 * r.light);
     const maskL both = together & b.leaves & r.leaves;
     sums[RETURNED] += of_blue + of_red;
-    sums[FIRE] += only(!(both & (degrees <= threshold)), of_blue + of_red);
+    sums[FIRE] += only(!(both & (degrees <= rules.threshold)), of_blue + of_red);
     sums[SPREAD] += only(both, degrees * (of_blue + of_red));
     sums[TOGETHER] += only(both, of_blue + of_red);
-    blue.alive &= blue.weight >= cutoff;
-    red.alive &= red.weight >= cutoff;
-  }
-}
-
-// Light that comes in through a facet.
-static inline chainsL refracted(vec3L point, vec3L direction, vec3L normal, realL cos_a, chainL eta, maskL mask) {
-  const realL cos_s = cosine_in_stone(cos_a, eta), ratio = splat(1) / eta;
-  const chainsL chains = {point, normalise(along(scale3(ratio, direction), ratio * cos_a - cos_s, normal)),
-                          1 - fresnel_exact(cos_a, cos_s, eta), mask};
-  return chains;
+    ray.together = only(together, splat(1));
+    ray.met += 1;
+    const maskL goes_on = ray.met < (real)rules.bounces;
+    ray.blue.alive &= goes_on & (ray.blue.weight >= rules.cutoff);
+    ray.red.alive &= goes_on & (ray.red.weight >= rules.cutoff);
+    packing = packing_of(ray.blue.alive | ray.red.alive);
+  } while (packing.count > 0 && packing.count >= LANES - IDLE_LANES);
+  wait_as_pair(waiting, ray, packing);
 }
 
 // A work-item sees to `packets` packets of rays of one view; `shifts` are its sequence's, two of 32 bits. The sums of each
@@ -162,17 +315,33 @@ __kernel void grade(__global const real4 *facets, int count, __global const real
   const rows_t rows = rows_of(row_table, ends);
   const domeL dome = {uniform3(view[3]), uniform3(view[4]), splat(view[4].w)};
   const vec3L direction = scale3(splat(-1), uniform3(toward));
+  const rulesL rules = {(chainL)(eta), (chainL)(eta_blue), (chainL)(eta_red), absorption,
+                        cutoff,        threshold,          bounces,           kind};
   realL sums[ELEVATIONS];
   double numbers[GRADE_NUMBERS]; // all of a plate's light is of one elevation, which single precision could not add up
+  waiting_chainsL chains;
+  waiting_pairsL pairs;
+  leavingL leaving;
+  chains.count = pairs.count = leaving.count = 0;
   EACH (k, ELEVATIONS) sums[k] = splat(0);
   for (int k = 0; k < GRADE_NUMBERS; k++) numbers[k] = 0;
-  for (int packet = 0; packet < packets; packet++) {
+  for (int packet = 0; packet < packets || chains.count > 0 || pairs.count > 0;) {
+    const int least = packet < packets ? LANES : 1; // that are worth to be followed
+    if (chains.count >= least) {
+      follow_chains(&chains, &leaving, dome, rows, rules, sums, numbers);
+      continue;
+    }
+    if (pairs.count >= least) {
+      follow_pairs(&pairs, dome, rows, rules, sums);
+      continue;
+    }
     real across[LANES], high[LANES];
     for (int k = 0; k < LANES; k++) {
       const uint ray = packet * LANES + k;
       across[k] = OF_32_BITS * (real)(shifts[2 * item] + ray * R2_X);
       high[k] = OF_32_BITS * (real)(shifts[2 * item + 1] + ray * R2_Y);
     }
+    packet++;
     const realL x = toward.w + right.w * (2 * load_lanes(across) - 1);
     const realL y = view[3].w + up.w * (2 * load_lanes(high) - 1);
     const vec3L origin = along(along(scale3(splat(2), uniform3(toward)), x, uniform3(right)), y, uniform3(up));
@@ -185,36 +354,24 @@ __kernel void grade(__global const real4 *facets, int count, __global const real
 
     const vec3L point = along(origin, entry.t, direction);
     const realL cos_a = clamp(-dot3(direction, entry.normal), (realL)0, (realL)1);
-    chainsL chains = refracted(point, direction, entry.normal, cos_a, (chainL)(eta), counted);
-    realL own = splat(0);
-    const realL mirrored = 1 - chains.weight;
+    const packing_t packing = packing_of(counted);
+    followedL ray = {refracted(point, direction, entry.normal, cos_a, rules.eta, counted), splat(0), splat(0)};
+    const realL mirrored = 1 - ray.chains.weight;
     sums[MIRRORED] += only(counted, mirrored);
     if (kind & (EVERY_GLARE | CROWN_GLARE))
-      take_from_dome(dome, sums, &own, reflect3(direction, -cos_a, entry.normal), mirrored,
+      take_from_dome(dome, sums, &ray.own, reflect3(direction, -cos_a, entry.normal), mirrored,
                      kind & EVERY_GLARE ? counted : counted & crown);
-    for (int bounce = 0; bounce < bounces && any_lane(chains.alive); bounce++) {
-      const chainsL before = chains;
-      const exitL exit = follow(&chains, rows, (chainL)(eta), splat(absorption), &sums[ABSORBED]);
-      sums[LOST] += only(before.alive & !chains.alive, before.weight); // rounding put them past an edge
-      const realL cosine = dot3(exit.direction, dome.axis);
-      maskL leaves = exit.leaves;
-      if (kind & CROWN_ALONE) leaves = leaves & (dot3(exit.normal, dome.up) > (real)1e-6);
-      take_from_dome(dome, sums, &own, exit.direction, exit.light, leaves);
-      const realL under = only(leaves & (cosine <= 0), exit.light);
-      sums[LEAK] += under;
-      if (bounce == 0) sums[WINDOW] += under;
-      note_elevations(numbers, cosine, exit.light, leaves);
-      const maskL ends_here = chains.alive & (chains.weight < cutoff);
-      sums[LOST] += only(ends_here, chains.weight);
-      chains.alive &= !ends_here;
+    wait_as_chain(&chains, ray, packing);
+    if (kind & WITH_FIRE) {
+      const pairL pair = {refracted(point, direction, entry.normal, cos_a, rules.eta_blue, counted),
+                          refracted(point, direction, entry.normal, cos_a, rules.eta_red, counted), splat(1), splat(0)};
+      wait_as_pair(&pairs, pair, packing);
     }
-    sums[LOST] += only(chains.alive, chains.weight);
-    sums[SQUARES] += only(counted, own * own);
-    sums[DARK] += only(counted & (own < DARK_BELOW), splat(1));
-    if (kind & WITH_FIRE)
-      part_wavelengths(dome, sums, rows, refracted(point, direction, entry.normal, cos_a, (chainL)(eta_blue), counted),
-                       refracted(point, direction, entry.normal, cos_a, (chainL)(eta_red), counted), (chainL)(eta_blue),
-                       (chainL)(eta_red), threshold, cutoff, bounces);
+  }
+  const int left = leaving.count;
+  if (left > 0) {
+    for (int lane = left; lane < LANES; lane++) leaving.cosine[lane] = leaving.cosine[0];
+    note_elevations(numbers, load_lanes(leaving.cosine), leaving.light, left);
   }
   EACH (k, ELEVATIONS) numbers[k] = sum_lanes(sums[k]);
   for (int k = 0; k < GRADE_NUMBERS; k++) result[item * GRADE_NUMBERS + k] = numbers[k];

@@ -14,7 +14,7 @@ from culet.grading.answer import Grades, TiltPoint
 from culet.grading.number import Number, ratio
 from culet.grading.optics import StoneOptics
 from culet.grading.rules import Rules
-from culet.grading.sums import KERNEL, NUMBERS, UP, LightSums, View, seen_area
+from culet.grading.sums import KERNEL, NUMBERS, UP, LightSums, View, seen_areas
 
 BATCHES = 16
 """That are drawn apart, to tell errors by."""
@@ -141,7 +141,7 @@ def weighted_light_return(
         replace(View.tilted(math.degrees(math.acos(c)), a), axis=UP)
         for c, a in zip(cosine.ravel().tolist(), azimuth.ravel().tolist(), strict=True)
     ]
-    area = np.array([seen_area(shape, view) for view in views])
+    area = seen_areas(shape, views)
     weighted = area * cosine.ravel() ** 2
     parts: list[list[float]] = []
     own = len(views) // WLR_BATCHES

@@ -77,7 +77,7 @@ class LightSums:
             raise MeshError(f"{shape.name}: expected a convex stone of at most 1500 facets to grade; got another")
         rows, real = facet_rows(shape), self._variant.real
         facets = np.column_stack([rows.planes[:, :3] @ rows.axes, rows.planes[:, 3]])
-        table = np.concatenate([self._view(shape, view, rules) for view in views])
+        table = _table(shape, views, rules)
         table[:, :3] = table[:, :3] @ rows.axes
         items = len(views) * batches
         packets = math.ceil(rays / self._variant.lanes)
@@ -103,34 +103,37 @@ class LightSums:
         cl.enqueue_copy(queue, result, found)
         return result.reshape(len(views), batches, NUMBERS)
 
-    @staticmethod
-    def _view(shape: Shape, view: View, rules: Rules) -> Array:
-        """The kernel's five rows, in the shape's axes."""
-        right, up, toward = frame_of(view)
-        across, high = shape.vertices @ right, shape.vertices @ up
-        middles = (across.max() + across.min()) / 2, (high.max() + high.min()) / 2
-        axis = toward if view.axis is None else np.array(view.axis)
-        return np.array(
-            [
-                [*right, np.ptp(across) / 2],
-                [*up, np.ptp(high) / 2],
-                [*toward, middles[0]],
-                [*axis, middles[1]],
-                [*UP, math.cos(math.radians(rules.head_degrees)) if rules.head_degrees > 0 else 2.0],
-            ]
-        )
+
+def _table(shape: Shape, views: Sequence[View], rules: Rules) -> Array:
+    """The kernel's five rows of each view, in the shape's axes."""
+    right, up, toward = frames_of(views)
+    axis = np.array([view.toward if view.axis is None else view.axis for view in views])
+    head = math.cos(math.radians(rules.head_degrees)) if rules.head_degrees > 0 else 2.0
+    (across, high), (middle, height) = _spans(shape, right, up)
+    rows = np.stack([right, up, toward, axis, np.broadcast_to(UP, axis.shape)], axis=1)
+    last = np.stack([across / 2, high / 2, middle, height, np.full(len(axis), head)], axis=1)
+    return np.concatenate([rows, last[:, :, None]], axis=2).reshape(-1, 4)
 
 
-def frame_of(view: View) -> tuple[Array, Array, Array]:
-    """Unit vectors to the right, up, and toward the viewer."""
-    toward = np.array(view.toward)
-    other = np.eye(3)[int(abs(toward).argmin())]
+def _spans(shape: Shape, right: Array, up: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Width and height of the shape as so many viewers see it, and where their middles are."""
+    seen = [shape.vertices @ side.T for side in (right, up)]
+    across, high = (np.ptp(places, axis=0) for places in seen)
+    middle, height = ((places.max(axis=0) + places.min(axis=0)) / 2 for places in seen)
+    return (across, high), (middle, height)
+
+
+def frames_of(views: Sequence[View]) -> tuple[Array, Array, Array]:
+    """Of each view unit vectors to the right, up, and toward the viewer: (V, 3)."""
+    toward = np.array([view.toward for view in views])
+    other = np.eye(3)[abs(toward).argmin(axis=1)]
     right = np.cross(other, toward)
-    right /= np.linalg.norm(right)
+    right /= np.linalg.norm(right, axis=1, keepdims=True)
     return right, np.cross(toward, right), toward
 
 
-def seen_area(shape: Shape, view: View) -> float:
-    """R^2, of the rectangle that the rays of a view fill."""
-    right, up, _ = frame_of(view)
-    return float(np.ptp(shape.vertices @ right) * np.ptp(shape.vertices @ up))
+def seen_areas(shape: Shape, views: Sequence[View]) -> Array:
+    """(V,) R^2, of the rectangles that the rays of views fill."""
+    right, up, _ = frames_of(views)
+    (across, high), _ = _spans(shape, right, up)
+    return across * high
