@@ -9,6 +9,7 @@ import trimesh
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene.camera import Camera
+from culet.scene.cuts import PortugueseCut
 from culet.scene.emitters import Sun
 from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, LEGACY_POINTS
 from culet.scene.model import Scene
@@ -61,6 +62,13 @@ TWELVE = Scene().model_copy(
 )
 """Twelve brilliants that stand side by side on the floor, and together cover what the default one covers."""
 
+
+def _portuguese(sides: int, scale: float) -> Scene:
+    """The default scene with another cut, of 12 facets a side and the table, which covers what its own stone covers."""
+    cut = PortugueseCut(sides=sides, crown_rows=5, pavilion_rows=6)
+    return Scene().model_copy(update={"stones": (_DEFAULT.model_copy(update={"cut": cut, "scale": scale}),)})
+
+
 OUT_OF_VIEW = Scene().model_copy(
     update={
         "stones": tuple(
@@ -82,6 +90,8 @@ CASES: dict[str, Scene] = {
     "checker, both lights": CHECKER.model_copy(update={"emitters": LEGACY_POINTS}),
     "mirror, both lights": CHECKER.model_copy(update={"emitters": LEGACY_POINTS, "floor": Plane(kind="mirror")}),
     "default": Scene(),
+    "default, 193 facets": _portuguese(16, 1.02963),
+    "default, 181 facets in pairs": _portuguese(15, 1.06282),
     "legacy default": LEGACY_DEFAULT,
     "legacy default, 8 bands": LEGACY_DEFAULT.model_copy(update={"optics": Optics(bands=8)}),
     "legacy default, polarised": LEGACY_DEFAULT.model_copy(update={"optics": Optics(polarised=True)}),
