@@ -2,6 +2,8 @@ import io
 import math
 
 import numpy as np
+import pytest
+from numpy.typing import NDArray
 from PIL import Image
 
 from culet.engine.painting import jpeg
@@ -51,6 +53,33 @@ def test_a_picture_is_encoded_in_the_bytes_that_it_may_have() -> None:
     assert (halved.width, halved.height) == (320, 180)
     assert len(halved.data) <= len(whole.data) / 12
     assert decoded(halved.data).shape == (180, 320, 3)
+
+
+def test_qualities_that_cannot_do_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As by one after the other. The last picture, halved twice, was 13 encodings and more."""
+    picture = np.random.default_rng(1).integers(0, 256, (400, 800, 3), dtype=np.uint8)
+    encode, tried = jpeg.encode, list[int]()
+
+    def counted(rgb: NDArray[np.uint8], quality: int) -> bytes:
+        tried.append(quality)
+        return encode(rgb, quality)
+
+    monkeypatch.setattr(jpeg, "encode", counted)
+    whole = len(encode(picture, 92))
+    for part in (1, 1.9, 2.1, 4, 40):
+        tried.clear()
+        found = jpeg.encode_within(picture, 92, whole / part)
+        first, rgb = 92, picture
+        while not (
+            fitting := [q for q in (first, *jpeg.LOWER_QUALITIES) if q <= first and len(encode(rgb, q)) <= whole / part]
+        ):
+            if min(rgb.shape[:2]) < 2 * jpeg.SMALLEST:
+                fitting = [jpeg.LEAST_QUALITY]
+                break
+            first, rgb = jpeg.MOVING_QUALITY, np.asarray(Image.fromarray(rgb).reduce(2))
+        assert (found.quality, found.width) == (fitting[0], rgb.shape[1])
+        assert found.data == encode(rgb, fitting[0])
+    assert len(tried) <= 7
 
 
 def test_a_picture_that_cannot_have_so_few_bytes_is_encoded_all_the_same() -> None:
