@@ -171,6 +171,8 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
   const int same = has_map ? 0 : endless;
   const int plain = viewer == BY_STONE ? same : 0; // a floor that is the same wherever it is met
   const int first = floor_kind == NONE ? 1 : plain, last = walls_kind == NONE ? 1 : MAX_SURFACES;
+  // What is met is the floor then, and nothing has to be chosen by lane. What is recorded tells of the sky, too.
+  const int floor_alone = RECORDED ? 0 : walls_kind == NONE;
 
   realL nearest = splat(1e30f), centre_along = splat(0), centre_across = splat(0);
   maskL met = plain ? ray.direction.y < -HORIZON : none, mirror = none, studio = none;
@@ -184,13 +186,14 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
     const realL t = fmax(gap / fmax(-speed, splat(HORIZON)), ray.start);
     const maskL nearer = (speed < -HORIZON) & (gap + ray.start * speed > -SLOP) & (t < nearest);
     nearest = blend(nearer, t, nearest);
-    view.normal = blend3(nearer, vec3(splat(nx), splat(ny), splat(nz)), view.normal);
+    const maskL taken = floor_alone ? !none : nearer;
+    view.normal = blend3(taken, vec3(splat(nx), splat(ny), splat(nz)), view.normal);
     EACH_CHANNEL (k, channels)
-      from_sky.channel[k] = blend(nearer, splat(scene->sky_light[i][channels.first + k]), from_sky.channel[k]);
+      from_sky.channel[k] = blend(taken, splat(scene->sky_light[i][channels.first + k]), from_sky.channel[k]);
     if (has_map) {
-      place.surface = blend_ints_by(nearer, (intL)(i), place.surface);
-      centre_along = blend(nearer, splat(scene->map_centre[i][0]), centre_along);
-      centre_across = blend(nearer, splat(scene->map_centre[i][1]), centre_across);
+      place.surface = blend_ints_by(taken, (intL)(i), place.surface);
+      centre_along = blend(taken, splat(scene->map_centre[i][0]), centre_along);
+      centre_across = blend(taken, splat(scene->map_centre[i][1]), centre_across);
     }
     met |= nearer;
 #if RECORDED
@@ -217,7 +220,7 @@ static inline viewL look(world_t world, rayL ray, maskL wanted, int viewer, cons
   nearest = blend(met, nearest, splat(0));
   view.point = along(ray.origin, nearest, ray.direction);
   view.meets = met;
-  const maskL is_floor = view.normal.y > (real)0.5;
+  const maskL is_floor = floor_alone ? !none : view.normal.y > (real)0.5;
   if (has_map) {
     place.along =
         blend(is_floor, view.point.x, view.normal.z * view.point.x - view.normal.x * view.point.z) - centre_along;

@@ -81,21 +81,37 @@ static inline int deal(volatile __global uint *progress, int count) {
   return min(atomic_inc(progress + TILES_DEALT), (uint)count);
 }
 
+// Rows of a tile of the picture's sums that are on their way to the cache while one is added to: each is a page of its own,
+// and the processor foresees none of them.
+#define ROWS_AHEAD 3
+#define LINE_BYTES 64 // of a cache
+
+static inline void expect_row(__global const real4 *sums, int pixels) {
+#if __has_builtin(__builtin_prefetch)
+  for (size_t at = (size_t)sums, end = at + pixels * sizeof(real4); at < end; at += LINE_BYTES)
+    __builtin_prefetch((const void *)at, 1);
+#endif
+}
+
 // Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.
 static inline void write_tile(const tile_t *tile, __global real4 *image, __global float *tallies,
                               __constant const parameters_t *scene, int tile_column, int tile_row, int accumulate) {
   const int column = tile_column * TILE, row = tile_row * TILE;
   real dropped = 0;
   const int columns = shown(column, scene->width), rows = shown(row, scene->height);
-  for (int y = 0; y < rows; y++)
+  __global real4 *sums = image + (size_t)row * scene->width + column;
+  for (int y = 0; y < min(rows, ROWS_AHEAD); y++) expect_row(sums + (size_t)y * scene->width, columns);
+  for (int y = 0; y < rows; y++) {
+    if (y + ROWS_AHEAD < rows) expect_row(sums + (size_t)(y + ROWS_AHEAD) * scene->width, columns);
     for (int x = 0; x < columns; x++) {
       const int pixel = pixel_at(x, y);
       const real4 sample = (real4)((real)tile->radiance[0][pixel], (real)tile->radiance[1][pixel],
                                    (real)tile->radiance[2][pixel], tile->cut[pixel] / 3);
-      __global real4 *sum = image + (size_t)(row + y) * scene->width + (column + x);
+      __global real4 *sum = sums + (size_t)y * scene->width + x;
       *sum = accumulate ? *sum + sample : sample;
       dropped += sample.w;
     }
+  }
   int counts[LANES];
   store_ints(tile->segments, counts);
   float total = 0;

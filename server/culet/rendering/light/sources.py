@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import assert_never
-from weakref import ReferenceType, ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from culet.rendering.light.lamp_field import Lamp, lamp_field, normals
+from culet.rendering.light.of_room import of_room
 from culet.rendering.light.panorama_light import panorama_light, turned
 from culet.rendering.light.ray import Ray
 from culet.rendering.light.unshaded import lamp_light, lamps_of, sky_light
@@ -105,23 +105,15 @@ def _towards(lamp: Lamp, surfaces: tuple[int, ...], number: int) -> Triple:
     return float(x), float(y), float(z)
 
 
-_latest: list[tuple[ReferenceType[Stage], tuple[Source, ...]]] = []
-"""Of the stage that was asked for last: what makes ready, a picture and its map ask for the same, several times."""
-
-
 def sources_of(stage: Stage) -> tuple[Source, ...]:
     """All that send light to a surface that can have a map; on a studio floor only compact ones are shown."""
-    for known, sources in _latest:
-        if known() is stage:
-            return sources
-    found = _sources_of(stage)
-    _latest[:] = [(ref(stage), found)]
-    return found
+    return _sources_of(stage) if stage.shapes and stage.scene.optics.estimator != "classic" else ()
 
 
+@of_room
 def _sources_of(stage: Stage) -> tuple[Source, ...]:
     scene, surfaces = stage.scene, shown(stage.scene)
-    if not surfaces or not stage.shapes or scene.optics.estimator == "classic":
+    if not surfaces:
         return ()
     matte = scene.floor.kind == "matte" or scene.walls.kind == "matte"
     if not matte and not isinstance(scene.floor, StudioFloor):

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.rendering.light.lamp_field import Lamp, lamp_field
+from culet.rendering.light.of_room import of_room
 from culet.rendering.light.open_sky import OpenSky, ground_light, open_sky
 from culet.rendering.light.panorama_light import panorama_on_surfaces
 from culet.rendering.surfaces import shown
@@ -43,6 +44,7 @@ def lamp_light(lamp: Lamp, surfaces: tuple[int, ...]) -> Array:
     return found
 
 
+@of_room
 def sky_light(stage: Stage) -> Array:
     """(4, 3) all the sky's light on floor and walls, and what the room hands on; 0 on surfaces that are not there."""
     scene, surfaces = stage.scene, shown(stage.scene)
@@ -55,7 +57,9 @@ def sky_light(stage: Stage) -> Array:
         light = ground_light(environment, sky)
     light = light + np.sum([lamp_light(lamp, surfaces) for _, lamp in lamps_of(scene)], axis=0, initial=0)
     light[[number for number in range(4) if number not in surfaces]] = 0
-    return handed_on(scene, light, sky)
+    found = handed_on(scene, light, sky)
+    found.flags.writeable = False
+    return found
 
 
 def handed_on(scene: Scene, light: Array, sky: OpenSky) -> Array:
