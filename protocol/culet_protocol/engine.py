@@ -20,6 +20,8 @@ Format = Literal["tga", "png", "jpeg", "webp", "exr"]
 MeshType = Literal["obj", "off", "stl", "ply", "glb", "asc", "gem", "gcs"]
 """Meshes, and the designs of GemCad and Gem Cut Studio."""
 SkyType = Literal["exr", "hdr", "png"]
+Client = Annotated[str, Field(max_length=200)]
+"""On whose behalf, in whatever words the gateway tells clients apart: clients take turns."""
 SessionId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 
 
@@ -31,7 +33,7 @@ class OpenSession(Message):
     scene: dict[str, Any]
     snapshot: dict[str, Any] | None = None
     client: str | None = None
-    """Who opened it, as the gateway calls it; only told to the next gateway."""
+    """Who opened it, as the gateway calls it: what changes it takes turns with what else is done for that client."""
 
 
 class CloseSession(Message):
@@ -149,7 +151,7 @@ class Render(Message):
     """In a corner what an instrument's colours mean, and the tilt; not of radiance (exr)."""
     part: Annotated[float, Field(gt=0, le=1)] = 1
     """Of the work and the time that one still may take: so many of these together take no more."""
-    client: Annotated[str, Field(max_length=200)] = ""
+    client: Client = ""
 
 
 class Grade(Message):
@@ -165,6 +167,7 @@ class Grade(Message):
     coloured: bool = False
     tilt: bool = False
     error: Annotated[float, Field(ge=0.03, le=10)] = 0.1
+    client: Client = ""
 
 
 class DrawDiagram(Message):
@@ -174,6 +177,7 @@ class DrawDiagram(Message):
     scene: dict[str, Any] | None = None
     session: SessionId | None = None
     stone: str | None = None
+    client: Client = ""
 
 
 class Measure(Message):
@@ -184,6 +188,7 @@ class Measure(Message):
     scene: dict[str, Any] | None = None
     session: SessionId | None = None
     stone: str | None = None
+    client: Client = ""
 
 
 class ListTiers(Message):
@@ -196,6 +201,7 @@ class ListTiers(Message):
     session: SessionId | None = None
     stone: str | None = None
     reach: int | None = None
+    client: Client = ""
 
 
 class TracePath(Message):
@@ -209,6 +215,7 @@ class TracePath(Message):
     pixel: tuple[int, int, int, int] | None = None
     ray: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
     wavelengths: Annotated[tuple[Annotated[float, Field(ge=380, le=780)], ...], Field(max_length=16)] = ()
+    client: Client = ""
 
 
 class PutMesh(Message):

@@ -3,7 +3,7 @@ the simulation depends on."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Self
 
@@ -35,6 +35,13 @@ class Library:
 
     meshes: Mapping[str, Shape] = field(default_factory=dict)
     skies: Mapping[str, SkyPicture] = field(default_factory=dict)
+    before_shape: Callable[[], object] = lambda: None
+    """Called before each shape that is made; it may raise, where that is not wanted any more."""
+
+    def shape(self, stone: StoneSettings, field: str) -> Shape:
+        """The shape of a stone, which is that field of its scene. It may take seconds; raises as `shape_of` does."""
+        self.before_shape()
+        return shape_of(stone, self.meshes, field)
 
     def sky(self, environment: Environment) -> Sky:
         """The environment with its picture; SceneError for an unknown id."""
@@ -72,7 +79,7 @@ class Stage:
             known = dict(zip(map(_form, before.scene.stones), before.shapes, strict=True))
             panorama = before.panorama if _image(scene) == _image(before.scene) else None
         shapes = tuple(
-            known.get(_form(stone)) or shape_of(stone, library.meshes, f"stones.{number}")
+            known.get(_form(stone)) or library.shape(stone, f"stones.{number}")
             for number, stone in enumerate(scene.stones)
         )
         return cls(scene, shapes, library.sky(scene.environment).panorama if panorama is None else panorama)

@@ -26,6 +26,7 @@ from culet.gateway.settings import GatewaySettings
 from culet_protocol.engine import (
     REQUEST_NUMBER,
     Cancel,
+    Control,
     Heartbeat,
     Reply,
     SessionChange,
@@ -214,6 +215,8 @@ class EngineLink:
         except zmq.Again:
             raise EngineUnavailableError("the render process does not take requests at the moment") from None
         except TimeoutError:
+            if isinstance(message, Control):  # who asked is told that it was not done
+                await self._cancel(number)
             raise EngineUnavailableError(
                 f"the render process did not answer within {self._settings.request_seconds:g} s"
             ) from None

@@ -35,7 +35,8 @@ class Gateway:
     grades: ClientTurns = field(default_factory=ClientTurns)
     """The engine takes turns between the grades that are asked for at once; each client has one among them."""
     designs: ClientTurns = field(default_factory=ClientTurns)
-    """The engine cuts stones that may take seconds one at a time; each client has one among those that wait."""
+    """Stones that are cut for others to be compared with, and reaches of tiers, which may take seconds: of each client
+    the engine is asked for one at a time."""
     turntables: StillPlaces = field(
         default_factory=lambda: StillPlaces(CLIENT_TURNTABLES, "turntables", MOST_TURNTABLES)
     )

@@ -184,6 +184,7 @@ async def answered(
     """The engine's answer, about the session if there is one, in a place of the client; grades, rays and reaches of
     tiers in the client's turns."""
     client = client_of(http.scope)
+    message = message.model_copy(update={"client": client})
     if isinstance(message, Grade | TracePath):
         turn: AbstractAsyncContextManager[None] = gateway.grades.turn(client)
     elif isinstance(message, ListTiers) and message.reach is not None:

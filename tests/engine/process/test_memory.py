@@ -15,6 +15,7 @@ from culet.engine.painting.video_track import VideoTrack
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
+from culet.engine.process.staging import Staging
 from culet.errors import BusyError
 from culet.stage import Library
 from culet_protocol.frame import Codec
@@ -80,7 +81,7 @@ def test_encoders_of_sessions_at_rest_are_given_back_and_those_of_moving_ones_ar
         SimpleNamespace(outgoing=each, session=SimpleNamespace(history=(), edits=edits)) for each in (moving, resting)
     ]
     painter = cast(Painter, SimpleNamespace(pictures=dict(enumerate(lives))))
-    OpenSessions(painter, Limits(), memory, Library())
+    OpenSessions(painter, Limits(), memory, Staging(Library()))
     for each in (resting, moving):
         each.watch(Codec.H264, subscribed=True)
         each.tracks[Codec.H264] = VideoTrack(Codec.H264, Telling)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, cast
 
 import pytest
 
 from culet.engine.process.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
+from culet.engine.process.staging import Staging
 from culet.engine.process.stone_requests import StoneRequests
 from culet.errors import MeshError
 from culet.paths.recorder import GivenUpError
@@ -27,7 +27,8 @@ SMALL = Grade(scene=DEFAULT, error=10)
 
 def requests(library: Library = NOTHING, grade_seconds: float = 60) -> StoneRequests:
     """Of scenes; there are no sessions."""
-    return StoneRequests(cast(OpenSessions, {}), library, Limits(grade_seconds=grade_seconds), ThreadPoolExecutor(1))
+    limits = Limits(grade_seconds=grade_seconds)
+    return StoneRequests(cast(OpenSessions, {}), library, Staging(library), limits)
 
 
 async def test_grades_end_in_their_time_and_tell_what_is_known_by_then() -> None:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
+from culet.engine.process.staging import CHANGE_SECONDS, Staging
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import Snapshot
@@ -36,14 +39,14 @@ HISTORY_SHARE = 1 / 8
 class OpenSessions:
     """Mutable. A session is told apart by its name."""
 
-    def __init__(self, painter: Painter, limits: Limits, memory: Memory, library: Library) -> None:
+    def __init__(self, painter: Painter, limits: Limits, memory: Memory, staging: Staging) -> None:
         """Their pictures are the painter's."""
         self.simulated_seconds = self.dropped_seconds = 0.0
         """Of sessions that are closed: seconds that were to be simulated, and of these those that were dropped."""
         self._painter = painter
         self._limits = limits
         self._memory = memory
-        self._library = library
+        self._staging = staging
         self._history = history_length(limits, memory.budget)
         self._touched: dict[str, float] = {}
         """s, steady clock: when somebody last asked for each."""
@@ -93,7 +96,9 @@ class OpenSessions:
         snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
         self._make_room()
         own = scene.environment if snapshot is None else snapshot.environment or scene.environment
-        session = await asyncio.to_thread(self._made, request.session, scene, own, snapshot)
+        most = CHANGE_SECONDS if snapshot is None else math.inf  # what was there before comes again, whatever it takes
+        async with self._staging.turn(request.client) as turn:
+            session = await turn.make(partial(self._made, request.session, scene, own, snapshot), most_seconds=most)
         if request.session in self:  # opened twice at once
             return self.get(request.session)
         self._make_room()
@@ -164,9 +169,9 @@ class OpenSessions:
             raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
         self.close(oldest)
 
-    def _made(self, name: str, scene: Scene, own: Environment, snapshot: Snapshot | None) -> Session:
+    def _made(self, name: str, scene: Scene, own: Environment, snapshot: Snapshot | None, library: Library) -> Session:
         """A session whose own sky is of that environment. Takes a while, as shapes and their hulls are made."""
-        stage, sky = Stage.of(scene, self._library), events.own_sky(self._library.sky(own))
+        stage, sky = Stage.of(scene, library), events.own_sky(library.sky(own))
         if snapshot is None:
             return Session(name, stage, sky=sky, history=self._history)
         return Session.restored(name, stage, snapshot, sky=sky, history=self._history)

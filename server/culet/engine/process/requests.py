@@ -5,14 +5,16 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from typing import Any, assert_never
 
 from culet.engine.governing.thrift import Allowance
 from culet.engine.library.upload_process import Buffer
 from culet.engine.library.upload_store import MESH, SKY, UploadStore
+from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.process.in_use import sky_bytes, uploads_in_use
@@ -20,19 +22,22 @@ from culet.engine.process.limits import Limits, live_size
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
+from culet.engine.process.staging import CHANGE_SECONDS, Staging, to_its_end
 from culet.engine.process.still_requests import StillRequests
 from culet.engine.process.stone_requests import StoneRequests
 from culet.engine.session import events, questions
+from culet.engine.session.session import Session
 from culet.errors import InputError
 from culet.optics.sky_files.picture import SkyPicture
 from culet.stage import Library
 from culet_protocol import engine as protocol
+from culet_protocol.messages import SessionEvent
 from culet_protocol.watch import VIDEO_OF_NAME
 
+SHAPING_EVENTS = frozenset({"patch_scene", "set_scene", "undo", "redo"})
+"""They may make shapes, which takes their client's turn."""
 LONG_EVENTS = frozenset(
     {
-        "patch_scene",
-        "set_scene",
         "toggle_fall",
         "reset_stone",
         "toggle_walls",
@@ -44,11 +49,9 @@ LONG_EVENTS = frozenset(
         "move_stone",
         "drag_stone",
         "turn_stone",
-        "undo",
-        "redo",
     }
 )
-"""They may make a stone or its hull, try whether a stone that sleeps would move, or look for a way among all triangles
+"""They may make a stone's hull, try whether a stone that sleeps would move, or look for a way among all triangles
 of a mesh that the camera is near: other sessions go on meanwhile."""
 
 Answer = tuple[dict[str, Any], bytes | None]
@@ -80,10 +83,10 @@ class Requests:
         self._meshes = UploadStore(MESH, limits, memory, in_use=self._uploads_in_use)
         self._skies = UploadStore(SKY, limits, memory, in_use=self._uploads_in_use, forgotten=forget_sky)
         self._library = Library(self._meshes, self._skies)
-        self.sessions = OpenSessions(painter, limits, memory, self._library)
-        cutting = ThreadPoolExecutor(1, "cutting")
-        self._stills = StillRequests(painter, stills, self.sessions, self._library, limits, memory, cutting)
-        self._stones = StoneRequests(self.sessions, self._library, limits, cutting)
+        self._staging = Staging(self._library)
+        self.sessions = OpenSessions(painter, limits, memory, self._staging)
+        self._stills = StillRequests(painter, stills, self.sessions, self._staging, limits, memory)
+        self._stones = StoneRequests(self.sessions, self._library, self._staging, limits)
         self._question_thread = ThreadPoolExecutor(1, "questions")
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)
@@ -159,18 +162,43 @@ class Requests:
         }
 
     async def _control(self, request: protocol.Control) -> dict[str, Any]:
-        session = self.sessions.get(request.session).session
-        apply = partial(events.apply, session, request.event, self._library)
+        live = self.sessions.get(request.session)
+        session = live.session
         try:
-            async with session.lock, session.motion.still():
-                if request.event.type in LONG_EVENTS:
-                    await asyncio.to_thread(apply)
+            async with session.lock:
+                if request.event.type in SHAPING_EVENTS:
+                    await self._reshape(live, request.event)
                 else:
-                    apply()
-                self._tell(session.change_told(edited=True))
+                    await self._change(session, request.event)
         finally:
             self._painter.wake()
         return {"step": session.shown.step, "falling": session.motion.falling}
+
+    async def _reshape(self, live: LivePicture, event: SessionEvent) -> None:
+        session = live.session
+        there = partial(self.sessions.get, session.name)  # for who waits for one that is closed, nothing is made
+        async with self._staging.turn(self.sessions.client(live)) as turn, session.motion.still():
+            with self._told(session):
+                await turn.make(partial(events.apply, session, event), most_seconds=CHANGE_SECONDS, check=there)
+
+    async def _change(self, session: Session, event: SessionEvent) -> None:
+        apply = partial(events.apply, session, event, self._library)
+        async with session.motion.still():
+            with self._told(session):
+                if event.type in LONG_EVENTS:
+                    await to_its_end(asyncio.ensure_future(asyncio.to_thread(apply)))
+                else:
+                    apply()
+
+    @contextmanager
+    def _told(self, session: Session) -> Iterator[None]:
+        """Tell the gateways what an event has changed; an event that raises an error has changed nothing."""
+        try:
+            yield
+        except asyncio.CancelledError:  # it may have been done by then
+            self._tell(session.change_told(edited=True))
+            raise
+        self._tell(session.change_told(edited=True))
 
     async def _ask(self, request: protocol.Ask) -> dict[str, Any]:
         session = self.sessions.get(request.session).session

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -17,13 +15,14 @@ from culet.engine.process.limits import Limits, check_still_size, check_still_wo
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.picture_memory import picture_bytes
+from culet.engine.process.staging import Staging, Work
 from culet.engine.session import events
 from culet.errors import InputError, SceneError
 from culet.rendering.chains import band_count
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.scene.patch import read_patched
-from culet.stage import Library, Stage
+from culet.stage import Stage
 from culet_protocol.engine import Render
 from culet_protocol.sizes import STILL_SIZE
 
@@ -48,20 +47,17 @@ class StillRequests:
         painter: Painter,
         queue: StillQueue,
         sessions: OpenSessions,
-        library: Library,
+        staging: Staging,
         limits: Limits,
         memory: Memory,
-        cutting: Executor,
     ) -> None:
-        """The painter renders what the queue holds; `cutting` makes other designs of sessions' stones, one at a
-        time."""
+        """The painter renders what the queue holds."""
         self._painter = painter
         self._queue = queue
         self._sessions = sessions
-        self._library = library
+        self._staging = staging
         self._limits = limits
         self._memory = memory
-        self._cutting = cutting
         self._awaited: set[Still] = set()
 
     def __iter__(self) -> Iterator[Still]:
@@ -129,17 +125,16 @@ class StillRequests:
     async def _staged(self, request: Render) -> tuple[Stage, tuple[int, int], int | None]:
         """What is to be rendered, the usual size of its picture, and the session's step that it is of."""
         if request.session is None:
-            return await asyncio.to_thread(Stage.of, Scene.read(request.scene), self._library), STILL_SIZE, None
+            scene = Scene.read(request.scene)
+            return await self._staging.make(request.client, partial(Stage.of, scene)), STILL_SIZE, None
         live = self._sessions.get(request.session)
         async with live.session.lock:
             past, before = live.session.recall(request.step), events.known_to(live.session)
         if request.design is None:
-            stage = await asyncio.to_thread(events.past_stage, past, before, self._library)
+            work: Work[Stage] = partial(events.past_stage, past, before)
         else:
-            scene = _otherwise(past.scene, request.stone, request.design)
-            stage = await asyncio.get_running_loop().run_in_executor(
-                self._cutting, partial(Stage.of, scene, self._library, before=before)
-            )
+            work = partial(Stage.of, _otherwise(past.scene, request.stone, request.design), before=before)
+        stage = await self._staging.make(request.client, work)
         return stage, live.size, past.step
 
     def _make_room_for(self, still: Still) -> None:

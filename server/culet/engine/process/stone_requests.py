@@ -8,12 +8,14 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import asdict
+from functools import partial
 from typing import Any, TypeVar
 
 from pydantic import TypeAdapter
 
 from culet.engine.process.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
+from culet.engine.process.staging import Staging
 from culet.engine.session import events
 from culet.errors import InputError, MeshError
 from culet.geometry.cuts.wording import headings_of
@@ -47,16 +49,16 @@ LIGHT_SECONDS = 20.0
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
-    ends with its piece, and so does a ray's. Diagrams and tiers one at a time in another, which
-    also cuts designs for stills, rays in a third."""
+    ends with its piece, and so does a ray's. Diagrams one at a time in another, rays in a third."""
 
-    def __init__(self, sessions: OpenSessions, library: Library, limits: Limits, cutting: Executor) -> None:
-        """Sessions and uploads that requests name; `cutting` does one thing at a time."""
+    def __init__(self, sessions: OpenSessions, library: Library, staging: Staging, limits: Limits) -> None:
+        """Sessions and uploads that requests name."""
         self._sessions = sessions
         self._library = library
+        self._staging = staging
         self._seconds = limits.grade_seconds
         self._grading = ThreadPoolExecutor(1, "grades")
-        self._cutting = cutting
+        self._cutting = ThreadPoolExecutor(1, "cutting")
         self._tracing = ThreadPoolExecutor(1, "paths")
         self._sums: LightSums | None = None
         self._recorder: PathRecorder | None = None
@@ -125,11 +127,11 @@ class StoneRequests:
         if (request.scene is None) == (request.session is None):
             raise InputError("expected either a scene or a session, got both or neither", "scene")
         if request.session is None:
-            return await asyncio.to_thread(Stage.of, Scene.read(request.scene), self._library)
+            return await self._staging.make(request.client, partial(Stage.of, Scene.read(request.scene)))
         live = self._sessions.get(request.session)
         async with live.session.lock:
             past, before = live.session.recall(None), events.known_to(live.session)
-        return await asyncio.to_thread(events.past_stage, past, before, self._library)
+        return await self._staging.make(request.client, partial(events.past_stage, past, before))
 
 
 async def _in(thread: Executor, work: Callable[..., T], *given: Any) -> T:  # noqa: ANN401 - of any work

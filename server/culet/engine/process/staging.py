@@ -1,0 +1,129 @@
+"""Threads in which shapes are made, of each client in one at a time.
+
+A shape may take seconds, as of a stone whose angles are changed with its meets kept, and a scene has up to 64 of them.
+In the loop's own threads, in which motions wait for their steps too, a few such scenes would hold up every session.
+Between two shapes what nobody waits for any more is given up.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import math
+import threading
+from collections import Counter
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from time import thread_time
+from typing import TypeVar
+from weakref import WeakValueDictionary
+
+from culet.errors import BusyError, InputError
+from culet.stage import Library
+
+T = TypeVar("T")
+Work = Callable[[Library], T]
+"""Makes shapes by what scenes name, and what they are made for."""
+
+THREADS = 8
+"""As many clients at once as may keep each other from nothing but the processor."""
+MOST_WAITING = 320
+"""Pieces of work of one client: a gateway lets 8 events of each of its 32 sessions be under way, and some stills."""
+CHANGE_SECONDS = 8.0
+"""Of a processor, for the shapes of a session's scene. A gateway waits 10 s for a change."""
+
+
+class _GivenUp(Exception):  # noqa: N818 - nothing went wrong
+    """Nobody waits for it any more."""
+
+
+class Turn:
+    """One of a client's, in which shapes may be made."""
+
+    def __init__(self, threads: ThreadPoolExecutor, library: Library, timer: Callable[[], float]) -> None:
+        self._threads = threads
+        self._library = library
+        self._timer = timer
+
+    async def make(
+        self, work: Work[T], *, most_seconds: float = math.inf, check: Callable[[], object] = lambda: None
+    ) -> T:
+        """What the work gives. Before each shape it is checked, which may raise; InputError, if the shapes before it
+        took so many seconds of a processor. Cancelled, it ends before its next shape, and is waited for until then:
+        nothing is changed by it after whoever holds a lock for it has let that go."""
+        given_up = threading.Event()
+        begun, made = 0.0, -1
+
+        def before_shape() -> None:
+            nonlocal made
+            made += 1
+            if given_up.is_set():
+                raise _GivenUp
+            check()
+            if (spent := self._timer() - begun) > most_seconds:
+                raise InputError(
+                    f"stones: expected shapes that take {most_seconds:g} s of a processor at most; those of the first "
+                    f"{made} took {spent:.1f} s: change fewer stones at a time", "stones",
+                )  # fmt: skip
+
+        def run() -> T:
+            nonlocal begun
+            begun = self._timer()
+            return work(replace(self._library, before_shape=before_shape))
+
+        making = self._threads.submit(run)
+
+        def give_up() -> None:
+            given_up.set()
+            making.cancel()
+
+        return await to_its_end(asyncio.wrap_future(making), give_up)
+
+
+class Staging:
+    """The turns of each client, in the order that they were asked for."""
+
+    def __init__(self, library: Library, *, timer: Callable[[], float] = thread_time) -> None:
+        """`timer` says how many seconds of a processor the thread that asks has taken."""
+        self._library = library
+        self._timer = timer
+        self._threads = ThreadPoolExecutor(THREADS, "staging")
+        self._locks: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+        """Of clients that have a turn or wait for one."""
+        self._waiting: Counter[str] = Counter()
+
+    @contextlib.asynccontextmanager
+    async def turn(self, client: str | None) -> AsyncIterator[Turn]:
+        """Wait for the client's turn, and hold it; BusyError if too much waits for that."""
+        name = client or ""
+        if self._waiting[name] >= MOST_WAITING:
+            raise BusyError(f"{self._waiting[name]} changes and pictures of yours wait already; try again later")
+        lock = self._locks.setdefault(name, asyncio.Lock())
+        self._waiting[name] += 1
+        try:
+            async with lock:
+                yield Turn(self._threads, self._library, self._timer)
+        finally:
+            self._waiting[name] -= 1
+            if not self._waiting[name]:
+                del self._waiting[name]
+
+    async def make(self, client: str | None, work: Work[T]) -> T:
+        """What the work gives, in the client's turn, however long it takes."""
+        async with self.turn(client) as turn:
+            return await turn.make(work)
+
+
+async def to_its_end(working: asyncio.Future[T], give_up: Callable[[], object] = lambda: None) -> T:
+    """The result of work in another thread, which is waited for even where nobody waits for this any more."""
+    try:
+        return await asyncio.shield(working)
+    except asyncio.CancelledError:
+        give_up()
+        while not working.done():
+            with contextlib.suppress(asyncio.CancelledError):
+                await asyncio.wait([working])
+        if not working.cancelled():
+            working.exception()  # which is nobody's any more
+        raise
