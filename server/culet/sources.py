@@ -99,8 +99,9 @@ def with_cut(scene: Scene, cut: AnyCut) -> Scene:
 
     placed = scene.only_stone() or Scene().stones[0]
     shape = shape_of_cut(cut)
-    named = scene.model_copy(update={"stones": (placed.model_copy(update={"cut": cut, "mesh": None, "recut": None}),)})
-    return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, placed, shape_of(placed, {})))
+    stone = placed.model_copy(update={"cut": cut, "mesh": None, "recut": None})
+    named = scene.model_copy(update={"stones": (stone,)})
+    return named if placed.mesh is not None else named.moved(on_the_floor(stone, shape, placed, shape_of(placed, {})))
 
 
 def _with_mesh(scene: Scene, shape: Shape) -> Scene:
@@ -110,8 +111,9 @@ def _with_mesh(scene: Scene, shape: Shape) -> Scene:
     from culet.simulation.lying import on_the_floor
 
     placed = scene.only_stone() or Scene().stones[0]
-    named = scene.model_copy(update={"stones": (placed.model_copy(update={"mesh": FILE, "recut": None}),)})
-    return named if placed.mesh is not None else named.moved(on_the_floor(placed, shape, placed, shape_of(placed, {})))
+    stone = placed.model_copy(update={"mesh": FILE, "recut": None})
+    named = scene.model_copy(update={"stones": (stone,)})
+    return named if placed.mesh is not None else named.moved(on_the_floor(stone, shape, placed, shape_of(placed, {})))
 
 
 def _mesh(file: Path, tell: Tell) -> Shape:

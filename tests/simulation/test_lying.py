@@ -15,6 +15,7 @@ from culet.scene.fields import Pose
 from culet.scene.room import FLOOR_Y
 from culet.simulation import Simulation
 from culet.simulation.lying import (
+    LEVEL_DEGREES,
     LYING_DEGREES,
     laid,
     lowest_facet,
@@ -54,13 +55,32 @@ def lowest(pose: Pose, shape: Shape) -> float:
     return min(rotate(orientation, (a, b, c))[1] for a, b, c in shape.vertices.tolist()) + y
 
 
-@pytest.mark.parametrize("name", [*CUTS, *OTHERS])
-def test_another_shape_touches_the_floor_and_looks_as_if_it_lay_there(name: str, brilliant: Shape) -> None:
-    shape = (CUTS | OTHERS)[name]()
+@pytest.mark.parametrize("name", CUTS)
+def test_other_proportions_touch_the_floor_and_look_as_if_they_lay_there(name: str, brilliant: Shape) -> None:
+    shape = CUTS[name]()
     position, orientation = pose = on_the_floor(DEFAULT, shape, DEFAULT, brilliant)
     assert lowest(pose, shape) == pytest.approx(FLOOR_Y, abs=1e-12)
     assert position[::2] == DEFAULT.position[::2]
     assert slope_degrees(orientation, lowest_facet(shape, orientation)) <= LYING_DEGREES
+
+
+@pytest.mark.parametrize("name", [*OTHERS, "brilliant"])
+def test_what_is_another_stone_lies_level(name: str, brilliant: Shape) -> None:
+    shape = brilliant if name == "brilliant" else OTHERS[name]()
+    stone = DEFAULT.model_copy(update={"mesh": "another"})
+    position, orientation = pose = on_the_floor(stone, shape, DEFAULT, brilliant)
+    assert lowest(pose, shape) == pytest.approx(FLOOR_Y, abs=1e-12)
+    assert position[::2] == DEFAULT.position[::2]
+    assert slope_degrees(orientation, lowest_facet(shape, orientation)) < LEVEL_DEGREES
+
+
+def test_another_cut_lies_level_and_the_same_by_its_proportions_is_not_turned(brilliant: Shape) -> None:
+    princess = DEFAULT.model_copy(update={"cut": "princess"})
+    shape = shape_of(princess, {})
+    _, orientation = on_the_floor(princess, shape, DEFAULT, brilliant)
+    assert slope_degrees(orientation, lowest_facet(shape, orientation)) < LEVEL_DEGREES
+    told = DEFAULT.model_copy(update={"cut": BrilliantCut(table_percent=60)})
+    assert on_the_floor(told, shape_of(told, {}), DEFAULT, brilliant)[1] == DEFAULT.orientation
 
 
 def test_a_smaller_stone_lies_where_the_larger_one_did(brilliant: Shape) -> None:

@@ -132,7 +132,8 @@ const stones = new StoneCommands({
 const saving = new Saving({
   seen: () => (visit.session && visit.lastFrame ? { ...visit.lastFrame, session: visit.session } : null),
   scene: () => visit.scene,
-  note: (text) => toasts.note(text),
+  note: (text) => void toasts.note(text),
+  notice: (text) => toasts.notice(text),
 });
 /** Of one stone all was told when its mesh was opened. */
 const findings = new Findings(
@@ -347,7 +348,9 @@ listenToKeys(window, perform);
 listenToDrops(window, open, (text) => complaints.tell(text));
 steer({ canvas, screen, visit, chosen, performing, turntable, bareness, embedding, ray });
 window.addEventListener("keydown", ({ key }) => {
-  if (key === "Escape" && bareness.on) bareness.toggle();
+  if (key !== "Escape" || document.querySelector("dialog[open]")) return;
+  if (bareness.on) bareness.toggle();
+  else if (ray.on) attempt(() => ray.toggle());
 });
 // A link that is pasted over one that could not be read is no other page to the browser.
 window.addEventListener("hashchange", () => location.reload());

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from culet.geometry.shape import Shape
+from culet.scene.cuts import proportions
 from culet.scene.fields import Pose
 from culet.scene.room import FLOOR_Y
 from culet.scene.stone import StoneSettings
@@ -18,8 +19,10 @@ from culet.simulation.state import Quaternion, Triple
 from culet.stage import Stage
 
 LYING_DEGREES = 10.0
-"""A stone looks as if it lay on a facet that is level to this. The default stone's is by 5.4 degrees: its pose was
-drawn for its light. A stone that is tilted further was set on a corner on purpose."""
+"""A stone was meant to lie on a facet that is level to this. The default stone's is by 5.4 degrees: its pose was drawn for
+its light. A stone that is tilted further was set on a corner on purpose."""
+LEVEL_DEGREES = 0.01
+"""A facet is level to this, and need not be turned."""
 DOWN: Triple = (0.0, -1.0, 0.0)
 
 Array = NDArray[np.float64]
@@ -41,18 +44,27 @@ def put_down(stage: Stage, before: Stage) -> Stage:
 def on_the_floor(stone: StoneSettings, shape: Shape, old: StoneSettings, old_shape: Shape) -> Pose:
     """The pose of a stone of that shape and scale which stands as the old one stood in its place.
 
-    It touches the floor. What lay on a facet lies on one: if the new shape does not by itself, it is turned as little
-    as it can be. What stood on a corner or an edge is not turned. What was in the air, or deep in the floor, stays.
+    It touches the floor. What lay on a facet lies on one: the new shape is turned as little as it can be, and not at all
+    if it is the same cut or design in other proportions, whose facet is about level. What stood on a corner or an edge is
+    not turned. What was in the air, or deep in the floor, stays.
     """
     position, orientation = stone.position, stone.orientation
     if abs(position[1] - resting_height(old_shape, orientation, old.scale)) > STANDING:
         return position, orientation
     facet = lowest_facet(shape, orientation)
     lay = slope_degrees(orientation, lowest_facet(old_shape, orientation)) <= LYING_DEGREES
-    if lay and slope_degrees(orientation, facet) > LYING_DEGREES:
+    slope = LYING_DEGREES if _is_recut(stone, old) else LEVEL_DEGREES
+    if lay and slope_degrees(orientation, facet) > slope:
         orientation = laid(orientation, facet)
     x, _, z = position
     return (x, resting_height(shape, orientation, stone.scale), z), orientation
+
+
+def _is_recut(stone: StoneSettings, old: StoneSettings) -> bool:
+    """Whether the stone is the old one in other proportions: it would jump under a slider if it were turned."""
+    if stone.mesh is not None or old.mesh is not None:
+        return stone.mesh == old.mesh
+    return proportions(stone.cut).name == proportions(old.cut).name
 
 
 def resting_height(shape: Shape, orientation: Quaternion, scale: float = 1.0) -> float:

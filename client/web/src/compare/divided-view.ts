@@ -20,6 +20,8 @@ export class DividedView {
   private readonly room = document.createElement("section");
   private readonly picture = document.createElement("img");
   private readonly divider = document.createElement("input");
+  /** Of the kept design's side. */
+  private readonly caption: HTMLElement;
   private step: bigint | null = null;
   private waiting: ReturnType<typeof setTimeout> | undefined;
   private giveUp = new AbortController();
@@ -47,6 +49,7 @@ export class DividedView {
       caption.textContent = text;
       return caption;
     }) as [HTMLElement, HTMLElement];
+    this.caption = kept;
     const line = document.createElement("i");
     room.append(picture, kept, shown, line, divider);
     this.divide();
@@ -64,7 +67,7 @@ export class DividedView {
   changed(): void {
     clearTimeout(this.waiting);
     this.giveUp.abort();
-    this.picture.hidden = true;
+    this.reveal(false);
     this.step = this.world.visit.lastFrame?.step ?? null;
     this.waiting = setTimeout(() => this.world.complaints.attempt(() => this.ask()), PATIENCE_MS);
   }
@@ -74,6 +77,12 @@ export class DividedView {
     this.giveUp.abort();
     this.forget();
     this.room.remove();
+  }
+
+  /** Show the kept design's picture, or say that it is not there yet: until then what is shown is at both sides. */
+  private reveal(on: boolean): void {
+    this.picture.hidden = !on;
+    this.caption.textContent = on ? words.compare.keptSide : words.compare.keptWaits;
   }
 
   private divide(): void {
@@ -100,7 +109,7 @@ export class DividedView {
         this.picture.src = URL.createObjectURL(blob);
         await this.picture.decode();
         if (signal.aborted) return;
-        this.picture.hidden = false;
+        this.reveal(true);
       }
     } catch (error) {
       if (!signal.aborted) throw error;

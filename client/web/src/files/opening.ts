@@ -71,7 +71,7 @@ export class Opening {
     const session = this.world.session();
     if (session === null) throw new Error(words.connection.noSessionYet);
     const give = (again: File) => upload(session, again);
-    const clear = this.toasts.note(words.files.reading(file.name));
+    const clear = this.toasts.notice(words.files.reading(file.name));
     try {
       const known = await give(file);
       this.files.keep(known.id, file, give);

@@ -21,7 +21,9 @@ export interface SavedWorld {
   seen: () => SeenFrame | null;
   scene: () => JsonObject | null;
   /** Tell the user something that passes; what is returned takes the words away. */
-  note: (text: string) => () => void;
+  note: (text: string) => void;
+  /** Until what is returned is called. */
+  notice: (text: string) => () => void;
 }
 
 /** What a picture may be saved as, in the panel's order, with what the format and the button are called. */
@@ -69,7 +71,7 @@ export class Saving {
 
   private async rendered(format: rest.Format): Promise<Blob> {
     const { session, step } = this.seen();
-    const clear = this.world.note(words.files.rendering);
+    const clear = this.world.notice(words.files.rendering);
     try {
       return await rest.picture(session, step, format);
     } finally {

@@ -22,10 +22,18 @@ test("what keeps moving frames from being more or better ones is named", () => {
   expect(statusText({ ...status, bottleneck: null })).not.toContain("limited");
 });
 
+test("the first picture at rest is being refined, also if the next takes long", () => {
+  const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1, connected: true };
+  const first = { ...frame, flags: 0, samples: 1 };
+  expect(statusText({ ...status, frame: first })).toMatch(/^refining/);
+  expect(briefText({ ...status, frame: first })).toBe("refining");
+  expect(briefText({ ...status, framesPerSecond: 30, frame: first })).toBe("30.0 frames/s"); // while the camera moves
+});
+
 test("a finished picture is called still, one that is late is not", () => {
   const status = { framesPerSecond: 0, roundTripMs: null, viewers: 1, connected: true };
   expect(statusText({ ...status, frame: { ...frame, flags: Flag.FINAL, samples: 64 } })).toMatch(/^still picture/);
-  expect(statusText({ ...status, frame: { ...frame, flags: 0 } })).toMatch(/^0\.0 frames\/s/);
+  expect(statusText({ ...status, frame: { ...frame, flags: Flag.MOVING } })).toMatch(/^0\.0 frames\/s/);
 });
 
 test("a stone that falls slower than in real time is said to", () => {

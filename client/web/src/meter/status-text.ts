@@ -4,6 +4,9 @@ import { Codec, Flag, type Frame } from "@culet/protocol/frame";
 import { words } from "../words/words";
 import type { Bottleneck } from "./bottleneck";
 
+/** Frames a second that are told as 0.1, at least. */
+const LEAST_RATE = 0.05;
+
 export interface Status {
   /** Pictures come, or would if anything changed. */
   connected: boolean;
@@ -46,12 +49,17 @@ function shownErrorText({ flags, shownError, restError }: RestingFrame): string 
     : words.status.toBe(error, significant(restError));
 }
 
+/** Pictures of one sample come while the camera moves, too, and the first one at rest is one: after it none comes at once. */
+function isMoving({ flags, samples }: Pick<Frame, "flags" | "samples">, framesPerSecond: number): boolean {
+  return (flags & Flag.MOVING) !== 0 || (samples === 1 && framesPerSecond >= LEAST_RATE);
+}
+
 /** What everybody wants to know: whether the picture is finished, or how fast it moves; and who else looks. */
 export function briefText({ connected, framesPerSecond, frame, viewers }: Status): string {
   const said = words.status;
   if (!connected) return said.offline;
   if (!frame) return said.waiting;
-  const moves = frame.samples === 1 || (frame.flags & Flag.MOVING) !== 0;
+  const moves = isMoving(frame, framesPerSecond);
   const parts = [moves ? said.framesPerSecond(framesPerSecond) : said.refining];
   if (frame.flags & Flag.FINAL) parts[0] = said.still;
   if (frame.flags & Flag.SLOW) parts.push(said.slowMotion);
@@ -70,7 +78,7 @@ export function statusText({ connected, framesPerSecond, frame, roundTripMs, vie
   const parts: string[] = [];
   if (frame) {
     const { flags, samples, simulateMs, renderMs, encodeMs } = frame;
-    const atRest = samples > 1 && (flags & Flag.MOVING) === 0;
+    const atRest = !isMoving(frame, framesPerSecond);
     if (flags & Flag.FINAL) parts.push(said.still);
     else parts.push(atRest ? said.refining : said.framesPerSecond(framesPerSecond));
     if (bottleneck) parts.push(said.limitedBy[bottleneck]);

@@ -38,7 +38,7 @@ export class GradePanel {
     this.grading = new Grading({
       ask: (tilt, signal) => ask(text(stoneOf(this.scene).id, ""), tilt, signal),
       seen: () => section.open,
-      busy: (on) => this.tilt.busy(on),
+      busy: (on) => this.wait(on),
       outdated: () => this.table.classList.add("outdated"),
       show: (answer, signal) => this.show(answer, signal),
       fail: (why) => this.fail(why),
@@ -59,6 +59,12 @@ export class GradePanel {
     const stone = gradedBy(scene);
     this.section.show(stone !== "");
     if (this.section.open) this.grading.refresh(stone);
+  }
+
+  /** Whether an answer is waited for; what is shown of the stone before stays meanwhile. */
+  private wait(on: boolean): void {
+    this.tilt.busy(on);
+    if (on && !this.status.textContent) this.status.textContent = words.grades.waits;
   }
 
   private async show(answer: JsonObject, signal: AbortSignal): Promise<void> {

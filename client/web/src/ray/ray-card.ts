@@ -25,6 +25,8 @@ export class RayCard {
     this.listener = listener;
     this.card.id = "ray-card";
     this.card.className = "sheet";
+    this.card.tabIndex = -1;
+    this.card.dataset.arrowKeys = ""; // they walk through the ray, and move nothing while it is waited for
     const heading = document.createElement("h2");
     heading.id = "ray-title";
     heading.textContent = words.ray.title;
@@ -37,7 +39,6 @@ export class RayCard {
     this.status.append(paragraph(words.ray.how));
     this.table.setAttribute("role", "grid");
     this.table.setAttribute("aria-label", words.ray.steps);
-    this.table.dataset.arrowKeys = "";
     this.table.onkeydown = (event) => this.walk(event);
     this.facts.tabIndex = -1;
     const head = document.createElement("header");
@@ -75,9 +76,15 @@ export class RayCard {
     this.status.replaceChildren(paragraph(reasonOf(error)));
   }
 
-  /** The focus goes to the step that is chosen: from there the arrow keys go on. */
+  /** The focus goes to the step that is chosen, from where the arrow keys go on, or to the card while it has none. */
   focus(): void {
-    this.rows.find((row) => row.tabIndex === 0)?.focus({ preventScroll: true });
+    const step = this.rows.find((row) => row.tabIndex === 0);
+    (step ?? this.card).focus({ preventScroll: true });
+  }
+
+  /** Whether it has the focus, and not a control in it. */
+  get focused(): boolean {
+    return document.activeElement === this.card;
   }
 
   remove(): void {

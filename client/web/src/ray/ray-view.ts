@@ -72,6 +72,7 @@ export class RayView {
     this.giveUp = new AbortController();
     const { signal } = this.giveUp;
     this.card.wait();
+    this.takeFocus();
     try {
       const path = await asked(signal);
       if (signal.aborted) return;
@@ -79,7 +80,7 @@ export class RayView {
       this.scene = this.scene ?? this.world.visit.scene;
       this.chosen = path.steps[0]?.number ?? null;
       this.card.show(path, this.millimetres());
-      if (document.activeElement === this.world.canvas || document.activeElement === document.body) this.card.focus();
+      this.takeFocus();
       this.step = null;
       this.follow();
       this.draw();
@@ -88,6 +89,12 @@ export class RayView {
       this.card.fail(error);
       throw error;
     }
+  }
+
+  /** From the picture, whose keys would move what is being followed; not from a control that somebody uses. */
+  private takeFocus(): void {
+    const { activeElement } = document;
+    if (activeElement === this.world.canvas || activeElement === document.body || this.card.focused) this.card.focus();
   }
 
   /** Lie where the picture on the screen has stones and camera. */

@@ -31,6 +31,12 @@ export class Toasts {
     return () => toast.remove();
   }
 
+  /** Stays until what it tells of is done: what is returned takes it away then. */
+  notice(text: string): () => void {
+    const toast = this.add(text, "note");
+    return () => toast.remove();
+  }
+
   /** What was found in a file; goes by itself. */
   finding(text: string): void {
     fade(this.add(text, "finding"));

@@ -66,7 +66,10 @@ function isSaid(node: Node, name: string, child: Node, said: boolean): boolean {
       const called = propertyOf(node.callee as Node);
       const [first] = node.arguments as Node[];
       if (called === "setAttribute") return child !== first && ATTRIBUTES.has(String(first?.value));
-      return name === "arguments" && ["hint", "label", "title", "note", "problem", "finding", "tell"].includes(called);
+      return (
+        name === "arguments" &&
+        ["hint", "label", "title", "note", "notice", "problem", "finding", "tell"].includes(called)
+      );
     }
     case "NewExpression":
       return child === (node.arguments as Node[])[0] && CONTROLS.has(nameOf(node.callee as Node));

@@ -374,6 +374,7 @@ export const compare = {
   divider: "Divider between the kept design, at its left, and the one that is shown",
   keptPicture: "The kept design, under the same camera and light",
   keptSide: "kept",
+  keptWaits: "kept: being rendered\u2026",
   shownSide: "shown",
   at: (percent: number) => `${percent}\u00a0% of the picture is the kept design's`,
   kept:
@@ -387,6 +388,7 @@ export const compare = {
 export const grades = {
   title: "Grades",
   tilt: "Tilt curves",
+  waits: "The stone is being graded\u2026",
   diagram: "Cutting diagram",
   degrees: "Tilt, \u00b0",
   tiltPoint: (degrees: number, iso: string) => `${iso} % at ${degrees}\u00b0`,
