@@ -19,8 +19,8 @@ from culet.simulation.state import Quaternion, Triple
 from culet.stage import Stage
 
 LYING_DEGREES = 10.0
-"""A stone was meant to lie on a facet that is level to this. The default stone's is by 5.4 degrees: its pose was drawn for
-its light. A stone that is tilted further was set on a corner on purpose."""
+"""A stone was meant to lie on a facet that is level to this. The default stone's is by 5.4 degrees: its pose was drawn
+for its light. A stone that is tilted further was set on a corner on purpose."""
 LEVEL_DEGREES = 0.01
 """A facet is level to this, and need not be turned."""
 DOWN: Triple = (0.0, -1.0, 0.0)
@@ -44,9 +44,9 @@ def put_down(stage: Stage, before: Stage) -> Stage:
 def on_the_floor(stone: StoneSettings, shape: Shape, old: StoneSettings, old_shape: Shape) -> Pose:
     """The pose of a stone of that shape and scale which stands as the old one stood in its place.
 
-    It touches the floor. What lay on a facet lies on one: the new shape is turned as little as it can be, and not at all
-    if it is the same cut or design in other proportions, whose facet is about level. What stood on a corner or an edge is
-    not turned. What was in the air, or deep in the floor, stays.
+    It touches the floor. What lay on a facet lies on one: the new shape is turned as little as it can be, and not at
+    all if it is the same cut or design in other proportions, whose facet is about level. What stood on a corner or an
+    edge is not turned. What was in the air, or deep in the floor, stays.
     """
     position, orientation = stone.position, stone.orientation
     if abs(position[1] - resting_height(old_shape, orientation, old.scale)) > STANDING:
