@@ -67,7 +67,8 @@ export class DividedView {
   changed(): void {
     clearTimeout(this.waiting);
     this.giveUp.abort();
-    this.reveal(false);
+    this.picture.hidden = true;
+    this.caption.textContent = words.compare.keptSide;
     this.step = this.world.visit.lastFrame?.step ?? null;
     this.waiting = setTimeout(() => this.world.complaints.attempt(() => this.ask()), PATIENCE_MS);
   }
@@ -77,12 +78,6 @@ export class DividedView {
     this.giveUp.abort();
     this.forget();
     this.room.remove();
-  }
-
-  /** Show the kept design's picture, or say that it is not there yet: until then what is shown is at both sides. */
-  private reveal(on: boolean): void {
-    this.picture.hidden = !on;
-    this.caption.textContent = on ? words.compare.keptSide : words.compare.keptWaits;
   }
 
   private divide(): void {
@@ -100,8 +95,9 @@ export class DividedView {
     try {
       const { step } = lastFrame;
       const beside = comparison.beside(await rest.sceneShown(session, step), visit.scene);
-      if (!beside) return;
+      if (!beside || signal.aborted) return;
       const size = sizeWithin(lastFrame, this.world.canvas); // a frame in motion has fewer pixels
+      this.caption.textContent = words.compare.keptWaits; // until then what is shown is at both sides
       for (const samples of [1, null]) {
         const blob = await rest.beside(session, { ...beside, step, ...size }, samples, signal);
         if (signal.aborted) return;
@@ -109,10 +105,13 @@ export class DividedView {
         this.picture.src = URL.createObjectURL(blob);
         await this.picture.decode();
         if (signal.aborted) return;
-        this.reveal(true);
+        this.picture.hidden = false;
+        this.caption.textContent = words.compare.keptSide;
       }
     } catch (error) {
-      if (!signal.aborted) throw error;
+      if (signal.aborted) return; // what has its place by now says how that is
+      this.caption.textContent = words.compare.keptSide;
+      throw error;
     }
   }
 

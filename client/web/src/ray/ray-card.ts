@@ -44,11 +44,6 @@ export class RayCard {
     const head = document.createElement("header");
     head.append(heading, close);
     this.card.append(head, this.status, this.table, this.facts);
-    this.card.onkeydown = (event) => {
-      if (event.key !== "Escape") return;
-      event.stopPropagation();
-      listener.close();
-    };
     room.append(this.card);
   }
 

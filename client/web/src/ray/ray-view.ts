@@ -18,6 +18,8 @@ export class RayView {
   private readonly world: RayWorld;
   private readonly drawing: RayDrawing;
   private readonly card: RayCard;
+  /** What had the focus when the mode was turned on. */
+  private readonly before = document.activeElement;
   private path: Path | null = null;
   private chosen: number | null = null;
   /** As the picture on the screen has it. */
@@ -91,10 +93,15 @@ export class RayView {
     }
   }
 
-  /** From the picture, whose keys would move what is being followed; not from a control that somebody uses. */
+  /**
+   * From the picture, whose keys would move what is being followed, or a button that turned the mode on; not from a
+   * control that somebody uses.
+   */
   private takeFocus(): void {
     const { activeElement } = document;
-    if (activeElement === this.world.canvas || activeElement === document.body || this.card.focused) this.card.focus();
+    const onPicture = activeElement === this.world.canvas || activeElement === document.body;
+    const turnedOn = activeElement instanceof HTMLButtonElement && activeElement === this.before;
+    if (onPicture || turnedOn || this.card.focused) this.card.focus();
   }
 
   /** Lie where the picture on the screen has stones and camera. */

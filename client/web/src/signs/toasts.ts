@@ -1,8 +1,12 @@
-/** Short messages in the corner. Problems stay until they are dismissed, the rest goes by itself unless it is being read. */
+/**
+ * Short messages in the corner. What goes on is told until it ends, and problems until they are dismissed or many others
+ * have come; the rest goes by itself unless it is being read.
+ */
 
 import { words } from "../words/words";
 
 const LIFE_MS = 8000;
+/** Beside those of what goes on. */
 const MOST = 4;
 
 /** Something that goes on, and is told of until it ends. */
@@ -14,6 +18,8 @@ export interface Task {
 
 export class Toasts {
   private readonly region: HTMLElement;
+  /** Notices so far. */
+  private notices = 0;
 
   constructor(region: HTMLElement) {
     this.region = region;
@@ -33,7 +39,8 @@ export class Toasts {
 
   /** Stays until what it tells of is done: what is returned takes it away then. */
   notice(text: string): () => void {
-    const toast = this.add(text, "note");
+    this.notices += 1;
+    const toast = lasting(this.add(text, "note", `notice ${this.notices}`)); // another of the same text goes on by itself
     return () => toast.remove();
   }
 
@@ -44,7 +51,7 @@ export class Toasts {
 
   /** Stays until it ends; the button is there to end it sooner. */
   task(text: string, label: string, act: () => void): Task {
-    const toast = this.add(text, "task");
+    const toast = lasting(this.add(text, "task"));
     const bar = document.createElement("progress");
     bar.max = 1;
     bar.setAttribute("aria-label", text);
@@ -63,7 +70,9 @@ export class Toasts {
     for (const old of [...this.region.children]) {
       if (old instanceof HTMLElement && old.dataset.about === about) old.remove();
     }
-    const passing = [...this.region.children].filter((other) => !other.classList.contains("task"));
+    const passing = [...this.region.children].filter(
+      (other) => other instanceof HTMLElement && !("lasts" in other.dataset),
+    );
     for (const old of passing.slice(0, Math.max(0, passing.length - MOST + 1))) old.remove();
     const toast = document.createElement("div");
     toast.classList.add("toast", "sheet", kind);
@@ -82,6 +91,12 @@ export class Toasts {
     this.region.append(toast);
     return toast;
   }
+}
+
+/** Others that come do not take it away. */
+function lasting(toast: HTMLElement): HTMLElement {
+  toast.dataset.lasts = "";
+  return toast;
 }
 
 /** Take it away in a while; while the pointer rests on it, or a key is in it, time does not count. */

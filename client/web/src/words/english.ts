@@ -95,7 +95,7 @@ export const gestures: readonly (readonly [string, string])[] = [
   ["Click, tap", "Choose a stone, where there are several; with T draw the ray there, arrow keys go through it"],
   ["Shift and drag", "Throw the stone under the pointer"],
   ["Ctrl and drag", "Move the stone under the pointer; with Shift turn it"],
-  ["Esc", "Close this card, leave the full screen, or show all again"],
+  ["Esc", "Close this card, leave the full screen, show all again, or end a ray"],
 ];
 
 /** One ray, drawn and told. */
