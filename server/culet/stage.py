@@ -35,13 +35,15 @@ class Library:
 
     meshes: Mapping[str, Shape] = field(default_factory=dict)
     skies: Mapping[str, SkyPicture] = field(default_factory=dict)
-    before_shape: Callable[[], object] = lambda: None
-    """Called before each shape that is made; it may raise, where that is not wanted any more."""
+    around_shape: Callable[[], object] = lambda: None
+    """Called before each shape that is made, and after it; it may raise, where that is not wanted any more."""
 
     def shape(self, stone: StoneSettings, field: str) -> Shape:
         """The shape of a stone, which is that field of its scene. It may take seconds; raises as `shape_of` does."""
-        self.before_shape()
-        return shape_of(stone, self.meshes, field)
+        self.around_shape()
+        shape = shape_of(stone, self.meshes, field)
+        self.around_shape()
+        return shape
 
     def sky(self, environment: Environment) -> Sky:
         """The environment with its picture; SceneError for an unknown id."""

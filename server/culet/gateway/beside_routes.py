@@ -74,8 +74,9 @@ async def render_beside(http: Request, session_id: str, request: BesideRequest, 
     )  # fmt: skip
 
     async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
-        async with gateway.designs.turn(client):
-            return await gateway.sessions.request(session, message, patient=True)
+        with session.awaited():
+            async with gateway.designs.turn(client):
+                return await gateway.sessions.request(session, message, patient=True)
 
     with gateway.stills.place(client):
         result, data = await while_waited_for(http, in_turn())

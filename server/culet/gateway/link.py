@@ -28,6 +28,7 @@ from culet_protocol.engine import (
     Cancel,
     Control,
     Heartbeat,
+    OpenSession,
     Reply,
     SessionChange,
     SessionMotion,
@@ -170,6 +171,8 @@ class EngineLink:
                 for reader in readers:
                     reader.cancel()
                 await asyncio.gather(*readers, return_exceptions=True)
+                # Answers go to the socket that asked.
+                self._fail_pending("the connection to the render process was made anew")
                 control.disable_monitor()
                 control.close(linger=0)
 
@@ -209,13 +212,13 @@ class EngineLink:
             async with asyncio.timeout(None if patient else self._settings.request_seconds):
                 reply, data = await answer
         except asyncio.CancelledError:
-            if patient:  # others are quickly done, and meant whether or not somebody waits for the answer
+            if patient or _is_new(message):  # others are quickly done, and meant whether or not somebody waits for them
                 await self._cancel(number)
             raise
         except zmq.Again:
             raise EngineUnavailableError("the render process does not take requests at the moment") from None
         except TimeoutError:
-            if isinstance(message, Control):  # who asked is told that it was not done
+            if isinstance(message, Control) or _is_new(message):  # who asked is told that it was not done
                 await self._cancel(number)
             raise EngineUnavailableError(
                 f"the render process did not answer within {self._settings.request_seconds:g} s"
@@ -333,6 +336,11 @@ class EngineLink:
             if not answer.done():
                 answer.set_exception(EngineUnavailableError(reason))
         self._pending.clear()
+
+
+def _is_new(message: Message) -> bool:
+    """Whether it opens a session that nobody has seen yet: one that nobody waits for any more is nobody's."""
+    return isinstance(message, OpenSession) and message.snapshot is None
 
 
 def error_of(reply: Reply) -> CuletError:

@@ -48,11 +48,12 @@ class SessionPlaces:
         return [session for session in self._records.values() if session.owner == client]
 
     async def _close_one(self, sessions: Sequence[SessionRecord]) -> bool:
-        """Close the session that is missed least, those never watched first; False if all are being watched."""
+        """Close the session that is missed least, those never watched first; False if all are in use."""
         for session in sorted(sessions, key=lambda session: (session.watched, session.used)):
-            if session.viewers or time.monotonic() - session.viewer_left < RELOAD_SECONDS:
+            needed = session.viewers or session.asked
+            if needed or time.monotonic() - session.viewer_left < RELOAD_SECONDS:
                 continue
-            if await self._watched_elsewhere(session) or session.viewers:
+            if await self._watched_elsewhere(session) or session.viewers or session.asked:
                 continue
             await self._close(session, "others needed room; open a new session")
             return True

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from culet.gateway.client_address import UNKNOWN
@@ -78,7 +79,7 @@ class SessionRecord:
         """The last frame that came, if it is a picture of its own."""
         self.used = time.monotonic()
         self.asked = 0
-        """Requests about it that the engine has not answered."""
+        """Requests about it that are not answered."""
         self.watched = False
         """Whether anybody ever watched it, or had a picture of it."""
         self.viewer_left = -float("inf")
@@ -100,6 +101,16 @@ class SessionRecord:
         """Tells the engine, one demand after the other."""
         self.room = asyncio.Semaphore(EVENTS_UNDER_WAY)
         """Held for each event until the engine has answered."""
+
+    @contextmanager
+    def awaited(self) -> Iterator[None]:
+        """Somebody waits for an answer about it, which counts as using it until then."""
+        self.asked += 1
+        try:
+            yield
+        finally:
+            self.asked -= 1
+            self.used = time.monotonic()
 
     def learn(self, described: Mapping[str, Any]) -> None:
         """What the engine said of the session, as it is now."""

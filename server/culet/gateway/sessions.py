@@ -205,18 +205,15 @@ class Sessions:
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         """As `Uploads.request`, about a session; one that the engine does not know, because it is new, is opened there
         first."""
-        session.asked += 1
-        try:
-            return await self._uploads.request(message, session.scene, patient=patient)
-        except NotFoundError:
-            if session.id not in self._sessions:
-                raise
-            if not await self._in_engine(session):  # or else a step of it is not kept, which is no loss to its viewers
-                await self._give_again(session)
-            return await self._uploads.request(message, session.scene, patient=patient)
-        finally:
-            session.asked -= 1
-            session.used = time.monotonic()
+        with session.awaited():
+            try:
+                return await self._uploads.request(message, session.scene, patient=patient)
+            except NotFoundError:
+                if session.id not in self._sessions:
+                    raise
+                if not await self._in_engine(session):  # or a step of it is not kept, which is no loss to its viewers
+                    await self._give_again(session)
+                return await self._uploads.request(message, session.scene, patient=patient)
 
     async def describe(self, session: SessionRecord) -> dict[str, Any]:
         """What the engine says of the session now."""
@@ -319,8 +316,9 @@ class Sessions:
 
     async def _expire(self, session: SessionRecord) -> None:
         """Close a session, unless somebody watches it straight from the engine, or has come meanwhile."""
-        session.used = time.monotonic()  # looked at again only after a while, should it stay
-        if not await self._watched_elsewhere(session) and not session.viewers and not session.asked:
+        session.used = looked = time.monotonic()  # looked at again only after a while, should it stay
+        watched = await self._watched_elsewhere(session)
+        if not (watched or session.viewers or session.asked) and session.used == looked:
             await self.close(session, "nobody used the session")
 
     async def _watched_elsewhere(self, session: SessionRecord) -> bool:

@@ -193,10 +193,12 @@ async def answered(
         turn = nullcontext()
 
     async def in_turn() -> tuple[dict[str, Any], bytes | memoryview]:
-        async with turn:
-            if session is None:
+        if session is None:
+            async with turn:
                 return await gateway.uploads.request(message, patient=True)
-            return await gateway.sessions.request(session, message, patient=True)
+        with session.awaited():
+            async with turn:
+                return await gateway.sessions.request(session, message, patient=True)
 
     with gateway.stills.place(client):
         return await while_waited_for(http, in_turn())

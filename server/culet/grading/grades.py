@@ -141,15 +141,16 @@ def weighted_light_return(
         replace(View.tilted(math.degrees(math.acos(c)), a), axis=UP)
         for c, a in zip(cosine.ravel().tolist(), azimuth.ravel().tolist(), strict=True)
     ]
-    area = seen_areas(shape, views)
-    weighted = area * cosine.ravel() ** 2
+    weight = cosine.ravel() ** 2
     parts: list[list[float]] = []
     own = len(views) // WLR_BATCHES
     for batch in range(WLR_BATCHES):
         of = slice(batch * own, (batch + 1) * own)
         found = sums.of(shape, optics, rules, views[of], batches=1, rays=rays, seed=batch, crown_alone=True)[:, 0]
         iso, lost, crown = (found[:, KERNEL[name]] for name in ("ISO", "LOST", "CROWN"))
-        parts.append([float(weighted[of] @ iso), float(area[of] @ crown), float(weighted[of] @ lost)])
+        area = seen_areas(shape, views[of])
+        weighted = area * weight[of]
+        parts.append([float(weighted @ iso), float(area @ crown), float(weighted @ lost)])
         if len(parts) > 1:
             yield ratio(*np.array(parts).T)
 

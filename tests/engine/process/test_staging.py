@@ -9,7 +9,14 @@ from functools import partial
 
 import pytest
 
-from culet.engine.process.staging import CHANGE_SECONDS, MOST_WAITING, Staging, to_its_end
+from culet.engine.process.staging import (
+    CHANGE_SECONDS,
+    MOST_WAITING,
+    ShapesNeededError,
+    Staging,
+    to_its_end,
+    without_shapes,
+)
 from culet.errors import BusyError, InputError, NotFoundError
 from culet.scene import Scene
 from culet.stage import Library, Stage
@@ -28,7 +35,7 @@ class Held:
         self.begun.set()
         assert self.go_on.wait(PATIENCE)
         for _ in range(3):
-            library.before_shape()
+            library.around_shape()
             self.shapes += 1
         return self.shapes
 
@@ -79,15 +86,15 @@ async def test_what_was_not_begun_is_never_begun() -> None:
 
 
 async def test_a_change_is_refused_whose_shapes_take_too_long_and_a_smaller_one_is_not() -> None:
-    seconds = iter(range(0, 100, 5))
+    seconds = iter(range(0, 100, 3))
     staging = Staging(Library(), timer=lambda: float(next(seconds)))
     async with staging.turn("a") as turn:
         with pytest.raises(InputError) as refused:
             await turn.make(lambda library: Stage.of(THREE, library), most_seconds=CHANGE_SECONDS)
     assert refused.value.field == "stones"
     assert str(refused.value) == (
-        "stones: expected shapes that take 8 s of a processor at most; those of the first 1 took 10.0 s: change fewer "
-        "stones at a time"
+        "stones: expected shapes that take 8 s of a processor at most; those of the first 1 took 9.0 s: change fewer "
+        "stones at a time, or try again, since these are kept for a while"
     )
     one = THREE.model_copy(update={"stones": THREE.stones[:1]})
     async with staging.turn("a") as turn:
@@ -130,3 +137,33 @@ async def test_an_error_of_what_nobody_waits_for_is_told_nobody() -> None:
     del working, waiting
     gc.collect()
     assert unseen == []
+
+
+async def test_what_makes_no_shape_needs_no_turn_and_what_would_has_changed_nothing() -> None:
+    library = Library()
+    stage = Stage.of(THREE, library)
+    moved = THREE.model_copy(update={"camera": THREE.camera.model_copy(update={"fov_degrees": 30.0})})
+    assert Stage.of(moved, without_shapes(library), before=stage).shapes == stage.shapes
+    with pytest.raises(ShapesNeededError):
+        Stage.of(THREE, without_shapes(library))
+
+
+async def test_a_shape_that_nobody_waits_for_when_it_is_made_changes_nothing() -> None:
+    staging, making, go_on = Staging(Library()), threading.Event(), threading.Event()
+    changed = []
+
+    def change(library: Library) -> None:
+        library.around_shape()
+        making.set()
+        assert go_on.wait(PATIENCE)  # the last shape
+        library.around_shape()
+        changed.append(True)
+
+    changing = asyncio.create_task(staging.make("a", change))
+    assert await asyncio.to_thread(making.wait, PATIENCE)
+    changing.cancel()
+    await asyncio.sleep(0)
+    go_on.set()
+    with pytest.raises(asyncio.CancelledError):
+        await changing
+    assert changed == []

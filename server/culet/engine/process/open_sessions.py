@@ -36,6 +36,9 @@ HISTORY_SHARE = 1 / 8
 """Of the memory that all histories together may take."""
 
 
+GONE = "no such session; it may have expired"
+
+
 class OpenSessions:
     """Mutable. A session is told apart by its name."""
 
@@ -80,9 +83,14 @@ class OpenSessions:
         try:
             live = self._painter.pictures[session]
         except KeyError:
-            raise NotFoundError("no such session; it may have expired") from None
+            raise NotFoundError(GONE) from None
         self._touched[session] = time.monotonic()
         return live
+
+    def check(self, live: LivePicture) -> None:
+        """NotFoundError if the session has been closed; it does not count as used. From any thread."""
+        if self._painter.pictures.get(live.session.name) is not live:
+            raise NotFoundError(GONE)
 
     def client(self, live: LivePicture) -> str | None:
         """Who opened the session, as its gateway called that client."""

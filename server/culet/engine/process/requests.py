@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -22,7 +23,7 @@ from culet.engine.process.limits import Limits, live_size
 from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
-from culet.engine.process.staging import CHANGE_SECONDS, Staging, to_its_end
+from culet.engine.process.staging import CHANGE_SECONDS, ShapesNeededError, Staging, to_its_end, without_shapes
 from culet.engine.process.still_requests import StillRequests
 from culet.engine.process.stone_requests import StoneRequests
 from culet.engine.session import events, questions
@@ -83,10 +84,11 @@ class Requests:
         self._meshes = UploadStore(MESH, limits, memory, in_use=self._uploads_in_use)
         self._skies = UploadStore(SKY, limits, memory, in_use=self._uploads_in_use, forgotten=forget_sky)
         self._library = Library(self._meshes, self._skies)
-        self._staging = Staging(self._library)
-        self.sessions = OpenSessions(painter, limits, memory, self._staging)
-        self._stills = StillRequests(painter, stills, self.sessions, self._staging, limits, memory)
-        self._stones = StoneRequests(self.sessions, self._library, self._staging, limits)
+        self._changes = Staging(self._library)
+        others = Staging(self._library)  # which may take as long as they need, and hold up no session meanwhile
+        self.sessions = OpenSessions(painter, limits, memory, self._changes)
+        self._stills = StillRequests(painter, stills, self.sessions, others, limits, memory)
+        self._stones = StoneRequests(self.sessions, self._library, others, limits)
         self._question_thread = ThreadPoolExecutor(1, "questions")
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)
@@ -175,9 +177,16 @@ class Requests:
         return {"step": session.shown.step, "falling": session.motion.falling}
 
     async def _reshape(self, live: LivePicture, event: SessionEvent) -> None:
+        """An event that may make shapes: at once if it makes none, or else in a turn of the client."""
         session = live.session
-        there = partial(self.sessions.get, session.name)  # for who waits for one that is closed, nothing is made
-        async with self._staging.turn(self.sessions.client(live)) as turn, session.motion.still():
+        at_once = partial(events.apply, session, event, without_shapes(self._library))
+        with contextlib.suppress(ShapesNeededError):
+            async with session.motion.still():
+                with self._told(session):
+                    await to_its_end(asyncio.ensure_future(asyncio.to_thread(at_once)))
+            return
+        there = partial(self.sessions.check, live)  # for who waits for one that is closed, nothing is made
+        async with self._changes.turn(self.sessions.client(live)) as turn, session.motion.still():
             with self._told(session):
                 await turn.make(partial(events.apply, session, event), most_seconds=CHANGE_SECONDS, check=there)
 

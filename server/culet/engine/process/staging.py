@@ -2,7 +2,7 @@
 
 A shape may take seconds, as of a stone whose angles are changed with its meets kept, and a scene has up to 64 of them.
 In the loop's own threads, in which motions wait for their steps too, a few such scenes would hold up every session.
-Between two shapes what nobody waits for any more is given up.
+Between two shapes, and after the last, what nobody waits for any more is given up.
 """
 
 from __future__ import annotations
@@ -49,28 +49,29 @@ class Turn:
     async def make(
         self, work: Work[T], *, most_seconds: float = math.inf, check: Callable[[], object] = lambda: None
     ) -> T:
-        """What the work gives. Before each shape it is checked, which may raise; InputError, if the shapes before it
-        took so many seconds of a processor. Cancelled, it ends before its next shape, and is waited for until then:
-        nothing is changed by it after whoever holds a lock for it has let that go."""
+        """What the work gives. Before and after each shape it is checked, which may raise; InputError, if the shapes
+        until then took more than so many seconds of a processor. Cancelled, it ends with the shape that is being made,
+        and is waited for until then: nothing is changed by it after whoever holds a lock for it has let that go."""
         given_up = threading.Event()
-        begun, made = 0.0, -1
+        begun, looks = 0.0, 0
 
-        def before_shape() -> None:
-            nonlocal made
-            made += 1
+        def around_shape() -> None:
+            nonlocal looks
+            looks += 1
             if given_up.is_set():
                 raise _GivenUp
             check()
             if (spent := self._timer() - begun) > most_seconds:
                 raise InputError(
                     f"stones: expected shapes that take {most_seconds:g} s of a processor at most; those of the first "
-                    f"{made} took {spent:.1f} s: change fewer stones at a time", "stones",
+                    f"{looks // 2} took {spent:.1f} s: change fewer stones at a time, or try again, since these are "
+                    "kept for a while", "stones",
                 )  # fmt: skip
 
         def run() -> T:
             nonlocal begun
             begun = self._timer()
-            return work(replace(self._library, before_shape=before_shape))
+            return work(replace(self._library, around_shape=around_shape))
 
         making = self._threads.submit(run)
 
@@ -81,8 +82,21 @@ class Turn:
         return await to_its_end(asyncio.wrap_future(making), give_up)
 
 
+class ShapesNeededError(Exception):
+    """It cannot be done without a shape that has to be made."""
+
+
+def without_shapes(library: Library) -> Library:
+    """The same library for work that makes no shape: where it would, it raises ShapesNeededError."""
+
+    def refuse() -> None:
+        raise ShapesNeededError
+
+    return replace(library, around_shape=refuse)
+
+
 class Staging:
-    """The turns of each client, in the order that they were asked for."""
+    """The turns of each client, in the order that they were asked for, and threads for them."""
 
     def __init__(self, library: Library, *, timer: Callable[[], float] = thread_time) -> None:
         """`timer` says how many seconds of a processor the thread that asks has taken."""

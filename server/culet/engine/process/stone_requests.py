@@ -49,7 +49,8 @@ LIGHT_SECONDS = 20.0
 
 class StoneRequests:
     """Grades piece by piece in a thread of their own, those of several requests in turn: a request that is given up
-    ends with its piece, and so does a ray's. Diagrams one at a time in another, rays in a third."""
+    ends with its piece, and so does a ray's. Diagrams, proportions and tiers one at a time in another, rays in a
+    third."""
 
     def __init__(self, sessions: OpenSessions, library: Library, staging: Staging, limits: Limits) -> None:
         """Sessions and uploads that requests name."""
