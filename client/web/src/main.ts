@@ -31,6 +31,8 @@ import { WindowFit } from "./picture/window-fit";
 import { exposeVisit } from "./probe";
 import { RayMode } from "./ray/ray-mode";
 import { SceneStrip } from "./scenes/scene-strip";
+import { Acknowledged } from "./session/acknowledged";
+import type { SessionEvent } from "./session/events";
 import { Findings } from "./session/findings";
 import { OpenedFiles } from "./session/recovery";
 import * as rest from "./session/rest";
@@ -51,6 +53,9 @@ import { words } from "./words/words";
 
 /** What is left to do, beside moves, where a page shows nothing but the picture. */
 const VIEWING: ReadonlySet<Action["name"]> = new Set(["reset_camera", "look", "full", "fit"]);
+
+/** What is done to the scene whatever a slider was about to do. */
+const ENDING: ReadonlySet<SessionEvent["type"]> = new Set(["undo", "redo", "set_scene"]);
 
 /** A first picture that takes longer, or never comes, keeps the lists of what there is waiting no more. */
 const PATIENCE_MS = 1500;
@@ -96,10 +101,14 @@ const visit = new Visit(
     },
     state: stateChanged,
     answer: (answer) => {
-      if (answer.type === "reached") meter.delayed(delays.heard(answer, performance.now()));
-      else chosen.heard(answer);
+      if (answer.type !== "reached") return chosen.heard(answer);
+      acknowledged.heard(answer);
+      meter.delayed(delays.heard(answer, performance.now()));
     },
-    sent: (event) => delays.sent(event, inputTime(), performance.now()),
+    sent: (event) => {
+      if (ENDING.has(event.type)) panel.forget();
+      delays.sent(event, inputTime(), performance.now());
+    },
     tell: (text) => toasts.finding(text),
   },
   signs,
@@ -215,6 +224,7 @@ const panel = new Panel(element("panel", HTMLElement), {
   divide,
   otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
+  done: () => acknowledged.all(),
   tiers: (scene, reach, signal) => rest.tiers(visit.session ?? "", text(stoneOf(scene).id, ""), reach, signal),
   measure: (scene) => rest.proportions(scene),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
@@ -230,6 +240,7 @@ const shareCard = new ShareCard(
 );
 const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
 const welcome = new Welcome(element("welcome", HTMLElement));
+const acknowledged = new Acknowledged((question) => visit.viewer?.ask(question));
 const delays = new Delays((question) => visit.viewer?.ask(question));
 const meter = new Meter(
   element("meter", HTMLElement),
@@ -265,8 +276,10 @@ function divide(): void {
 /** Show the design that is kept, and keep the one that is shown; the first time keep it. */
 function changeDesigns(): void {
   const patch = comparison.change(visit.scene);
-  if (patch) visit.send({ type: "patch_scene", patch });
-  else keepDesign();
+  if (patch) {
+    panel.forget();
+    visit.send({ type: "patch_scene", patch });
+  } else keepDesign();
 }
 
 /** A number was typed that is beyond what a slider can be at. */

@@ -23,6 +23,7 @@ export interface CutActions {
   openDiagram: (stone: string) => void;
   measure: Measure;
   tiers: ListTiers;
+  done: () => Promise<void>;
   keepDesign: () => void;
   changeDesigns: () => void;
   divide: () => void;
@@ -72,7 +73,18 @@ export class CutPanel {
 
   constructor(
     section: Section,
-    { patch: send, clamped, openDiagram, measure, tiers, keepDesign, changeDesigns, divide, otherwise }: CutActions,
+    {
+      patch: send,
+      clamped,
+      openDiagram,
+      measure,
+      tiers,
+      done,
+      keepDesign,
+      changeDesigns,
+      divide,
+      otherwise,
+    }: CutActions,
   ) {
     this.otherwise = otherwise;
     this.section = section.show(false);
@@ -87,10 +99,13 @@ export class CutPanel {
     this.anew = section.add(new RecutSliders(send, measure, clamped));
     const shared = sharing(tiers);
     this.tiers = SIDES.map((side) => {
-      return new TierSliders(section.section(words.cut.tiers[side]), side, send, shared, clamped);
+      return new TierSliders(section.section(words.cut.tiers[side]), side, send, shared, clamped, done);
     });
     section.onFold((open) => this.anew.update(this.scene, open));
-    const reset = () => send(stonePatch(this.scene, { cut: cutName(this.scene), recut: null }));
+    const reset = () => {
+      this.forget();
+      send(stonePatch(this.scene, { cut: cutName(this.scene), recut: null }));
+    };
     this.usual = section.add(new Command(words.cut.usual, reset));
     section.add(new Command(words.compare.keep, keepDesign));
     this.change = section.add(new Command(words.compare.change, changeDesigns, "A")).show(false);
@@ -117,6 +132,11 @@ export class CutPanel {
   /** Whether why the server refused a change is shown beside the slider that it was made with. */
   refused(why: string, field: string | undefined): boolean {
     return this.tiers.some((tiers) => tiers.refused(why, field));
+  }
+
+  /** Send nothing of what waits in a slider: something else was done to the stone. */
+  forget(): void {
+    for (const tiers of this.tiers) tiers.forget();
   }
 
   addCuts(cuts: readonly CutKind[], state: ViewState): void {

@@ -17,11 +17,24 @@ export class LiveControls<T extends object> {
   private readonly waiting = new Map<keyof T, T[keyof T]>();
   private readonly now: () => T;
   private readonly send: (name: keyof T, value: T[keyof T]) => void;
+  private readonly done: (() => Promise<void>) | null;
+  /** What waits is sent with the next picture. */
+  private due = false;
+  /** What was sent is not done. */
+  private unanswered = false;
 
-  /** `now` says what the server last said, `send` asks it for another value. */
-  constructor(now: () => T, send: (name: keyof T, value: T[keyof T]) => void) {
+  /**
+   * `now` says what the server last said, `send` asks it for another value. `done` ends when the server is done with what
+   * was sent: where that takes it long, nothing is sent until then, and the newest values after it.
+   */
+  constructor(
+    now: () => T,
+    send: (name: keyof T, value: T[keyof T]) => void,
+    done: (() => Promise<void>) | null = null,
+  ) {
     this.now = now;
     this.send = send;
+    this.done = done;
     this.shown = { ...now() };
   }
 
@@ -33,8 +46,8 @@ export class LiveControls<T extends object> {
       this.hold(name);
       this.shown[name] = value;
       this.display(); // what is not held shows what is, until the server says that it changed
-      if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
       this.waiting.set(name, value);
+      this.look();
     });
     control.onSettled(() => this.letGo(name));
   }
@@ -46,6 +59,11 @@ export class LiveControls<T extends object> {
     for (const [name, control] of this.controls) control.value = this.shown[name];
   }
 
+  /** Send nothing of what waits: something else has been done that ends it. */
+  forget(): void {
+    this.waiting.clear();
+  }
+
   private hold(name: keyof T, timer?: ReturnType<typeof setTimeout>): void {
     clearTimeout(this.held.get(name));
     this.held.set(name, timer);
@@ -54,14 +72,31 @@ export class LiveControls<T extends object> {
   private letGo(name: keyof T): void {
     if (!this.held.has(name)) return;
     const end = () => {
+      if (this.unanswered) return this.letGo(name); // what the server says is not about this value
       this.held.delete(name);
       this.display();
     };
     this.hold(name, setTimeout(end, ECHO_MS));
   }
 
+  private look(): void {
+    if (this.due || this.unanswered || this.waiting.size === 0) return;
+    this.due = true;
+    requestAnimationFrame(() => this.flush());
+  }
+
   private flush(): void {
+    this.due = false;
+    if (this.waiting.size === 0) return;
     for (const [name, value] of this.waiting) this.send(name, value);
     this.waiting.clear();
+    if (this.done) void this.await(this.done);
+  }
+
+  private async await(done: () => Promise<void>): Promise<void> {
+    this.unanswered = true;
+    await done();
+    this.unanswered = false;
+    this.look();
   }
 }

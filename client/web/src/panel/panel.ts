@@ -53,6 +53,8 @@ export interface PanelActions {
   measure: Measure;
   /** Ask for a stone's tiers. */
   tiers: ListTiers;
+  /** Ends when the server is done with what was sent before. */
+  done: () => Promise<void>;
   /** Show a stone's cutting diagram. */
   openDiagram: (stone: string) => void;
   /** Show the session's links. */
@@ -156,6 +158,11 @@ export class Panel {
   /** On a narrow window the open panel lies where the table of a ray is to be. */
   makeRoom(): void {
     if (window.innerWidth < NARROW) this.root.fold(true);
+  }
+
+  /** Send nothing of what waits in a slider: something else was done to the stone. */
+  forget(): void {
+    this.cut.forget();
   }
 
   /** Whether a refusal is shown in the panel, where the change was made. */

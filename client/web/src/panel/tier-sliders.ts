@@ -48,6 +48,7 @@ export class TierSliders {
   private readonly lists: ListRequests;
   private readonly reaches: ReachRequests;
   private readonly clamped: Clamped;
+  private readonly done: () => Promise<void>;
   private readonly place = document.createElement("div");
   /** Tiers that follow, or why there are none. */
   private readonly status = document.createElement("p");
@@ -59,7 +60,15 @@ export class TierSliders {
   /** The scene whose stone they are of, or which has none. */
   private listedOf: JsonObject | null = null;
 
-  constructor(section: Section, side: Side, send: (patch: JsonObject) => void, list: ListTiers, clamped: Clamped) {
+  /** `done` ends when the server is done with what was sent: an angle may take it seconds. */
+  constructor(
+    section: Section,
+    side: Side,
+    send: (patch: JsonObject) => void,
+    list: ListTiers,
+    clamped: Clamped,
+    done: () => Promise<void>,
+  ) {
     this.section = section.fold(true);
     this.side = side;
     this.send = send;
@@ -69,6 +78,7 @@ export class TierSliders {
     });
     this.reaches = new ReachRequests(list, (tier) => this.span(this.rows.get(tier)));
     this.clamped = clamped;
+    this.done = done;
     this.status.className = "tier-status";
     this.status.setAttribute("role", "status");
     section.add({ element: this.place });
@@ -76,6 +86,7 @@ export class TierSliders {
     this.reset = section.add(
       new Command(words.cut.tiers.asTheyWere, () => {
         for (const { refusal } of this.rows.values()) refusal.hide();
+        this.forget();
         send(asTheyWerePatch(this.scene, this.turned));
       }),
     );
@@ -102,6 +113,11 @@ export class TierSliders {
       return true;
     }
     return false;
+  }
+
+  /** Turn no tier to where a slider has it but the server not yet: something else was done to the stone. */
+  forget(): void {
+    this.controls?.forget();
   }
 
   private get own(): { free: TierAngle[]; following: TierAngle[] } {
@@ -162,11 +178,13 @@ export class TierSliders {
 
   private lay(free: readonly TierAngle[]): void {
     this.rows.clear();
+    this.forget();
     this.useNone();
     this.place.replaceChildren();
     this.controls = new LiveControls<Degrees>(
       () => this.degrees(),
       (name, value) => this.send(tierPatch(this.scene, String(name), value)),
+      this.done,
     );
     for (const tier of free) this.add(String(tier.tier), tier);
   }
