@@ -23,7 +23,9 @@ async def test_a_change_that_its_sender_is_told_was_not_done_is_given_up(tmp_pat
     context = zmq.asyncio.Context()
     engine = context.socket(zmq.ROUTER)
     engine.bind(control)
-    settings = GatewaySettings(control=control, frames=f"ipc://{tmp_path}/frames", request_seconds=0.01)
+    settings = GatewaySettings(
+        control=control, frames=f"ipc://{tmp_path}/frames", request_seconds=0.01, engine_silence_seconds=PATIENCE
+    )
     link = EngineLink(settings)
     running = asyncio.create_task(link.run())
     try:

@@ -511,7 +511,7 @@ async def test_a_session_about_which_somebody_waits_for_an_answer_does_not_expir
 
 
 async def test_a_session_that_only_a_native_viewer_watches_does_not_expire(engine: Endpoints, tmp_path: Path) -> None:
-    async with gateway_before(engine, web=tmp_path, session_idle_seconds=2) as gateway:
+    async with gateway_before(engine, web=tmp_path, session_idle_seconds=10) as gateway:
         idle, watched = await gateway.session(), await gateway.session()
         with FrameSubscription(engine.frames, watch_id(watched)) as subscription:
             await asyncio.to_thread(subscription.receive, PATIENCE)
