@@ -42,7 +42,8 @@ class Server:
                 [sys.executable, "-m", "culet", "serve", "--port", str(self._port), *EMBEDDING, *self._options],
                 stdout=subprocess.PIPE,
                 stderr=messages,
-                env={"CULET_ENGINE_SILENCE_SECONDS": SILENCE_SECONDS} | os.environ,
+                env={"CULET_ENGINE_SILENCE_SECONDS": SILENCE_SECONDS, "CULET_REQUEST_SECONDS": f"{PATIENCE:g}"}
+                | os.environ,
             )
         self.url = self._announced()
         self.http = httpx.Client(base_url=self.url, timeout=PATIENCE)
@@ -106,21 +107,9 @@ class Server:
         raise AssertionError("the server has no gateway")
 
     @contextmanager
-    def engine_held(self) -> Iterator[None]:
-        """The engine stands still, and nobody replaces it, for as long as the `with` lasts."""
-        held = self._process.pid, self.engine_pid()
-        for pid in held:
-            os.kill(pid, signal.SIGSTOP)
-        try:
-            self.until_equal("engine_up", 0)
-            yield
-        finally:
-            for pid in reversed(held):
-                os.kill(pid, signal.SIGCONT)
-
-    @contextmanager
     def engine_gone(self) -> Iterator[None]:
-        """The engine is killed, and no other one is started for as long as the `with` lasts."""
+        """The engine is killed, and no other one is started for as long as the `with` lasts; one that only stood still
+        would end itself after a while."""
         engine = self.engine_pid()
         os.kill(self._process.pid, signal.SIGSTOP)
         try:

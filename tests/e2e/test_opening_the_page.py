@@ -68,7 +68,7 @@ def test_a_page_opened_while_the_engine_is_away_opens_by_itself_once_it_is_back(
 ) -> None:
     view = view_of()
     view.refusals.add(503)
-    with server.engine_held():
+    with server.engine_gone():
         view.page.goto(f"{server.url}/?preset=matte")
         card = view.page.get_by_role("alertdialog")
         card.get_by_text(re.compile(r"Trying again in ([2-9]|\d\d) s")).wait_for()  # the fourth pause, or a later one

@@ -46,25 +46,35 @@ KEEP_THE_STREAM = """(() => {
     constructor(...given) {
       super(...given);
       this.told = {};
+      this.asked = {};
+      this.reached = {};
       window.stream = this;
       this.addEventListener("message", ({ data }) => {
         if (typeof data !== "string") return;
         const notice = JSON.parse(data);
         this.told[notice.type] = notice;
+        if (notice.type === "reached") this.reached[notice.number] ??= notice.step;
       });
     }
   };
 })()"""
-"""From the start of a page: `stream` is its newest, whose `told` has the last notice of each type."""
+"""From the start of a page: `stream` is its newest, whose `told` has the last notice of each type, `reached` the step
+of each question that was answered."""
 
-ASK_WHAT_SHOWS_ALL = """number => {
+ASK_AGAIN_SECONDS = 5
+"""After a question without an answer: an engine that was replaced has forgotten it."""
+
+ASK_WHAT_SHOWS_ALL = """([number, pause]) => {
   const { stream } = window;
-  if (stream?.readyState !== WebSocket.OPEN) return false;
-  if (stream.asked !== number) stream.send(JSON.stringify({ type: "reach", number }));
-  stream.asked = number;
-  return stream.told.reached?.number === number;
+  if (stream?.readyState !== WebSocket.OPEN) return null;
+  const now = performance.now();
+  if (!(number in stream.asked) || now - stream.asked[number] > pause) {
+    stream.asked[number] = now;
+    stream.send(JSON.stringify({ type: "reach", number }));
+  }
+  return stream.reached[number] ?? null;
 }"""
-"""True once the engine has said which step is the first that shows all that the page has sent before."""
+"""The step that is the first to show all that the page has sent before, once the engine has said so."""
 
 AT_REST = """([step, final]) => {
   const { lastFrame, state, fading } = culet;
@@ -73,6 +83,13 @@ AT_REST = """([step, final]) => {
   return lastFrame?.step > step && lastFrame.flags & final && !fading && settled;
 }"""
 """Before a page has said its size, the server renders for one of its own; of several pages one has the say."""
+
+WHAT_IS_SHOWN = """() => {
+  const { width, height } = document.getElementById("picture");
+  const frame = culet.lastFrame;
+  return `frame ${frame?.width} x ${frame?.height} on a canvas of ${width} x ${height}, step ${frame?.step}, ` +
+    `flags ${frame?.flags}, fading ${culet.fading}, viewers ${culet.state?.viewers}`;
+}"""
 
 READ_THE_CANVAS = "() => [culet.lastFrame, document.getElementById('picture').toDataURL('image/png')]"
 
@@ -149,22 +166,25 @@ class View:
         """One of the page's counters, such as framesShown."""
         return cast(float, self.page.evaluate("name => culet[name]", name))
 
-    def until(self, condition: str, argument: object = None) -> None:
-        """Wait until a JavaScript function of the argument is true.
+    def until(self, condition: str, argument: object = None, tell: str = "() => ''") -> None:
+        """Wait until a JavaScript function of the argument is true; `tell` is another, of what there is if it never is.
 
         Asked from here: Playwright's `wait_for_function` evaluates text in the page, which the page's policy forbids.
         """
         deadline = time.monotonic() + PATIENCE
-        while not self._holds(condition, argument):
-            assert time.monotonic() < deadline, f"never true in {PATIENCE} s: {condition} of {argument}"
+        while not self._evaluated(condition, argument):
+            if time.monotonic() > deadline:
+                there = self._evaluated(tell, None)
+                raise AssertionError(f"never true in {PATIENCE} s: {condition} of {argument}; {there}")
             self.page.wait_for_timeout(POLL_MILLISECONDS)
 
-    def _holds(self, condition: str, argument: object) -> bool:
+    def _evaluated(self, script: str, argument: object) -> Any:  # noqa: ANN401 - whatever the script makes
+        """None while the page is reloaded."""
         try:
-            return bool(self.page.evaluate(condition, argument))
+            return self.page.evaluate(script, argument)
         except PlaywrightError as error:
-            if "context was destroyed" in str(error):  # by a reload
-                return False
+            if "context was destroyed" in str(error):
+                return None
             raise
 
     def until_streams(self, number: int) -> None:
@@ -188,8 +208,11 @@ class View:
         self.settle_messages()
         self._questions += 1
         number = 2**31 + self._questions  # the page's own are small
-        self.until(ASK_WHAT_SHOWS_ALL, number)
-        return cast(int, self.page.evaluate("() => stream.told.reached.step"))
+        deadline = time.monotonic() + PATIENCE
+        while (step := self._evaluated(ASK_WHAT_SHOWS_ALL, [number, ASK_AGAIN_SECONDS * MILLISECONDS])) is None:
+            assert time.monotonic() < deadline, f"not answered in {PATIENCE} s: which step shows all that was sent"
+            self.page.wait_for_timeout(POLL_MILLISECONDS)
+        return cast(int, step)
 
     def until_told(self) -> int:
         """As `reach`; when it returns the page knows what the engine does: states are told 25 times a second, and
@@ -210,7 +233,7 @@ class View:
 
     def at_rest(self, after: int = -1) -> Seen:
         """The canvas once it shows the finished picture of a step later than that."""
-        self.until(AT_REST, [after, int(Flags.FINAL)])
+        self.until(AT_REST, [after, int(Flags.FINAL)], tell=WHAT_IS_SHOWN)
         return self.look()
 
     def record(self) -> None:
@@ -237,16 +260,20 @@ class View:
         """Take a slider from its start to parts of its length, and let it go at the last."""
         slider = self.page.get_by_role("slider", name=name)
         mouse = self.page.mouse
-        while True:  # what is loaded above it may move it away
+        deadline = time.monotonic() + PATIENCE
+        while True:  # what is loaded above it may move it away, at any time until it is pressed
             slider.scroll_into_view_if_needed()
             box = slider.bounding_box()
             assert box is not None
             start, length, y = box["x"] + THUMB / 2, box["width"] - THUMB, box["y"] + box["height"] / 2
             mouse.move(start, y)
             if slider.evaluate("(slider, [x, y]) => document.elementFromPoint(x, y) === slider", [start, y]):
-                break
-        mouse.down()
-        assert slider.evaluate("slider => slider === document.activeElement")
+                mouse.down()
+                if slider.evaluate("slider => slider === document.activeElement"):
+                    break
+                mouse.up()
+            assert time.monotonic() < deadline, f"the slider {name} was never where it was looked for in {PATIENCE} s"
+            self.page.wait_for_timeout(POLL_MILLISECONDS)
         for part in to:
             mouse.move(start + part * length, y)
             self.settle_messages()
