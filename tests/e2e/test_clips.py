@@ -58,9 +58,9 @@ def played(view: View, film: Path) -> dict[str, Any]:
     return cast(dict[str, Any], answer)
 
 
-def turn(view: View) -> None:
+def turn(view: View, pictures: int = 8) -> None:
     """Turn the camera by keys, some pictures long, each of which is seen."""
-    for _ in range(8):
+    for _ in range(pictures):
         step = view.page.evaluate("() => culet.lastFrame.step")
         view.page.keyboard.press("Shift+ArrowLeft")
         view.until("step => culet.lastFrame.step > step", step)
@@ -93,7 +93,7 @@ def test_the_next_seconds_are_recorded_until_told_to_stop(view_of: ViewOf, tmp_p
     view.open()
     view.page.keyboard.press("n")
     view.page.get_by_text("Recording, for").wait_for()
-    turn(view)
+    turn(view, 3)  # before it ends by itself
     view.page.wait_for_timeout(500)  # a recorder by plain http takes pictures at times of its own: the last one too
     film = played(view, saved(view, tmp_path, "n"))
     assert film["width"] / film["height"] == pytest.approx(350 / 240, rel=0.02)
