@@ -176,12 +176,6 @@ typedef struct {
   WITH((of).direction.y)                                                                                               \
   WITH((of).direction.z)                                                                                               \
   WITH((of).weight)
-#define PACK(number)                                                                                                   \
-  pack_lanes(packing, number, rows);                                                                                   \
-  rows += MOST_WAITING;
-#define LOAD(number)                                                                                                   \
-  number = load_lanes(rows);                                                                                           \
-  rows += MOST_WAITING;
 
 #define FOLLOWED_NUMBERS (CHAIN_NUMBERS + 2)
 typedef struct {
@@ -190,20 +184,22 @@ typedef struct {
 } waiting_chainsL;
 
 static inline void wait_as_chain(waiting_chainsL *waiting, followedL ray, packing_t packing) {
+  const int stride = MOST_WAITING;
   real *rows = waiting->number[0] + waiting->count;
-  EACH_OF_CHAIN(ray.chains, PACK)
-  PACK(ray.own)
-  PACK(ray.met)
+  EACH_OF_CHAIN(ray.chains, PACK_NUMBER)
+  PACK_NUMBER(ray.own)
+  PACK_NUMBER(ray.met)
   waiting->count += packing.count;
 }
 
 static inline followedL next_chains(waiting_chainsL *waiting) {
   followedL ray;
   ray.chains.alive = take_waiting(&waiting->count, waiting->number[0], FOLLOWED_NUMBERS);
+  const int stride = MOST_WAITING;
   const real *rows = waiting->number[0] + waiting->count;
-  EACH_OF_CHAIN(ray.chains, LOAD)
-  LOAD(ray.own)
-  LOAD(ray.met)
+  EACH_OF_CHAIN(ray.chains, LOAD_NUMBER)
+  LOAD_NUMBER(ray.own)
+  LOAD_NUMBER(ray.met)
   return ray;
 }
 
@@ -214,24 +210,26 @@ typedef struct {
 } waiting_pairsL;
 
 static inline void wait_as_pair(waiting_pairsL *waiting, pairL ray, packing_t packing) {
+  const int stride = MOST_WAITING;
   real *rows = waiting->number[0] + waiting->count;
   ray.blue.weight = only(ray.blue.alive, ray.blue.weight);
   ray.red.weight = only(ray.red.alive, ray.red.weight);
-  EACH_OF_CHAIN(ray.blue, PACK)
-  EACH_OF_CHAIN(ray.red, PACK)
-  PACK(ray.together)
-  PACK(ray.met)
+  EACH_OF_CHAIN(ray.blue, PACK_NUMBER)
+  EACH_OF_CHAIN(ray.red, PACK_NUMBER)
+  PACK_NUMBER(ray.together)
+  PACK_NUMBER(ray.met)
   waiting->count += packing.count;
 }
 
 static inline pairL next_pairs(waiting_pairsL *waiting) {
   pairL ray;
   const maskL taken = take_waiting(&waiting->count, waiting->number[0], PAIR_NUMBERS);
+  const int stride = MOST_WAITING;
   const real *rows = waiting->number[0] + waiting->count;
-  EACH_OF_CHAIN(ray.blue, LOAD)
-  EACH_OF_CHAIN(ray.red, LOAD)
-  LOAD(ray.together)
-  LOAD(ray.met)
+  EACH_OF_CHAIN(ray.blue, LOAD_NUMBER)
+  EACH_OF_CHAIN(ray.red, LOAD_NUMBER)
+  LOAD_NUMBER(ray.together)
+  LOAD_NUMBER(ray.met)
   ray.blue.alive = taken & (ray.blue.weight > 0);
   ray.red.alive = taken & (ray.red.weight > 0);
   return ray;

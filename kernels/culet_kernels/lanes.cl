@@ -189,6 +189,14 @@ static inline void pack_ints(packing_t packing, intL value, int *to) {
 }
 #endif
 
+// A number of a packet to its row, or from the row, and on to the next of rows that lie `stride` numbers apart.
+#define PACK_NUMBER(number)                                                                                            \
+  pack_lanes(packing, number, rows);                                                                                   \
+  rows += stride;
+#define LOAD_NUMBER(number)                                                                                            \
+  number = load_lanes(rows);                                                                                           \
+  rows += stride;
+
 // The number of the first lane that a mask names; there must be one.
 #if LANES == 1
 static inline int first_number(maskL mask, intL number) { return number; }

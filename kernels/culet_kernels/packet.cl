@@ -60,15 +60,9 @@ typedef struct {
   EACH_EVENT(packet, WITH)
 
 // Rows that lie `stride` numbers apart. A packet is written whole, and counted as far as it is meant.
-#define PACK_NUMBER(number)                                                                                            \
-  pack_lanes(packing, number, rows);                                                                                   \
-  rows += stride;
 #define PACK_WHOLE(number)                                                                                             \
   pack_ints(packing, number, wholes);                                                                                  \
   wholes += stride;
-#define LOAD_NUMBER(number)                                                                                            \
-  number = load_lanes(rows);                                                                                           \
-  rows += stride;
 #define LOAD_WHOLE(number)                                                                                             \
   number = load_ints(wholes);                                                                                          \
   wholes += stride;
