@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
@@ -12,37 +14,130 @@ import zmq.asyncio
 from culet.errors import EngineUnavailableError
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
-from culet_protocol.engine import REQUEST_NUMBER, Cancel, Control, Heartbeat, Status, engine_request
-from culet_protocol.messages import Undo
+from culet_protocol.engine import (
+    REQUEST_NUMBER,
+    Cancel,
+    CloseSession,
+    Control,
+    Heartbeat,
+    OpenSession,
+    Reply,
+    Status,
+    engine_request,
+)
+from culet_protocol.messages import Message, Undo
 from shared.patience import PATIENCE
 
+SESSION = "a" * 32
+NEW = OpenSession(session=SESSION, scene={})
+AGAIN = OpenSession(session=SESSION, scene={}, snapshot={})
 
-async def test_a_change_that_its_sender_is_told_was_not_done_is_given_up(tmp_path: Path) -> None:
-    """And nothing else is: what it is for may be done all the same."""
-    control = f"ipc://{tmp_path}/control"
+
+class SilentEngine:
+    """Hears what a link says, and answers nothing but what it is told to."""
+
+    def __init__(self, socket: zmq.asyncio.Socket) -> None:
+        self._socket = socket
+        self.peer = b""
+        """Who spoke last."""
+
+    async def say(self, number: int, message: Message) -> None:
+        await self._socket.send_multipart([self.peer, REQUEST_NUMBER.pack(number), message.model_dump_json().encode()])
+
+    async def greet(self) -> None:
+        """Wait for a connection, and tell that there is an engine."""
+        self.peer, *_ = await self._socket.recv_multipart()
+        await self.say(0, Heartbeat(instance="1"))
+
+    async def heard(self) -> tuple[int, Message]:
+        """The next request, with its number."""
+        self.peer, number, request = await self._socket.recv_multipart()
+        return REQUEST_NUMBER.unpack(number)[0], engine_request.validate_json(request)
+
+
+@pytest.fixture(autouse=True)
+def silent(monkeypatch: pytest.MonkeyPatch) -> asyncio.Event:
+    """Set, it has the engine been silent for so long that links connect anew; by itself that never comes."""
+    event = asyncio.Event()
+
+    async def silence(*_: object) -> None:
+        await event.wait()
+        event.clear()
+
+    monkeypatch.setattr(EngineLink, "_silence", silence)
+    return event
+
+
+@asynccontextmanager
+async def linked(folder: Path, request_seconds: float) -> AsyncIterator[tuple[EngineLink, SilentEngine]]:
+    """A link that is ready, and the engine that it speaks with."""
+    control = f"ipc://{folder}/control"
     context = zmq.asyncio.Context()
-    engine = context.socket(zmq.ROUTER)
-    engine.bind(control)
-    settings = GatewaySettings(
-        control=control, frames=f"ipc://{tmp_path}/frames", request_seconds=0.01, engine_silence_seconds=PATIENCE
+    socket = context.socket(zmq.ROUTER)
+    socket.bind(control)
+    link = EngineLink(
+        GatewaySettings(
+            control=control,
+            frames=f"ipc://{folder}/frames",
+            request_seconds=request_seconds,
+            engine_silence_seconds=PATIENCE,
+        )
     )
-    link = EngineLink(settings)
     running = asyncio.create_task(link.run())
     try:
         async with asyncio.timeout(PATIENCE):
-            peer, *_ = await engine.recv_multipart()
-            heartbeat = Heartbeat(instance="1", encodes=()).model_dump_json().encode()
-            await engine.send_multipart([peer, REQUEST_NUMBER.pack(0), heartbeat])
+            engine = SilentEngine(socket)
+            await engine.greet()
             await link.ready.wait()
-            for message in (Status(), Control(session="a" * 32, event=Undo())):
-                with pytest.raises(EngineUnavailableError, match="did not answer within"):
-                    await link.request(message)
-            came = [await engine.recv_multipart() for _ in range(3)]
-        assert [type(engine_request.validate_json(parts[2])) for parts in came] == [Status, Control, Cancel]
-        cancel = engine_request.validate_json(came[2][2])
-        assert isinstance(cancel, Cancel)
-        assert REQUEST_NUMBER.pack(cancel.request) == came[1][1]
+            yield link, engine
     finally:
         running.cancel()
         await asyncio.gather(running, return_exceptions=True)
         context.destroy(linger=0)
+
+
+async def test_a_change_that_its_sender_is_told_was_not_done_is_given_up(tmp_path: Path) -> None:
+    """And nothing else is: what it is for may be done all the same."""
+    async with linked(tmp_path, request_seconds=0.01) as (link, engine):
+        for message in (Status(), AGAIN, Control(session=SESSION, event=Undo()), NEW):
+            with pytest.raises(EngineUnavailableError, match="did not answer within"):
+                await link.request(message)
+        came = [await engine.heard() for _ in range(6)]
+        assert [type(request) for _, request in came] == [Status, OpenSession, Control, Cancel, OpenSession, Cancel]
+        for (number, _), (_, cancel) in (came[2:4], came[4:6]):
+            assert isinstance(cancel, Cancel)
+            assert cancel.request == number
+
+
+async def test_a_session_that_nobody_waits_to_open_is_given_up_unless_somebody_had_it_before(tmp_path: Path) -> None:
+    async with linked(tmp_path, request_seconds=PATIENCE) as (link, engine):
+        numbers = []
+        for message in (AGAIN, CloseSession(session=SESSION), NEW):
+            asking = asyncio.create_task(link.request(message))
+            number, heard = await engine.heard()
+            assert heard == message
+            numbers.append(number)
+            asking.cancel()
+            await asyncio.gather(asking, return_exceptions=True)
+        _, cancel = await engine.heard()
+        assert cancel == Cancel(request=numbers[-1])
+
+
+async def test_what_was_asked_by_a_connection_that_is_gone_is_not_waited_for(
+    tmp_path: Path, silent: asyncio.Event
+) -> None:
+    """An engine answers to the connection that asked, which another one does not hear."""
+    async with linked(tmp_path, request_seconds=PATIENCE) as (link, engine):
+        asking = asyncio.create_task(link.request(Status(), patient=True))
+        await engine.heard()
+        before = engine.peer
+        silent.set()
+        with pytest.raises(EngineUnavailableError, match="was made anew"):
+            await asking
+        await engine.greet()
+        assert engine.peer != before
+        assert link.ready.is_set(), "the engine was not silent for long enough to count as gone"
+        asking = asyncio.create_task(link.request(Status()))
+        number, _ = await engine.heard()
+        await engine.say(number, Reply(status=200, result={"sessions": 0}))
+        assert (await asking)[0] == {"sessions": 0}

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from culet.gateway.link import EngineLink
+from culet.gateway.session_places import SessionPlaces
 from culet.gateway.session_record import NO_DEMAND, SessionRecord
 from culet.gateway.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads import Uploads, words
+from culet_protocol.engine import CloseSession, GetSession
 from culet_protocol.frame import Codec, Flags, Frame
-from culet_protocol.messages import Engine, State, Viewers
+from culet_protocol.messages import Engine, Message, State, Viewers
 
 SETTINGS = GatewaySettings(control="ipc://unused", frames="ipc://unused")
 
@@ -83,3 +88,71 @@ def test_the_bytes_that_frames_may_have_are_those_of_the_link_of_whoever_decides
 def test_the_words_of_a_document_are_all_its_texts() -> None:
     scene = {"stones": [{"mesh": "a"}, {"mesh": None}, {}], "environment": {"kind": "image", "image": "b"}}
     assert words((scene, None, 3)) == {"a", "b", "image"}
+
+
+def asked_about(_: Sessions, session: SessionRecord) -> None:
+    session.asked += 1
+
+
+def used(sessions: Sessions, session: SessionRecord) -> None:
+    sessions.get(session.id)
+    session.used += 1  # however coarse the clock is
+
+
+def joined(sessions: Sessions, session: SessionRecord) -> None:
+    sessions.join(session)
+
+
+def left_alone(*_: object) -> None:
+    pass
+
+
+@pytest.mark.parametrize("meanwhile", [left_alone, used, asked_about, joined])
+async def test_a_session_that_is_used_while_the_engine_says_who_watches_does_not_expire(
+    sessions: Sessions, monkeypatch: pytest.MonkeyPatch, meanwhile: Callable[[Sessions, SessionRecord], None]
+) -> None:
+    session = sessions._sessions["ab" * 16] = SessionRecord("ab" * 16, {})
+    told: list[type[Message]] = []
+
+    async def request(_: EngineLink, message: Message) -> tuple[dict[str, Any], bytes]:
+        told.append(type(message))
+        meanwhile(sessions, session)
+        return {"watched": False}, b""
+
+    monkeypatch.setattr(EngineLink, "request", request)
+    await sessions._expire(session)
+    assert told == ([GetSession, CloseSession] if meanwhile is left_alone else [GetSession])
+    assert (session.id in sessions) is (meanwhile is not left_alone)
+
+
+def test_waiting_for_an_answer_about_a_session_is_using_it_until_then() -> None:
+    session = SessionRecord("ab" * 16, {})
+    with session.awaited():
+        with session.awaited():
+            pass
+        assert session.asked == 1
+        session.used = 0
+    assert session.asked == 0
+    assert session.used > 0
+
+
+@pytest.mark.parametrize("meanwhile", [False, True], ids=["before", "while the engine says who watches"])
+async def test_a_session_about_which_somebody_waits_for_an_answer_makes_no_room(*, meanwhile: bool) -> None:
+    """Though it was used longest ago."""
+    asked, idle, new = (SessionRecord(name * 32, {}, owner) for name, owner in zip("abc", ("x", "x", "y"), strict=True))
+    records, closed = {session.id: session for session in (asked, idle, new)}, list[SessionRecord]()
+
+    async def close(session: SessionRecord, _: str) -> None:
+        closed.append(records.pop(session.id))
+
+    async def watched_elsewhere(session: SessionRecord) -> bool:
+        if session is asked:
+            assert meanwhile, "the engine is not even asked"
+            asked.asked += 1
+        return False
+
+    if not meanwhile:
+        asked.asked += 1
+    places = SessionPlaces(SETTINGS.model_copy(update={"max_sessions": 2}), records, close, watched_elsewhere)
+    await places.make_room(new)
+    assert closed == [idle]

@@ -135,7 +135,10 @@ async def test_a_client_has_one_design_cut_at_a_time(gateway: Gateway) -> None:
         for _ in range(5):  # longer than the engine takes to refuse
             assert (await gateway.http.get(f"{session}/tiers")).status_code == 200, "the usual ends need no turn"
         assert len(gateway.parts.stills) == 2, "both have places, and wait"
+        (record,) = (record for record in gateway.parts.sessions if record.id in session)
+        assert record.asked == 2, "it does not expire meanwhile"
     assert await both == [422, 422]
+    assert record.asked == 0
 
 
 async def test_what_cannot_be_graded_or_drawn_is_a_problem(gateway: Gateway) -> None:
