@@ -81,6 +81,8 @@ def test_another_cut_lies_level_and_the_same_by_its_proportions_is_not_turned(br
     assert slope_degrees(orientation, lowest_facet(shape, orientation)) < LEVEL_DEGREES
     told = DEFAULT.model_copy(update={"cut": BrilliantCut(table_percent=60)})
     assert on_the_floor(told, shape_of(told, {}), DEFAULT, brilliant)[1] == DEFAULT.orientation
+    mesh = DEFAULT.model_copy(update={"mesh": "a"})
+    assert on_the_floor(mesh, shape_of(told, {}), mesh, brilliant)[1] == DEFAULT.orientation, "its angles are others"
 
 
 def test_a_smaller_stone_lies_where_the_larger_one_did(brilliant: Shape) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 from dataclasses import dataclass, field
 
+from culet.client_turns import ClientTurns
 from culet.gateway.bucket import ClientBuckets
-from culet.gateway.client_turns import ClientTurns
 from culet.gateway.link import EngineLink
 from culet.gateway.metrics import Metrics
 from culet.gateway.sessions import Sessions

@@ -79,9 +79,11 @@ def test_qualities_that_cannot_do_are_not_tried(monkeypatch: pytest.MonkeyPatch)
             first, rgb = jpeg.MOVING_QUALITY, np.asarray(Image.fromarray(rgb).reduce(2))
         assert (found.quality, found.width) == (fitting[0], rgb.shape[1])
         assert found.data == encode(rgb, fitting[0])
+        assert part > jpeg.FAR_TOO_MANY or jpeg.LEAST_QUALITY not in tried
     assert len(tried) <= 7
 
 
 def test_a_picture_that_cannot_have_so_few_bytes_is_encoded_all_the_same() -> None:
     tiny = jpeg.encode_within(CHECKER, 92, 1)
     assert (tiny.width, tiny.height, tiny.quality) == (32, 32, jpeg.LEAST_QUALITY)
+    assert jpeg.encode_within(CHECKER, jpeg.LEAST_QUALITY, 1) == tiny

@@ -6,18 +6,22 @@ import asyncio
 import gc
 import threading
 from functools import partial
+from typing import Any
 
 import pytest
 
 from culet.engine.process.staging import (
     CHANGE_SECONDS,
     MOST_WAITING,
+    THREADS,
     ShapesNeededError,
     Staging,
     to_its_end,
     without_shapes,
 )
 from culet.errors import BusyError, InputError, NotFoundError
+from culet.geometry.load import shape_of
+from culet.geometry.shape import Shape
 from culet.scene import Scene
 from culet.stage import Library, Stage
 from shared.patience import PATIENCE
@@ -83,6 +87,36 @@ async def test_what_was_not_begun_is_never_begun() -> None:
     first.go_on.set()
     assert await one == 3
     assert not never.begun.is_set()
+
+
+async def test_what_waits_for_a_thread_when_it_is_given_up_is_never_begun() -> None:
+    staging, never = Staging(Library()), Held()
+    others = [Held() for _ in range(THREADS)]
+    tasks = [asyncio.create_task(staging.make(str(number), held)) for number, held in enumerate(others)]
+    for held in others:
+        await held.until_begun()
+    waiting = asyncio.create_task(staging.make("one more", never))
+    await asyncio.sleep(0)
+    waiting.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await waiting
+    for held in others:
+        held.go_on.set()
+    assert await asyncio.gather(*tasks) == [3] * THREADS
+    assert not never.begun.is_set()
+    assert not staging._waiting, "nothing is kept of clients that wait for nothing"
+
+
+def test_a_library_is_looked_at_before_and_after_each_shape(monkeypatch: pytest.MonkeyPatch) -> None:
+    done = []
+
+    def noted(*arguments: Any) -> Shape:  # noqa: ANN401
+        done.append("shape")
+        return shape_of(*arguments)
+
+    monkeypatch.setattr("culet.stage.shape_of", noted)
+    Stage.of(THREE, Library(around_shape=lambda: done.append("look")))
+    assert done == ["look", "shape", "look"] * 3
 
 
 async def test_a_change_is_refused_whose_shapes_take_too_long_and_a_smaller_one_is_not() -> None:

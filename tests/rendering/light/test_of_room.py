@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import weakref
 
 import numpy as np
 
@@ -17,7 +18,8 @@ def test_stones_that_move_ask_for_nothing_again() -> None:
     asked = itertools.count(1)
     found = of_room(lambda _: next(asked))
     moved = MATTE.moved(((0.0, 5.0, 0.0), (1.0, 0.0, 0.0, 0.0)))
-    assert [found(Stage.of(scene)) for scene in (MATTE, moved, MATTE)] == [1, 1, 1]
+    other = MATTE.model_copy(update={"emitters": MATTE.emitters[:1]})  # of a session that moves at the same time
+    assert [found(Stage.of(scene)) for scene in (MATTE, other, moved, other, MATTE)] == [1, 2, 1, 2, 1]
 
 
 def test_another_light_or_room_does() -> None:
@@ -37,5 +39,7 @@ def test_a_sky_that_is_gone_is_none_that_is_missing() -> None:
     found = of_room(lambda stage: stage.panorama is None)
     sky = np.ones((2, 4, 3), np.float32)
     assert found(Stage(MATTE, (), sky)) is False
+    kept = weakref.ref(sky)
     del sky
+    assert kept() is None, "what was found keeps no sky"
     assert found(Stage(MATTE, (), None)) is True

@@ -37,8 +37,8 @@ afterEach(() => {
   vi.unstubAllGlobals();
 });
 
-/** A view of a picture at rest, with what it complained of. */
-function view(session: string | null, differs = true): unknown[] {
+/** A view of a picture at rest, and what it complained of. */
+function view(session: string | null, differs = true): { divided: DividedView; told: unknown[] } {
   const told: unknown[] = [];
   const world = {
     visit: { session, scene: {}, lastFrame: { step: 1n, width: 4, height: 3 } },
@@ -46,8 +46,7 @@ function view(session: string | null, differs = true): unknown[] {
     comparison: { beside: () => (differs ? { stone: "a", design: {} } : null) },
     complaints: { attempt: (work: () => Promise<void>) => void work().catch((error: unknown) => told.push(error)) },
   };
-  new DividedView(world as unknown as DivisionWorld);
-  return told;
+  return { divided: new DividedView(world as unknown as DivisionWorld), told };
 }
 
 /** The first picture comes, or is refused, when that is called; a second one never comes. */
@@ -67,7 +66,7 @@ const hidden = () => made.find(({ tag }) => tag === "img")?.hidden;
 
 it("says that the kept design's side is being rendered from when it is asked for until it is there", async () => {
   const { come } = asked();
-  const told = view("s");
+  const { told } = view("s");
   expect(caption()).toBe(keptSide);
   await vi.runAllTimersAsync();
   expect([caption(), hidden()]).toEqual([keptWaits, true]);
@@ -79,7 +78,7 @@ it("says that the kept design's side is being rendered from when it is asked for
 
 it("does not say so any more once that was refused", async () => {
   const { refuse } = asked();
-  const told = view("s");
+  const { told } = view("s");
   await vi.runAllTimersAsync();
   expect(caption()).toBe(keptWaits);
   refuse(new Error("busy"));
@@ -95,6 +94,32 @@ it.each([
   asked();
   view(session, differs);
   await vi.runAllTimersAsync();
+  expect(caption()).toBe(keptSide);
+  expect(rest.beside).not.toHaveBeenCalled();
+});
+
+it("says nothing more of what was given up for another picture", async () => {
+  const { refuse } = asked();
+  const { divided, told } = view("s");
+  await vi.runAllTimersAsync();
+  divided.changed();
+  expect(caption()).toBe(keptSide);
+  await vi.runAllTimersAsync();
+  expect(caption()).toBe(keptWaits); // for the next one
+  refuse(new Error("aborted"));
+  await vi.runAllTimersAsync();
+  expect([caption(), told]).toEqual([keptWaits, []]);
+});
+
+it("asks for nothing once another picture has come before the scene of the first", async () => {
+  asked();
+  const scene = { come: (_: object): void => undefined };
+  rest.sceneShown.mockReturnValueOnce(new Promise((come) => Object.assign(scene, { come })));
+  const { divided } = view("s");
+  await vi.runAllTimersAsync();
+  divided.changed();
+  scene.come({});
+  await vi.advanceTimersByTimeAsync(0);
   expect(caption()).toBe(keptSide);
   expect(rest.beside).not.toHaveBeenCalled();
 });

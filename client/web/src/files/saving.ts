@@ -20,9 +20,9 @@ export interface SavedWorld {
   /** Null before there is a picture. */
   seen: () => SeenFrame | null;
   scene: () => JsonObject | null;
-  /** Tell the user something that passes; what is returned takes the words away. */
+  /** Tell the user something that passes. */
   note: (text: string) => void;
-  /** Until what is returned is called. */
+  /** Tell the user what goes on, until what is returned is called. */
   notice: (text: string) => () => void;
 }
 

@@ -18,8 +18,6 @@ export class LiveControls<T extends object> {
   private readonly now: () => T;
   private readonly send: (name: keyof T, value: T[keyof T]) => void;
   private readonly done: (() => Promise<void>) | null;
-  /** What waits is sent with the next picture. */
-  private due = false;
   /** What was sent is not done. */
   private unanswered = false;
 
@@ -46,8 +44,8 @@ export class LiveControls<T extends object> {
       this.hold(name);
       this.shown[name] = value;
       this.display(); // what is not held shows what is, until the server says that it changed
+      if (this.waiting.size === 0) requestAnimationFrame(() => void this.flush());
       this.waiting.set(name, value);
-      this.look();
     });
     control.onSettled(() => this.letGo(name));
   }
@@ -79,24 +77,16 @@ export class LiveControls<T extends object> {
     this.hold(name, setTimeout(end, ECHO_MS));
   }
 
-  private look(): void {
-    if (this.due || this.unanswered || this.waiting.size === 0) return;
-    this.due = true;
-    requestAnimationFrame(() => this.flush());
-  }
-
-  private flush(): void {
-    this.due = false;
-    if (this.waiting.size === 0) return;
-    for (const [name, value] of this.waiting) this.send(name, value);
-    this.waiting.clear();
-    if (this.done) void this.await(this.done);
-  }
-
-  private async await(done: () => Promise<void>): Promise<void> {
-    this.unanswered = true;
-    await done();
-    this.unanswered = false;
-    this.look();
+  /** Send what waits, and once that is done what has come to wait meanwhile. */
+  private async flush(): Promise<void> {
+    if (this.unanswered) return;
+    while (this.waiting.size > 0) {
+      for (const [name, value] of this.waiting) this.send(name, value);
+      this.waiting.clear();
+      if (!this.done) return;
+      this.unanswered = true;
+      await this.done();
+      this.unanswered = false;
+    }
   }
 }

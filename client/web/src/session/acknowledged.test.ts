@@ -15,6 +15,7 @@ it("ends to wait with the answer to its own question, or when none will come", a
   acknowledged.heard({ type: "reached", number: second, step: 4 });
   await vi.advanceTimersByTimeAsync(0);
   expect(done).toEqual(["second"]);
+  expect(vi.getTimerCount()).toBe(1);
   await vi.runAllTimersAsync();
   expect(done).toEqual(["second", "first"]);
 });

@@ -22,6 +22,9 @@ class FakeElement {
 
   setAttribute(): void {}
   addEventListener(): void {}
+  querySelector(): null {
+    return null;
+  }
 }
 
 beforeEach(() => {
@@ -50,6 +53,16 @@ it("a notice stays until what it tells of is done, whatever else comes", () => {
   vi.runAllTimers();
   expect(texts()).toEqual(["rendering"]);
   clear();
+  expect(texts()).toEqual([]);
+});
+
+it("a task stays until it ends, whatever else comes", () => {
+  const { toasts, texts } = corner();
+  const { end } = toasts.task("saving", "Stop", () => undefined);
+  for (const text of ["a", "b", "c", "d", "e"]) toasts.note(text);
+  vi.runAllTimers();
+  expect(texts()).toEqual(["saving"]);
+  end();
   expect(texts()).toEqual([]);
 });
 

@@ -17,8 +17,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from time import thread_time
 from typing import TypeVar
-from weakref import WeakValueDictionary
 
+from culet.client_turns import ClientTurns
 from culet.errors import BusyError, InputError
 from culet.stage import Library
 
@@ -103,9 +103,9 @@ class Staging:
         self._library = library
         self._timer = timer
         self._threads = ThreadPoolExecutor(THREADS, "staging")
-        self._locks: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
-        """Of clients that have a turn or wait for one."""
+        self._turns = ClientTurns()
         self._waiting: Counter[str] = Counter()
+        """Of each client, what has its turn or waits for one."""
 
     @contextlib.asynccontextmanager
     async def turn(self, client: str | None) -> AsyncIterator[Turn]:
@@ -113,10 +113,9 @@ class Staging:
         name = client or ""
         if self._waiting[name] >= MOST_WAITING:
             raise BusyError(f"{self._waiting[name]} changes and pictures of yours wait already; try again later")
-        lock = self._locks.setdefault(name, asyncio.Lock())
         self._waiting[name] += 1
         try:
-            async with lock:
+            async with self._turns.turn(name):
                 yield Turn(self._threads, self._library, self._timer)
         finally:
             self._waiting[name] -= 1
@@ -132,7 +131,7 @@ class Staging:
 async def to_its_end(working: asyncio.Future[T], give_up: Callable[[], object] = lambda: None) -> T:
     """The result of work in another thread, which is waited for even where nobody waits for this any more."""
     try:
-        return await asyncio.shield(working)
+        await asyncio.wait([working])  # which is not cancelled with this
     except asyncio.CancelledError:
         give_up()
         while not working.done():
@@ -141,3 +140,4 @@ async def to_its_end(working: asyncio.Future[T], give_up: Callable[[], object] =
         if not working.cancelled():
             working.exception()  # which is nobody's any more
         raise
+    return working.result()

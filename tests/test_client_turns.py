@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from culet.gateway.client_turns import ClientTurns
+from culet.client_turns import ClientTurns
 from shared.patience import PATIENCE
 
 
