@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, assert_never
 
@@ -37,7 +36,7 @@ from culet_protocol.watch import VIDEO_OF_NAME
 
 SHAPING_EVENTS = frozenset({"patch_scene", "set_scene", "undo", "redo"})
 """They may make shapes, which takes their client's turn."""
-LONG_EVENTS = frozenset(
+LONG_EVENTS = SHAPING_EVENTS | frozenset(
     {
         "toggle_fall",
         "reset_stone",
@@ -52,7 +51,7 @@ LONG_EVENTS = frozenset(
         "turn_stone",
     }
 )
-"""They may make a stone's hull, try whether a stone that sleeps would move, or look for a way among all triangles
+"""They may make a stone or its hull, try whether a stone that sleeps would move, or look for a way among all triangles
 of a mesh that the camera is near: other sessions go on meanwhile."""
 
 Answer = tuple[dict[str, Any], bytes | None]
@@ -171,7 +170,7 @@ class Requests:
                 if request.event.type in SHAPING_EVENTS:
                     await self._reshape(live, request.event)
                 else:
-                    await self._change(session, request.event)
+                    await self._change(session, request.event, self._library)
         finally:
             self._painter.wake()
         return {"step": session.shown.step, "falling": session.motion.falling}
@@ -179,19 +178,16 @@ class Requests:
     async def _reshape(self, live: LivePicture, event: SessionEvent) -> None:
         """An event that may make shapes: at once if it makes none, or else in a turn of the client."""
         session = live.session
-        at_once = partial(events.apply, session, event, without_shapes(self._library))
-        with contextlib.suppress(ShapesNeededError):
-            async with session.motion.still():
-                with self._told(session):
-                    await to_its_end(asyncio.ensure_future(asyncio.to_thread(at_once)))
+        with suppress(ShapesNeededError):
+            await self._change(session, event, without_shapes(self._library))
             return
         there = partial(self.sessions.check, live)  # for who waits for one that is closed, nothing is made
         async with self._changes.turn(self.sessions.client(live)) as turn, session.motion.still():
             with self._told(session):
                 await turn.make(partial(events.apply, session, event), most_seconds=CHANGE_SECONDS, check=there)
 
-    async def _change(self, session: Session, event: SessionEvent) -> None:
-        apply = partial(events.apply, session, event, self._library)
+    async def _change(self, session: Session, event: SessionEvent, library: Library) -> None:
+        apply = partial(events.apply, session, event, library)
         async with session.motion.still():
             with self._told(session):
                 if event.type in LONG_EVENTS:
