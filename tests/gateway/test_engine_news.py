@@ -29,7 +29,12 @@ class HeldLink(EngineLink):
         self._session = session
 
     async def request(
-        self, message: Message, payload: bytes | bytearray | None = None, *, patient: bool = False
+        self,
+        message: Message,
+        payload: bytes | bytearray | None = None,
+        *,
+        patient: bool = False,
+        for_asker: bool = False,
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         self.requests += 1
         await self.let.wait()

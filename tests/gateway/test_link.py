@@ -29,8 +29,7 @@ from culet_protocol.messages import Message, Undo
 from shared.patience import PATIENCE
 
 SESSION = "a" * 32
-NEW = OpenSession(session=SESSION, scene={})
-AGAIN = OpenSession(session=SESSION, scene={}, snapshot={})
+LOST = OpenSession(session=SESSION, scene={}, snapshot={})
 
 
 class SilentEngine:
@@ -99,9 +98,10 @@ async def linked(folder: Path, request_seconds: float) -> AsyncIterator[tuple[En
 async def test_a_change_that_its_sender_is_told_was_not_done_is_given_up(tmp_path: Path) -> None:
     """And nothing else is: what it is for may be done all the same."""
     async with linked(tmp_path, request_seconds=0.01) as (link, engine):
-        for message in (Status(), AGAIN, Control(session=SESSION, event=Undo()), NEW):
+        change = Control(session=SESSION, event=Undo())
+        for message, for_asker in ((Status(), False), (LOST, False), (change, False), (LOST, True)):
             with pytest.raises(EngineUnavailableError, match="did not answer within"):
-                await link.request(message)
+                await link.request(message, for_asker=for_asker)
         came = [await engine.heard() for _ in range(6)]
         assert [type(request) for _, request in came] == [Status, OpenSession, Control, Cancel, OpenSession, Cancel]
         for (number, _), (_, cancel) in (came[2:4], came[4:6]):
@@ -109,11 +109,11 @@ async def test_a_change_that_its_sender_is_told_was_not_done_is_given_up(tmp_pat
             assert cancel.request == number
 
 
-async def test_a_session_that_nobody_waits_to_open_is_given_up_unless_somebody_had_it_before(tmp_path: Path) -> None:
+async def test_a_session_that_nobody_waits_to_open_is_given_up_unless_the_gateway_has_it(tmp_path: Path) -> None:
     async with linked(tmp_path, request_seconds=PATIENCE) as (link, engine):
         numbers = []
-        for message in (AGAIN, CloseSession(session=SESSION), NEW):
-            asking = asyncio.create_task(link.request(message))
+        for message, for_asker in ((LOST, False), (CloseSession(session=SESSION), False), (LOST, True)):
+            asking = asyncio.create_task(link.request(message, for_asker=for_asker))
             number, heard = await engine.heard()
             assert heard == message
             numbers.append(number)

@@ -47,7 +47,12 @@ class Link(EngineLink):
         self.heard.append(("-", self._codec(session)))
 
     async def request(
-        self, message: Message, payload: bytes | bytearray | None = None, *, patient: bool = False
+        self,
+        message: Message,
+        payload: bytes | bytearray | None = None,
+        *,
+        patient: bool = False,
+        for_asker: bool = False,
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         if isinstance(message, HoldVideo):
             self.holds.append(message.held)

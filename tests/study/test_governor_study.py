@@ -53,7 +53,12 @@ class Staged(EngineLink):
         self.while_answering: Callable[[], None] = lambda: None
 
     async def request(
-        self, message: Message, payload: bytes | bytearray | None = None, *, patient: bool = False
+        self,
+        message: Message,
+        payload: bytes | bytearray | None = None,
+        *,
+        patient: bool = False,
+        for_asker: bool = False,
     ) -> tuple[dict[str, Any], bytes]:
         del payload, patient
         assert isinstance(message, Control)

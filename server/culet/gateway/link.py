@@ -28,7 +28,6 @@ from culet_protocol.engine import (
     Cancel,
     Control,
     Heartbeat,
-    OpenSession,
     Reply,
     SessionChange,
     SessionMotion,
@@ -189,9 +188,15 @@ class EngineLink:
             self.lose("the connection to the render process broke")
 
     async def request(
-        self, message: Message, payload: bytes | bytearray | None = None, *, patient: bool = False
+        self,
+        message: Message,
+        payload: bytes | bytearray | None = None,
+        *,
+        patient: bool = False,
+        for_asker: bool = False,
     ) -> tuple[dict[str, Any], bytes | memoryview]:
-        """The engine's result and bytes for a request. `patient` ones may take as long as the engine lives.
+        """The engine's result and bytes for a request. `patient` ones may take as long as the engine lives; those
+        `for_asker`, as the patient ones, are given up once who asked waits no more.
 
         Raises what the engine answered as the error of that status, and EngineUnavailableError if it does not answer.
         """
@@ -212,13 +217,13 @@ class EngineLink:
             async with asyncio.timeout(None if patient else self._settings.request_seconds):
                 reply, data = await answer
         except asyncio.CancelledError:
-            if patient or _is_new(message):  # others are quickly done, and meant whether or not somebody waits for them
+            if patient or for_asker:  # others are quickly done, and meant whether or not somebody waits for them
                 await self._cancel(number)
             raise
         except zmq.Again:
             raise EngineUnavailableError("the render process does not take requests at the moment") from None
         except TimeoutError:
-            if isinstance(message, Control) or _is_new(message):  # who asked is told that it was not done
+            if isinstance(message, Control) or for_asker:  # who asked is told that it was not done
                 await self._cancel(number)
             raise EngineUnavailableError(
                 f"the render process did not answer within {self._settings.request_seconds:g} s"
@@ -336,11 +341,6 @@ class EngineLink:
             if not answer.done():
                 answer.set_exception(EngineUnavailableError(reason))
         self._pending.clear()
-
-
-def _is_new(message: Message) -> bool:
-    """Whether it opens a session that nobody has seen yet: one that nobody waits for any more is nobody's."""
-    return isinstance(message, OpenSession) and message.snapshot is None
 
 
 def error_of(reply: Reply) -> CuletError:

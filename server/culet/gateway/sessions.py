@@ -162,7 +162,8 @@ class Sessions:
         try:
             await self._places.make_room(session)
             opened, _ = await self._uploads.request(
-                to_engine.OpenSession(session=session.id, scene=scene, snapshot=snapshot, client=client)
+                to_engine.OpenSession(session=session.id, scene=scene, snapshot=snapshot, client=client),
+                for_asker=True,  # also one that its client says there was: it may say so of as many as it likes
             )
             session.learn(opened)
             if session.id not in self._sessions:
@@ -353,7 +354,8 @@ class Sessions:
         opened, _ = await self._uploads.request(
             to_engine.OpenSession(
                 session=session.id, scene=session.scene, snapshot=session.snapshot, client=session.owner
-            )
+            ),
+            for_asker=session.revision is None,  # which nobody has seen yet
         )
         session.learn(opened)  # above all the numbers that it goes on with: the next engine must begin beyond them
         self._demands.begin_anew(session)

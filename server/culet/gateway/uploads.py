@@ -110,12 +110,12 @@ class Uploads:
         return upload.id, described
 
     async def request(
-        self, message: Message, *about: dict[str, Any] | None, patient: bool = False
+        self, message: Message, *about: dict[str, Any] | None, patient: bool = False, for_asker: bool = False
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         """As `EngineLink.request`; the engine is given what it lacks of the uploads that `message` or `about` name."""
         for _ in KIND_OF_FIELD:  # a scene can lack one of each kind
             try:
-                return await self._link.request(message, patient=patient)
+                return await self._link.request(message, patient=patient, for_asker=for_asker)
             except InputError as error:
                 lacking = self._lacking(error.field or "", words(message.model_dump()), words(about))
                 if not lacking:
@@ -123,7 +123,7 @@ class Uploads:
             for upload in lacking:
                 await self._give_again(upload)
                 self._keep(upload)
-        return await self._link.request(message, patient=patient)
+        return await self._link.request(message, patient=patient, for_asker=for_asker)
 
     async def _give_again(self, upload: _Upload) -> None:
         """Once for all who ask for it at the same time."""

@@ -13,7 +13,7 @@ import pytest
 from culet.engine.process.staging import (
     CHANGE_SECONDS,
     MOST_WAITING,
-    THREADS,
+    SHAPES_AT_ONCE,
     ShapesNeededError,
     Staging,
     to_its_end,
@@ -89,20 +89,21 @@ async def test_what_was_not_begun_is_never_begun() -> None:
     assert not never.begun.is_set()
 
 
-async def test_what_waits_for_a_thread_when_it_is_given_up_is_never_begun() -> None:
+async def test_what_waits_for_a_place_when_it_is_given_up_is_never_begun() -> None:
     staging, never = Staging(Library()), Held()
-    others = [Held() for _ in range(THREADS)]
+    others = [Held() for _ in range(SHAPES_AT_ONCE)]
     tasks = [asyncio.create_task(staging.make(str(number), held)) for number, held in enumerate(others)]
     for held in others:
         await held.until_begun()
     waiting = asyncio.create_task(staging.make("one more", never))
     await asyncio.sleep(0)
     waiting.cancel()
-    with pytest.raises(asyncio.CancelledError):
-        await waiting
+    await asyncio.sleep(0)
     for held in others:
         held.go_on.set()
-    assert await asyncio.gather(*tasks) == [3] * THREADS
+    with pytest.raises(asyncio.CancelledError):
+        await waiting
+    assert await asyncio.gather(*tasks) == [3] * SHAPES_AT_ONCE
     assert not never.begun.is_set()
     assert not staging._waiting, "nothing is kept of clients that wait for nothing"
 
@@ -201,3 +202,25 @@ async def test_a_shape_that_nobody_waits_for_when_it_is_made_changes_nothing() -
     with pytest.raises(asyncio.CancelledError):
         await changing
     assert changed == []
+
+
+async def test_shapes_of_one_client_are_made_between_those_of_others() -> None:
+    staging, order, go_on = Staging(Library()), list[str](), threading.Event()
+
+    def work(name: str, library: Library) -> None:
+        assert go_on.wait(PATIENCE)
+        for _ in range(4):
+            library.around_shape()
+            order.append(name)
+            library.around_shape()
+
+    clients = "abcdef"
+    making = [asyncio.create_task(staging.make(name, partial(work, name))) for name in clients]
+    async with asyncio.timeout(PATIENCE):
+        while len(staging.places.waiting) < len(clients) - SHAPES_AT_ONCE:  # noqa: ASYNC110 - threads tell nobody
+            await asyncio.sleep(0.001)
+    go_on.set()
+    await asyncio.gather(*making)
+    assert sorted(order) == sorted(clients * 4)
+    half = order[: len(order) // 2]
+    assert all(half.count(name) < 4 for name in clients), f"nobody's are all made first: {order}"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import math
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -55,6 +57,8 @@ class OpenSessions:
         """s, steady clock: when somebody last asked for each."""
         self._clients: dict[str, str] = {}
         """Who opened the sessions."""
+        self._opening: dict[str, set[threading.Event]] = {}
+        """Set of sessions that were closed before they were open."""
         self._subscriptions: set[bytes] = set()
         memory.count("histories", lambda: SHOWN_BYTES * sum(len(live.session.history) for live in self))
         memory.count("video", lambda: sum(live.outgoing.nbytes for live in self))
@@ -105,8 +109,11 @@ class OpenSessions:
         self._make_room()
         own = scene.environment if snapshot is None else snapshot.environment or scene.environment
         most = CHANGE_SECONDS if snapshot is None else math.inf  # what was there before comes again, whatever it takes
-        async with self._staging.turn(request.client) as turn:
-            session = await turn.make(partial(self._made, request.session, scene, own, snapshot), most_seconds=most)
+        with self._wanted(request.session) as check:
+            async with self._staging.turn(request.client) as turn:
+                work = partial(self._made, request.session, scene, own, snapshot)
+                session = await turn.make(work, most_seconds=most, check=check)
+            check()
         if request.session in self:  # opened twice at once
             return self.get(request.session)
         self._make_room()
@@ -121,8 +128,31 @@ class OpenSessions:
         self._painter.wake()
         return self.get(request.session)
 
+    @contextmanager
+    def _wanted(self, session: str) -> Iterator[Callable[[], None]]:
+        """While a session is being opened: raises NotFoundError once it was closed. From any thread."""
+        closed = threading.Event()
+
+        def check() -> None:
+            if closed.is_set():
+                raise NotFoundError(GONE)
+
+        opening = self._opening.setdefault(session, set())
+        opening.add(closed)
+        try:
+            yield check
+        finally:
+            opening.discard(closed)
+            if not opening and self._opening.get(session) is opening:
+                del self._opening[session]
+
     def close(self, session: str) -> None:
-        """Forget the session; NotFoundError."""
+        """Forget the session, also while it is being opened; NotFoundError."""
+        opening = self._opening.pop(session, ())
+        for closed in opening:
+            closed.set()
+        if opening and session not in self:
+            return
         pace = self.get(session).session.motion.pace
         self.simulated_seconds += pace.seconds
         self.dropped_seconds += pace.dropped

@@ -11,7 +11,7 @@ import asyncio
 import contextlib
 import math
 import threading
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -26,8 +26,11 @@ T = TypeVar("T")
 Work = Callable[[Library], T]
 """Makes shapes by what scenes name, and what they are made for."""
 
-THREADS = 8
-"""As many clients at once as may keep each other from nothing but the processor."""
+THREADS = 64
+"""Clients whose turns may go on at once, a shape of each after one of another's."""
+SHAPES_AT_ONCE = 2
+"""Shapes are made in Python, of which one thread goes on at a time: each more that computes keeps the engine's loop and
+its renderer waiting longer. With one, a shape that takes seconds would hold up all others."""
 MOST_WAITING = 320
 """Pieces of work of one client: a gateway lets 8 events of each of its 32 sessions be under way, and some stills."""
 CHANGE_SECONDS = 8.0
@@ -38,11 +41,43 @@ class _GivenUp(Exception):  # noqa: N818 - nothing went wrong
     """Nobody waits for it any more."""
 
 
+class Places:
+    """So many threads at a time go on, in the order in which they came."""
+
+    def __init__(self, free: int) -> None:
+        self._free = free
+        self._guard = threading.Lock()
+        self.waiting: deque[threading.Lock] = deque()
+        """Of each thread that waits, held until it may go on."""
+
+    def take(self) -> None:
+        """Wait for a place."""
+        with self._guard:
+            if self._free:
+                self._free -= 1
+                return
+            mine = threading.Lock()
+            mine.acquire()
+            self.waiting.append(mine)
+        mine.acquire()
+
+    def give(self) -> None:
+        """To the thread that has waited longest."""
+        with self._guard:
+            if self.waiting:
+                self.waiting.popleft().release()
+            else:
+                self._free += 1
+
+
 class Turn:
     """One of a client's, in which shapes may be made."""
 
-    def __init__(self, threads: ThreadPoolExecutor, library: Library, timer: Callable[[], float]) -> None:
+    def __init__(
+        self, threads: ThreadPoolExecutor, places: Places, library: Library, timer: Callable[[], float]
+    ) -> None:
         self._threads = threads
+        self._places = places
         self._library = library
         self._timer = timer
 
@@ -58,6 +93,9 @@ class Turn:
         def around_shape() -> None:
             nonlocal looks
             looks += 1
+            if looks % 2 == 0:  # a shape was made: others make one of theirs
+                self._places.give()
+                self._places.take()
             if given_up.is_set():
                 raise _GivenUp
             check()
@@ -70,8 +108,14 @@ class Turn:
 
         def run() -> T:
             nonlocal begun
-            begun = self._timer()
-            return work(replace(self._library, around_shape=around_shape))
+            self._places.take()
+            try:
+                if given_up.is_set():  # while it waited for a place
+                    raise _GivenUp
+                begun = self._timer()
+                return work(replace(self._library, around_shape=around_shape))
+            finally:
+                self._places.give()
 
         making = self._threads.submit(run)
 
@@ -104,6 +148,8 @@ class Staging:
         self._timer = timer
         self._threads = ThreadPoolExecutor(THREADS, "staging")
         self._turns = ClientTurns()
+        self.places = Places(SHAPES_AT_ONCE)
+        """For making a shape, of the threads."""
         self._waiting: Counter[str] = Counter()
         """Of each client, what has its turn or waits for one."""
 
@@ -116,7 +162,7 @@ class Staging:
         self._waiting[name] += 1
         try:
             async with self._turns.turn(name):
-                yield Turn(self._threads, self._library, self._timer)
+                yield Turn(self._threads, self.places, self._library, self._timer)
         finally:
             self._waiting[name] -= 1
             if not self._waiting[name]:
