@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from culet.rendering.renderer import Renderer
+from culet.rendering.renderer import DEVELOPED, Renderer
+from culet.scene import Scene
 from culet.scene.presets import preset
 from culet.stage import Stage
 
@@ -18,6 +19,16 @@ def test_every_pixel_is_the_weighted_mean_of_the_pixels_about_it(renderer: Rende
     rgb = np.random.default_rng(height).integers(0, 256, (height, width, 3), np.uint8)
     sums = ndimage.convolve(rgb.astype(int), WEIGHTS[..., None], mode="nearest")
     assert (renderer.softening.softened(rgb) == (sums + 32) // 64).all()
+
+
+@pytest.mark.parametrize("size", [(33, 17), (1024, 513)])  # the second is developed in two pieces
+def test_what_is_filtered_on_the_device_is_what_was_developed(renderer: Renderer, size: tuple[int, int]) -> None:
+    picture = renderer.picture(Stage.of(Scene(stones=())), *size)
+    for _ in range(2):
+        picture.refine(1)
+        pieces = sum(1 for _ in picture.develop_in_pieces(soft=True))
+        assert pieces == -(-size[0] * size[1] // DEVELOPED)
+        assert (picture.softened() == renderer.softening.softened(picture.rgb())).all()
 
 
 @pytest.mark.parametrize("name", ["default", "mirror", "heap"])

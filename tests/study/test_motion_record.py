@@ -48,6 +48,13 @@ def test_a_steady_fall_has_the_rate_at_which_its_frames_came() -> None:
     assert (summary.fewest_bands, summary.error_mean) == (3, 0.05)
 
 
+def test_stages_that_go_on_beside_each_other_are_told_from_such_that_wait() -> None:
+    waiting, beside = (replace(FRAME, render_ms=17), replace(FRAME, render_ms=57))  # 20 ms, and 60, of 40
+    for frame, expected in ((waiting, 0.5), (beside, 1.5)):
+        frames = [replace(each, render_ms=frame.render_ms) for each in falling([INTERVAL] * 10)]
+        assert summary_of(frames).side_by_side == pytest.approx(expected)
+
+
 def test_frames_in_order_and_in_real_time_are_told_from_others() -> None:
     frames = falling([INTERVAL] * 10)
     assert summary_of(frames).out_of_order == 0

@@ -99,8 +99,10 @@ class CutOut(Picture):
             pass
         return self._cut_out
 
-    def develop_in_pieces(self) -> Iterator[None]:
-        """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""
+    def develop_in_pieces(self, *, soft: bool = False) -> Iterator[None]:
+        """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them. None is seen but
+        for a moment, so none is filtered (`soft`)."""
+        assert not soft  # noqa: S101
         if self._cut_out_samples == self.samples:
             return
         shown = np.empty_like(self._cut_out)

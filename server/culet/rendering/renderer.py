@@ -257,7 +257,8 @@ class Picture:
             return Tracing(kernel, renderer.pace_of(kernel, triangles), inputs)
 
         self._tracings = Tracings(stage, features, tracing)
-        _ = self._tracings.of(0).inputs  # what cannot be drawn is refused at once
+        if self._light is None or self._effort is not Effort.MOVING:  # or else beside the first launch of its light
+            _ = self._tracings.of(0).inputs  # what cannot be drawn is refused at once
         self._lit_by = 0
         """Version of the map that its samples saw, or MIXED."""
         self._in_final_light = self._light is None
@@ -279,6 +280,8 @@ class Picture:
         """Tiles of the sample under way that `overlaid` has shown."""
         self._shown, self._shown_samples = np.zeros((height, width, 3), np.uint8), (0, 0)
         """As developed last, and how many samples there were then, and put aside."""
+        self._softened, self._softened_samples = self._shown, (0, 0)
+        """The same, filtered."""
 
     @property
     def scene(self) -> Scene:
@@ -304,7 +307,7 @@ class Picture:
 
     def prepare(self) -> None:
         """Have on the device what the next sample needs, which `refine` does by itself."""
-        self._tracings.of(self.samples).inputs.of_sample(self.samples)
+        self._tracings.prepare(self.samples)
 
     def refine(self, samples: int = 1) -> None:
         """Add samples to every pixel; returns when they are there."""
@@ -397,7 +400,10 @@ class Picture:
         shares, final = self._effort is Effort.RESTING, True
         if self._lighting is None:
             cutoff = self.scene.optics.caustics_cutoff
-            self._lighting = iter(light.pieces(cutoff, self._effort, self.launch_seconds, first=not begun))
+            meanwhile = partial(self._tracings.prepare, self.samples)  # which holds no picture that is given up
+            self._lighting = iter(
+                light.pieces(cutoff, self._effort, self.launch_seconds, first=not begun, meanwhile=meanwhile)
+            )
             final = begun or not shares
         try:
             for _ in self._lighting:
@@ -444,7 +450,7 @@ class Picture:
         """Forget all samples."""
         self._sums.restart()
         self._forget_aside()
-        self._shown_samples = 0, 0
+        self._shown_samples = self._softened_samples = 0, 0
 
     def _forget_aside(self) -> None:
         self._sums.forget_aside()
@@ -511,8 +517,10 @@ class Picture:
                     "kept": kept,
                 },
             )
-            event.wait()
-            cl.enqueue_copy(device.queue, progress, buffer)
+            cl.enqueue_copy(
+                device.queue, progress, buffer
+            )  # which waits for it: once, as others may take the interpreter
+            event.wait()  # which says what went wrong
             taken = time.perf_counter() - start
             self.seconds += taken
             self._under_way_seconds += taken
@@ -563,16 +571,30 @@ class Picture:
 
     def softened(self) -> NDArray[np.uint8]:
         """`rgb()`, filtered as a single sample of each pixel should be that is seen but for a moment."""
-        return self._renderer.softening.softened(self.rgb())
+        for _ in self.develop_in_pieces(soft=True):
+            pass
+        return self._softened
 
-    def develop_in_pieces(self) -> Iterator[None]:
-        """Make `rgb()` of the samples that there are, DEVELOPED pixels at a time; yields between them."""
+    def develop_in_pieces(self, *, soft: bool = False) -> Iterator[None]:
+        """Make `rgb()`, or with `soft` `softened()`, of the samples that there are, DEVELOPED pixels at a time; yields
+        between them. What is filtered leaves the device once, when that is done."""
         there = self.samples, self._sums.samples_aside
-        if self._shown_samples == there:
+        if there == (self._softened_samples if soft else self._shown_samples):
             return
-        shown = np.empty((self.height, self.width, 3), np.uint8)
-        yield from self._fill(shown, 0, self.height, self.samples, later=self._sums.later > 0)
-        self._shown, self._shown_samples = shown, there
+        whole, later = self.width * self.height, self._sums.later > 0
+        if not soft:
+            shown = np.empty((self.height, self.width, 3), np.uint8)
+            yield from self._fill(shown, 0, self.height, self.samples, later=later)
+            self._shown, self._shown_samples = shown, there
+            return
+        developed = self._allocate(3 * whole)
+        for _, end in self._developed_on_device(developed, 0, whole, self.samples, later=later):
+            if end < whole:
+                self._renderer.device.queue.finish()
+                yield
+        self._softened = self._renderer.softening.read(developed, self.width, self.height)
+        self._softened_samples = there
+        yield
 
     def overlaid(self, over: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
         """Where tiles of the sample under way are done, the picture with that sample; elsewhere what was seen last
@@ -601,23 +623,37 @@ class Picture:
     def _fill(self, shown: NDArray[np.uint8], first: int, last: int, samples: int, *, later: bool) -> Iterator[None]:
         """Fill those rows of (height, width, 3), of so many samples of each pixel besides those that are put aside, of
         the earlier run and, with `later`, of the later one."""
+        queue, flat, target = self._renderer.device.queue, shown.reshape(-1), self._allocate(shown.nbytes)
+        pixels = first * self.width, last * self.width
+        for begin, end in self._developed_on_device(target, *pixels, samples, later=later):
+            cl.enqueue_copy(queue, flat[3 * begin : 3 * end], target, src_offset=3 * begin)
+            yield
+
+    def _developed_on_device(
+        self,
+        target: Any,  # noqa: ANN401 - pyopencl has no types
+        first: int,
+        last: int,
+        samples: int,
+        *,
+        later: bool,
+    ) -> Iterator[tuple[int, int]]:
+        """As `_fill`, pixels in a buffer of the device, of which none is waited for; yields which are on their way."""
         sums, renderer = self._sums, self._renderer
         earlier, run = sums.buffers
         runs = (LATER if later else 0) | (ASIDE if sums.samples_aside else 0)
         if self._fireflies is not None:
             earlier, runs = self._fireflies.left_out(earlier, run, samples, both=later), 0
         aside = earlier if sums.aside is None else sums.aside
-        queue, flat, target = renderer.device.queue, shown.reshape(-1), self._allocate(shown.nbytes)
         many = samples + sums.samples_aside
-        for begin in range(first * self.width, last * self.width, DEVELOPED):
-            end = min(begin + DEVELOPED, last * self.width)
+        for begin in range(first, last, DEVELOPED):
+            end = min(begin + DEVELOPED, last)
             items = math.ceil((end - begin) / DEVELOP_BLOCK / DEVELOP_GROUP) * DEVELOP_GROUP
             renderer.develop(
-                queue, (items,), (DEVELOP_GROUP,), earlier, run, aside, np.int32(runs), target,
+                renderer.device.queue, (items,), (DEVELOP_GROUP,), earlier, run, aside, np.int32(runs), target,
                 np.int32(begin), np.int32(end), *film_arguments(self.scene, many),
             )  # fmt: skip
-            cl.enqueue_copy(queue, flat[3 * begin : 3 * end], target, src_offset=3 * begin)
-            yield
+            yield begin, end
 
     def _mark_tiles(self) -> None:
         """A sample begins that may be shown before it is whole: none of its tiles is done."""

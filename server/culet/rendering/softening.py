@@ -35,11 +35,15 @@ class Softening:
 
     def softened(self, rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """(height, width, 3) of a picture of that shape, 8 bits."""
-        height, width, colours = rgb.shape
-        queue, made = self._device.queue, np.empty_like(rgb)
-        given, target = self._allocate(rgb.nbytes), self._allocate(rgb.nbytes)
-        cl.enqueue_copy(queue, given, np.ascontiguousarray(rgb))
+        given = self._allocate(rgb.nbytes)
+        cl.enqueue_copy(self._device.queue, given, np.ascontiguousarray(rgb))
+        return self.read(given, rgb.shape[1], rgb.shape[0])
+
+    def read(self, developed: Any, width: int, height: int) -> NDArray[np.uint8]:  # noqa: ANN401
+        """(height, width, 3) of a picture that is on the device, 8 bits."""
+        queue, made = self._device.queue, np.empty((height, width, 3), np.uint8)
+        target = self._allocate(made.nbytes)
         rows = math.ceil(height / GROUP) * GROUP
-        self._kernel(queue, (rows,), (GROUP,), given, target, np.int32(width * colours), np.int32(height))
+        self._kernel(queue, (rows,), (GROUP,), developed, target, np.int32(width * 3), np.int32(height))
         cl.enqueue_copy(queue, made, target)
         return made

@@ -55,6 +55,10 @@ class Tracings:
             first.release()
         return made
 
+    def prepare(self, sample: int) -> None:
+        """Have on the device what that sample reads."""
+        self.of(sample).inputs.of_sample(sample)
+
 
 def needed_features(stage: Stage, samples: int) -> Features:
     """The program that the next sample of a picture needs that has so many."""

@@ -242,6 +242,7 @@ def _rows(summary: Summary | None) -> list[str]:
         "render ms            median {:.1f}, 99 % {:.1f}, longest {:.1f}".format(*render),
         f"in a row over {LATE_MS:g} ms  {summary.longest_late_run}",
         f"simulate, encode ms  median {summary.simulate_ms_median:.2f}, {summary.encode_ms_median:.2f}",
+        f"stages together      {summary.side_by_side:.2f} of the time between frames",
         f"changes of setting   {summary.setting_changes_per_minute:.1f} a minute",
         "frontier's error     " + ("unknown" if summary.error_mean is None else f"mean {summary.error_mean:.4f}"),
     ]

@@ -50,6 +50,11 @@ class Seen:
         )  # fmt: skip
 
     @property
+    def stages_ms(self) -> float:
+        """Of simulation, rendering and encoding."""
+        return self.simulate_ms + self.render_ms + self.encode_ms
+
+    @property
     def setting(self) -> tuple[int, int, float, int]:
         """What the governor chose."""
         return self.width, self.height, round(self.cutoff, 6), self.max_bounces
@@ -100,6 +105,10 @@ class Summary:
     setting_changes_per_minute: float
     simulate_ms_median: float
     encode_ms_median: float
+    """Of developing and encoding, from a frame's last sample on, with all that it waited for."""
+    side_by_side: float
+    """Time of all stages of frames over the time between them: 1 if they come one after the other without a pause, more
+    if they go on beside each other."""
     error_mean: float | None
     """Mean of the frontier's errors, of radiance; None if none is known."""
 
@@ -136,6 +145,7 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
         setting_changes_per_minute=setting_changes(seen) / minutes,
         simulate_ms_median=statistics.median(frame.simulate_ms for frame in moving),
         encode_ms_median=statistics.median(frame.encode_ms for frame in moving),
+        side_by_side=sum(after.stages_ms for _, after in pairs) / 1e3 / sum(intervals),
         error_mean=statistics.fmean(errors) if errors else None,
     )
 

@@ -6,7 +6,14 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
+from culet.engine.governing.thrift import Allowance, Encoding
 from culet.engine.painting import jpeg
+from culet.engine.painting.coded import Coded
+from culet.engine.painting.quality import Quality
+from culet.rendering.renderer import Renderer
+from culet.scene.presets import preset
+from culet.study.falling_frames import falling
+from culet_protocol.messages import Balance
 
 # A saturated red and blue checker of single pixels: what chroma subsampling would turn to purple.
 CHECKER = np.zeros((32, 32, 3), np.uint8)
@@ -87,3 +94,29 @@ def test_a_picture_that_cannot_have_so_few_bytes_is_encoded_all_the_same() -> No
     tiny = jpeg.encode_within(CHECKER, 92, 1)
     assert (tiny.width, tiny.height, tiny.quality) == (32, 32, jpeg.LEAST_QUALITY)
     assert jpeg.encode_within(CHECKER, jpeg.LEAST_QUALITY, 1) == tiny
+
+
+@pytest.mark.parametrize("per_frame", [None, 6_000])
+def test_each_frame_of_a_falling_stone_is_encoded_once(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch, per_frame: int | None
+) -> None:
+    """The bytes of the frames before tell the quality that fits, but for the first ones."""
+    encodings: list[int] = []
+    encode = jpeg.encode
+
+    def counted(rgb: NDArray[np.uint8], quality: int) -> bytes:
+        encodings.append(quality)
+        return encode(rgb, quality)
+
+    monkeypatch.setattr(jpeg, "encode", counted)
+    quality, allowance = Quality(), Allowance(per_frame)
+    stages = falling(preset("falling"), 16)
+    for stage in stages:
+        plan = quality.plan(stage.scene, (320, 180), Balance(exactness=0.5, pinned=False), allowance)
+        picture = renderer.picture(stage.showing(plan.scene), *plan.size)
+        picture.refine()
+        encoding = plan.encoding or Encoding(jpeg.MOVING_QUALITY, math.inf, thrifty=False)
+        made = jpeg.encode_within(picture.softened(), encoding.quality, encoding.most_bytes)
+        if plan.encoding is not None:
+            quality.encoded(Coded.of_jpeg(made, thrifty=False))
+    assert len(stages) <= len(encodings) <= len(stages) + 3

@@ -19,9 +19,13 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
-from culet.engine.painting.frame_work import has_shape
+from culet.engine.painting import jpeg
+from culet.engine.painting.coded import Coded
+from culet.engine.painting.frame_work import FrameWork, Kind, has_shape
+from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.live_picture import SETTLE_SECONDS, LivePicture
 from culet.engine.painting.painter import Painter
+from culet.engine.painting.shares import Account
 from culet.engine.painting.still import Still, StillQueue
 from culet.engine.session.session import Session
 from culet.engine.session.stepper import Stepper, Steps
@@ -232,7 +236,7 @@ class TimedPicture:
     def shown_error(self) -> float:
         return math.nan
 
-    def develop_in_pieces(self) -> Iterator[None]:
+    def develop_in_pieces(self, *, soft: bool = False) -> Iterator[None]:
         return iter(())
 
     def softened(self) -> NDArray[np.uint8]:
@@ -407,6 +411,67 @@ async def test_a_slow_picture_in_another_size_is_seen_over_the_last_one_if_that_
 def test_shapes_are_the_same_but_for_rounding(size: tuple[int, int], *, fits: bool) -> None:
     width, height = size
     assert has_shape(np.zeros((height, width, 3), np.uint8), (1280, 720)) == fits
+
+
+async def test_the_next_frame_is_begun_while_the_last_one_is_encoded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each is encoded only when the one after it is being drawn: none would ever leave if that waited for it."""
+    drawing = [threading.Event() for _ in range(8)]
+    encoded, world = list[int](), World(0.1)
+
+    def encode(frame: LiveFrame, at_rest: float) -> Coded:
+        number = len(encoded)
+        encoded.append(number)
+        assert number + 1 >= len(drawing) or drawing[number + 1].wait(PATIENCE)
+        return Coded.of_jpeg(jpeg.encode_within(frame.rgb, 50, at_rest), thrifty=False)
+
+    def picture(stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
+        for begun in drawing[: len(world.drawn) + 1]:
+            begun.set()
+        return TimedPicture(world, stage.scene, (width, height))
+
+    monkeypatch.setattr(LiveFrame, "encoded", encode)
+    monkeypatch.setattr(world, "picture", picture)
+    with ThreadPoolExecutor(1) as thread:
+        painter = Painter(
+            world, thread, StillQueue(1, 2**25),
+            send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
+            still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
+        )  # fmt: skip
+        live = painter.pictures["a"] = LivePicture(world.session, watched=True, rate=60, size=WANTED)
+        world.turn(since=0, seconds=60)
+        async with asyncio.timeout(PATIENCE):
+            while len(world.sent) < len(drawing) - 1:
+                if not await painter.work():
+                    world.spend(IDLE)
+                    await asyncio.sleep(0)
+        for begun in drawing:
+            begun.set()
+        await done(live)
+    numbers = [frame.sequence for _, frame in world.sent]
+    assert numbers == sorted(numbers), "and they leave in order"
+    assert live.outgoing.unsent == 0
+
+
+@pytest.mark.parametrize(("size", "turns"), [((960, 540), 0), (WANTED, 2)])
+def test_a_frame_that_is_small_is_developed_without_a_turn_of_others(size: tuple[int, int], turns: int) -> None:
+    """From its last sample on; a large one lets others have theirs."""
+    world = World(0.1)
+    developed: list[bool] = []
+
+    class InPieces(TimedPicture):
+        def develop_in_pieces(self, *, soft: bool = False) -> Iterator[None]:
+            developed.append(soft)
+            yield
+
+    world.picture = lambda stage, width, height, *, effort=Effort.PATIENT: InPieces(  # type: ignore[method-assign]
+        world, stage.scene, (width, height)
+    )
+    work = FrameWork(Kind.FULL, world.session.shown, size, Account(None), world.now, now=lambda: world.now)
+    work.piece_seconds = 1.0
+    work.start(world)
+    assert sum(1 for _ in work.pieces) == turns
+    assert developed == [True]
+    assert work.frame is not None
 
 
 async def test_one_sample_of_each_pixel_asked_for_is_softened_and_nothing_else_is(play: Play) -> None:

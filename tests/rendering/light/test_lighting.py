@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
+from weakref import ref
 
 import numpy as np
 import pyopencl as cl
@@ -17,6 +19,8 @@ from culet.errors import DeviceError
 from culet.geometry.shape import Shape
 from culet.rendering.chains import AUTO_BANDS, CHANNELS
 from culet.rendering.device import Device
+from culet.rendering.inputs import Inputs
+from culet.rendering.light import beams
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import Effort
 from culet.rendering.light.light_map import frame_of
@@ -177,6 +181,67 @@ def test_an_error_at_rest_falls_and_then_nothing_is_done(renderer: Renderer) -> 
     assert picture.light_error() == found.rmse
 
 
+def test_of_frames_that_move_the_last_map_is_kept_and_of_pictures_at_rest_several(renderer: Renderer) -> None:
+    """A map of floor and walls has 24 MiB, and no frame shows the one of a frame before."""
+    stages = [Stage.of(scene_of(stones=[{"position": [x, 1, 0]}])) for x in (0.0, 0.1, 0.2)]
+    for effort, kept in ((Effort.MOVING, [False, False, True]), (Effort.RESTING, [True, True, True])):
+        renderer.lighting.forget()
+        made = [ref(lit(renderer, stage, effort)[1]) for stage in stages]
+        gc.collect()
+        assert [each() is not None for each in made] == kept
+    resting = renderer.lighting.of(stages[0])
+    assert resting is made[0]()
+
+
+def test_what_a_moving_picture_reads_is_made_during_the_first_launch_of_its_light(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So that the device has something to do meanwhile; the picture is the same as one that had it before."""
+    stage = Stage.of(scene_of())
+    renderer.lighting.forget()
+    before = renderer.picture(stage, *SIZE, effort=Effort.MOVING)
+    before.prepare()
+    before.refine()
+    done: list[str] = []
+    launch, read = Beams._launch, Inputs.of_sample
+
+    def launched(own: Beams, kernel: object, buffers: Sequence[object], begin: int, end: int, *more: int) -> None:
+        launch(own, kernel, buffers, begin, end, *more)
+        done.append("launch")
+
+    def asked(inputs: Inputs, sample: int) -> dict[str, Any]:
+        done.append("read")
+        return read(inputs, sample)
+
+    monkeypatch.setattr(Beams, "_launch", launched)
+    monkeypatch.setattr(Inputs, "of_sample", asked)
+    renderer.lighting.forget()
+    picture = renderer.picture(stage, *SIZE, effort=Effort.MOVING)
+    assert done == [], "nothing is made before its light"
+    for _ in picture.refine_in_pieces(1, 1e-3):
+        pass
+    assert done[:2] == ["launch", "read"]
+    assert "launch" in done[2:], "there is more light to come"
+    assert (picture.linear() == before.linear()).all()
+
+
+@pytest.mark.parametrize("waited", [True, False])
+def test_a_launch_that_may_have_ended_before_it_was_waited_for_makes_no_pace_slower(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch, *, waited: bool
+) -> None:
+    """Or what the host makes meanwhile would count, and launches would become ever shorter."""
+    stage, own = Stage.of(scene_of()), Beams(renderer.device)
+    frame, rays = frame_of(stage), rays_of(stage, 0)
+    target = cl.Buffer(renderer.device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
+    monkeypatch.setattr(beams, "NO_WAIT", 0.0 if waited else math.inf)
+    for _ in range(2):
+        own._paces.update(dict.fromkeys(own._paces, 1e-9))  # of the second pass: quicker than any launch is
+        for _ in own.pieces(stage, rays, frame, target, cutoff=1e-3, seconds=1.0, meanwhile=lambda: None):
+            pass
+    assert own._paces
+    assert all((pace > 1e-9) == waited for pace in own._paces.values())
+
+
 def test_passes_of_two_pictures_may_be_under_way_by_turns(renderer: Renderer) -> None:
     """As the painter takes turns: each gets the map that it would get alone."""
     stages = [Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (0.0625, 0.1875)]
@@ -329,10 +394,10 @@ def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_map
         most = max(most, held)
         return take()
 
-    def given(beams: Beams) -> None:
+    def given(own: Beams) -> None:
         nonlocal held
         held -= 1
-        give_back(beams)
+        give_back(own)
 
     monkeypatch.setattr(renderer.lighting, "take_beams", taken)
     monkeypatch.setattr(renderer.lighting, "give_back", given)

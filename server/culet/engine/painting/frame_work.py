@@ -26,6 +26,11 @@ REFRESH_SECONDS = 0.35
 and the way to the viewer that is half a second. A longer sample is shown where it is done."""
 
 
+AT_ONCE = 2**19
+"""Pixels that are developed, once they are there, before anybody else has a turn: some 2 ms, and as long would go by
+until it is the frame's turn again, while nothing is rendered."""
+
+
 class Kind(Enum):
     """What a frame is made of."""
 
@@ -116,24 +121,29 @@ class FrameWork:
             effort = Effort.RESTING if self.plan is None else Effort.MOVING
             self.picture = renderer.picture(self.stage, width, height, effort=effort)
         picture, sampled = self.picture, self.picture.sample_seconds > 0
+        small = width * height <= AT_ONCE
         for part in self._samples(picture, renderer):
             self.part = part
-            yield part
+            if part < 1 or not small:
+                yield part
         self.render_seconds += picture.seconds + picture.light_seconds
         if not sampled and picture.sample_seconds > 0:
             self.first_seconds = picture.sample_seconds
         started, overlaid = perf_counter(), None
+        whole = (width, height) == self.wanted  # a smaller one is softened enough by being enlarged
+        soft = picture.samples_seen == 1 and whole and not self.final
         if picture.under_way and self.over is not None:
             for overlaid in picture.overlaid(_resized(self.over, width, height)):
                 yield overlaid
         else:
-            yield from picture.develop_in_pieces()
+            for piece in picture.develop_in_pieces(soft=soft):
+                if not small:
+                    yield piece
         develop_seconds = perf_counter() - started
         spent = self.simulate_seconds, self.render_seconds
-        whole = (width, height) == self.wanted  # a smaller one is softened enough by being enlarged
         self.frame = LiveFrame.developed(
             picture, self.shown, self.plan, spent, develop_seconds, aim=self.aim, final=self.final, slow=self.slow,
-            soft=picture.samples_seen == 1 and whole and not self.final, overlaid=overlaid,
+            soft=soft, overlaid=overlaid,
         )  # fmt: skip
 
     def _samples(self, picture: Picture, renderer: Renderer) -> Iterator[float]:

@@ -78,8 +78,8 @@ class Picture(Protocol):
         """Root mean square error of what is shown, from 0 to 1, that more samples would take away: estimated. NaN below
         two samples, and without `refine_until`."""
 
-    def develop_in_pieces(self) -> Iterator[Any]:
-        """Tone-map, yielding between short pieces of work."""
+    def develop_in_pieces(self, *, soft: bool = False) -> Iterator[Any]:
+        """Tone-map for `rgb`, or with `soft` for `softened`, yielding between short pieces of work."""
 
     def overlaid(self, over: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
         """Amid a sample: tone-mapped where that is done, over a picture (height, width, 3) of what was seen before;
@@ -89,7 +89,8 @@ class Picture(Protocol):
         """(height, width, 3), tone-mapped; at once if that was done in pieces."""
 
     def softened(self) -> NDArray[np.uint8]:
-        """The same, filtered: of a single sample a pixel it is nearer to what more would show."""
+        """The same, filtered: of a single sample a pixel it is nearer to what more would show. At once if it was so
+        developed in pieces."""
 
     def cut(self) -> float:
         """Mean weight of what the cut-off dropped."""

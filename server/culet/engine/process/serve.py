@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+SWITCH_SECONDS = 5e-4
+"""s after which a thread that computes in Python lets others go on that wait for the interpreter. A frame waits for it
+some ten times on its way, between kernels, the encoder and the network: Python's own 5 ms are a third of its time at 60
+frames/s."""
+
 
 def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, stand_by: bool = False) -> None:
     """Serve until SIGTERM or SIGINT: control at one endpoint, frames at each of some. The process may end with it.
@@ -36,6 +41,7 @@ def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, st
     DeviceError without a working device, InputError for a bad endpoint.
     """
     return_large_blocks()
+    sys.setswitchinterval(SWITCH_SECONDS)
     start = asyncio.Event()
     asyncio.run(_run(control, frames, limits or Limits(), start, stand_by=stand_by))
     _end_beside_compilers()

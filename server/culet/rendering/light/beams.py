@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -35,6 +35,10 @@ AS_BEFORE = 0.5
 """Of a launch's time, for which a pass begins with jobs that take as long as those of the pass before."""
 ALMOST = 1 - 2**-20
 """The part that is done when the light is thrown, but not summed."""
+
+
+NO_WAIT = 1e-4
+"""s. A launch that is waited for no longer may have ended before."""
 
 
 @dataclass(frozen=True)
@@ -113,13 +117,15 @@ class Beams:
         keep: float = 0.0,
         gain: float = 1.0,
         piece: float = PIECE,
+        meanwhile: Callable[[], None] | None = None,
     ) -> Generator[float, None, Figures]:
         """Throw the light of these rays: the target, of `frame.nbytes`, becomes `keep` times what it was, plus `gain`
         times what shadows and caustics add to each texel's radiance of a white surface. In launches of about so many
         seconds; yields the part that is done, and returns the figures.
 
         `cutoff`: flux of a beam that ends, in R^2 of the brightest emitter's irradiance. `number` of the pass chooses
-        the wavelengths of a spectral scene. Stones that take no beams are left out: see `takes_beams`.
+        the wavelengths of a spectral scene. Stones that take no beams are left out: see `takes_beams`. `meanwhile` is
+        called while the first launch is under way, if launches are to be short.
         """
         began, queue = time.perf_counter(), self.device.queue
         stones = [stone for stone in placed_stones(stage) if takes_beams(stone.shape)]
@@ -147,6 +153,7 @@ class Beams:
         brightest = _brightness(rays)
         point_lights = self._upload(_lights(points, brightest, gauged, stones, frame, self.real))
         self._clean = False
+        beside = iter([] if meanwhile is None else [meanwhile])
         for diverging, group in enumerate((parallel, points)):
             if not group or not stones:
                 continue
@@ -161,7 +168,7 @@ class Beams:
             # Of several stones a job follows all bands of a light.
             entries = int(room["entries"]) * len(group) * (bands if len(stones) == 1 else 1)
             size = len(stones).bit_length(), solids.planes.size.bit_length()
-            throw = partial(self._launches, program, buffers, cutoff, seconds, size)
+            throw = partial(self._launches, program, buffers, cutoff, seconds, size, beside)
             if gauged and not diverging:
                 band = 1 + bands // 2 if not is_spectral(stage.scene) and not is_coloured(stage.scene) else 0
                 for _ in throw("gauge_light", entries, band):
@@ -214,12 +221,13 @@ class Beams:
         cutoff: float,
         seconds: float,
         size: tuple[int, int],
+        beside: Iterator[Callable[[], None]],
         name: str,
         jobs: int,
         *more: int,
     ) -> Iterator[float]:
         """All jobs of a kernel, in launches of about so many seconds; yields the part that is done, between them.
-        `size`: of the scene, within a factor of two."""
+        `size`: of the scene, within a factor of two. What is `beside` them is called during the first one."""
         kernel, kind = getattr(program, name), _Kind(name, id(program), math.frexp(cutoff)[1], size)
         done, chunk = 0, jobs
         if math.isfinite(seconds):
@@ -229,8 +237,14 @@ class Beams:
             end, start = min(done + chunk, jobs), time.perf_counter()
             self._launch(kernel, buffers, done, end, *more)
             if math.isfinite(seconds):
+                for call in beside:
+                    call()
+                waiting = time.perf_counter()
                 self.device.queue.finish()
-                pace = max(time.perf_counter() - start, 1e-6) / (end - done)
+                ended = time.perf_counter()
+                pace = max(ended - start, 1e-6) / (end - done)
+                if ended - waiting < NO_WAIT:  # the launch may have taken less than what was called
+                    pace = min(pace, self._paces.get(kind, pace))
                 self._paces[kind] = pace
                 chunk = max(1, min(2 * chunk, int(seconds / pace)))
                 yield ALMOST * end / jobs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from enum import Enum, auto
@@ -29,7 +29,9 @@ from culet.rendering.surfaces import shown
 from culet.stage import Stage
 
 KEPT = 4
-"""Stages whose maps are kept, the latest used last. A map of a floor takes 6 MiB, with walls 24."""
+"""Stages whose maps are kept, the latest used last. A map of a floor takes 6 MiB, with walls 24. One of a moving
+picture is kept until one is made of the same stones elsewhere: each frame has its own, of which only the last may be
+shown again, at rest. Pictures keep theirs besides."""
 TARGET = 2e-3
 """Estimated root mean square error at which a map is good enough, in parts of the brightest emitter's irradiance over
 pi: a quarter of a step of 8 bits in the middle of the scale."""
@@ -100,6 +102,9 @@ class Lighting:
         key = _key(stage)
         known = self._kept.pop(key, None)
         if known is None:
+            before = [other for other, each in self._kept.items() if each.provisional and other[1:] == key[1:]]
+            for other in before:
+                del self._kept[other]
             frame = frame_of(stage)
             known = Illumination(self, stage, BoundMap(self._pool.allocate(frame.nbytes), frame))
         self._kept[key] = known
@@ -224,7 +229,7 @@ class Illumination:
         self._of = of
         self._start = math.nan
         """Cut-off of the first pass."""
-        self._provisional = False
+        self.provisional = False
         """Made for a moving picture, in a hurry."""
         self._running: Generator[object, None, None] | None = None
         """The pass under way. A picture that is given up leaves it to the next one: none is left out or made twice."""
@@ -269,23 +274,32 @@ class Illumination:
         settled = self.passes > 0 and (not self._random or len(self._spread) > 1)
         return self.passes >= self._most_passes or (settled and self.rmse <= TARGET * max(self._brightness, 1e-30))
 
-    def pieces(self, cutoff: float, effort: Effort, seconds: float, *, first: bool = False) -> Iterator[object]:
+    def pieces(
+        self,
+        cutoff: float,
+        effort: Effort,
+        seconds: float,
+        *,
+        first: bool = False,
+        meanwhile: Callable[[], None] | None = None,
+    ) -> Iterator[object]:
         """Make the map as good as is fitting, in launches of about so many seconds; yields between them.
 
         A map that is as fine as the cut-off asks serves a moving picture as it is. A map that was made for one is made
         anew for other pictures, which depend on their scene alone. Before the `first` sample of a resting picture it
-        takes one pass, or whatever there is already, so that there is soon something to see.
+        takes one pass, or whatever there is already, so that there is soon something to see. `meanwhile` may be called
+        while a launch for a moving picture is under way: of what the picture needs besides.
         """
         if effort is Effort.RESTING and first and self.passes > 0:
             return
         if effort is Effort.MOVING:
-            if self.passes == 0 or (self._provisional and self.cutoff > cutoff):
-                if self._running is None or (self._provisional and self._start > cutoff):
+            if self.passes == 0 or (self.provisional and self.cutoff > cutoff):
+                if self._running is None or (self.provisional and self._start > cutoff):
                     self._begin(cutoff, provisional=True)
-                yield from self._advance(cutoff, effort, seconds)
+                yield from self._advance(cutoff, effort, seconds, meanwhile)
             return
-        while self.passes == 0 or self._provisional or self._start != cutoff:
-            if self._provisional or self._start != cutoff:
+        while self.passes == 0 or self.provisional or self._start != cutoff:
+            if self.provisional or self._start != cutoff:
                 self._begin(cutoff, provisional=False)
             yield from self._advance(cutoff, effort, seconds)
         if effort is Effort.RESTING and first:
@@ -304,13 +318,15 @@ class Illumination:
         under way ends without being added."""
         if self._running is not None:
             self._running.close()
-        self._start, self._provisional, self._running = cutoff, provisional, None
+        self._start, self.provisional, self._running = cutoff, provisional, None
         self.passes = 0
         self.cutoff, self.maker = math.inf, Maker.NOTHING
         self._weight = self._squared = self._bias = 0.0
         self._spread.clear()
 
-    def _advance(self, cutoff: float, effort: Effort, seconds: float) -> Iterator[object]:
+    def _advance(
+        self, cutoff: float, effort: Effort, seconds: float, meanwhile: Callable[[], None] | None = None
+    ) -> Iterator[object]:
         """Go on with the pass under way, or else with a new one; if another picture begins anew, with that one's. A new
         pass waits for the one of another stage, or is spared if a picture of this stage has made one meanwhile."""
         if self._running is None:
@@ -318,7 +334,7 @@ class Illumination:
             yield from self._of.others_end(effort)
             if self.version != made:
                 return
-        self._running = self._running or self._pass(cutoff, effort, seconds)
+        self._running = self._running or self._pass(cutoff, effort, seconds, meanwhile)
         self._waiting += 1
         try:
             while self._running is not None:
@@ -350,12 +366,16 @@ class Illumination:
             else:
                 yield piece
 
-    def _pass(self, cutoff: float, effort: Effort, seconds: float) -> Generator[object, None, None]:
+    def _pass(
+        self, cutoff: float, effort: Effort, seconds: float, meanwhile: Callable[[], None] | None
+    ) -> Generator[object, None, None]:
         """One pass more, the only one of such an effort."""
         with self._of.under_way(effort, self):
-            yield from self._made(cutoff, effort, seconds)
+            yield from self._made(cutoff, effort, seconds, meanwhile)
 
-    def _made(self, cutoff: float, effort: Effort, seconds: float) -> Generator[object, None, None]:
+    def _made(
+        self, cutoff: float, effort: Effort, seconds: float, meanwhile: Callable[[], None] | None
+    ) -> Generator[object, None, None]:
         number, started, scene = self.passes, time.perf_counter(), self.stage.scene
         rays = rays_of(self.stage, number, moving=effort is Effort.MOVING)
         follows = scene.optics.caustics == "on"
@@ -366,7 +386,7 @@ class Illumination:
             try:
                 figures = yield from beams.pieces(
                     self.stage, rays, self.bound.frame, self.bound.buffer, cutoff=cutoff, seconds=seconds,
-                    number=number, keep=keep, gain=gain,
+                    number=number, keep=keep, gain=gain, meanwhile=meanwhile,
                 )  # fmt: skip
             finally:
                 self._of.give_back(beams)
