@@ -107,7 +107,8 @@ def connect(
         size: width and height that pictures should have, pixels, at most; those that were on their way already may be
             larger.
         video: by WebSocket, take what moves as video where the server makes some and PyAV is installed here: half the
-            bytes. Else each picture is a JPEG; over ZeroMQ it always is.
+            bytes. Else each picture is a JPEG, over ZeroMQ always; what is at rest ends with a PNG, if the link
+            carries it.
         keys: over ZeroMQ to another machine, the folder of this client's keys, as `culet keys` makes it; without it the
             one that the variable CULET_KEYS names.
         timeout_seconds: for whatever is waited for, unless `image` is told otherwise.

@@ -60,7 +60,8 @@ class Flags(IntFlag):
     """Floor and walls show what stones take of the light, and not what goes through them: that would take too long
     while things move, or the scene asks for it."""
     THRIFTY = 4096
-    """The picture is smaller, or encoded with more loss, than it would be without the limits of a viewer's link."""
+    """The picture is smaller, or encoded with more loss, than it would be without the limits of a viewer's link. It is
+    not set of a final picture with no more loss than those before it, though without limits it would have none."""
 
 
 class FrameError(ValueError):

@@ -32,7 +32,8 @@ class Lesser(Enum):
 
 LESSER: Final = Lesser.PICTURES
 Stream = Codec | Literal[Lesser.PICTURES]
-"""What one can subscribe to of a session: pictures of their own (JPEG), video of a codec, or lesser pictures."""
+"""What one can subscribe to of a session: pictures of their own (`Codec.JPEG`, though a final one may be a PNG), video
+of a codec, or lesser pictures."""
 STREAMS: Final[tuple[Stream, ...]] = (Codec.JPEG, *VIDEO, LESSER)
 LESSER_BIT = 0x80
 

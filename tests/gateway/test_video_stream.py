@@ -13,6 +13,7 @@ from PIL import Image
 from culet_client.video import VideoDecoder, asked_of
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Hello, ResetStone, Resize, ToggleFall
+from culet_protocol.watch import VIDEO
 from gateway.running import Gateway, Viewer
 from shared.patience import PATIENCE
 from video_extra import needs_av
@@ -29,7 +30,7 @@ async def decoding(viewer: Viewer) -> None:
 
 
 def packets(frames: list[Frame]) -> list[Frame]:
-    return [frame for frame in frames if frame.codec is not Codec.JPEG]
+    return [frame for frame in frames if frame.codec in VIDEO]
 
 
 async def dropped(viewer: Viewer, condition: Callable[[], bool]) -> None:

@@ -31,7 +31,8 @@ FIRST_BYTES = 32_000
 A final picture at rest may have `FINAL_TIMES` (of engines' thrift) times as many."""
 REST_SECONDS = 0.75
 """Of the link for a picture at rest: it is looked at for long, but whatever comes next comes behind it. The
-final one, which nothing follows by itself, may take `FINAL_TIMES` times as long."""
+final one, which nothing follows by itself, may take `FINAL_TIMES` times as long if it would be coarse otherwise, but
+not to have less loss than those before it."""
 FULL_RATE = 60.0
 """Frames per second that a viewer who is never short of credit is said to take."""
 RATE_WINDOW_SECONDS = 1.0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import simplejpeg
 
-from culet.engine.governing.thrift import FINAL_TIMES, GROWN, Allowance, Encoding
+from culet.engine.governing.thrift import FINAL_TIMES, GROWN, NO_LIMITS, Allowance, Encoding
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
@@ -53,20 +53,20 @@ def within(per_frame: int, at_rest: int | None = None) -> LesserTier:
 
 
 async def test_it_has_no_more_bytes_than_the_link_has_room_for_and_the_first_one_is_as_it_was(frame: LiveFrame) -> None:
-    first = frame.encoded(np.inf)
+    first = frame.encoded(NO_LIMITS)
     most = len(first.data) // 4
     less = within(most).encoded(frame)
     assert len(less.data) <= GROWN * 2 * most, "as often as 15 times a second, at most"
     assert less.thrifty
-    assert frame.encoded(np.inf) == first
+    assert frame.encoded(NO_LIMITS) == first
     shown = simplejpeg.decode_jpeg(less.data)
     assert shown.shape == (less.height, less.width, 3)
     assert abs(shown.mean() - frame.rgb.mean()) < 2  # levels; 0.3 measured
 
 
 async def test_with_as_much_room_as_the_first_it_is_the_same_picture(frame: LiveFrame) -> None:
-    assert LesserTier().encoded(frame) == frame.encoded(np.inf)
-    assert within(10**7).encoded(frame) == frame.encoded(np.inf)
+    assert LesserTier().encoded(frame) == frame.encoded(NO_LIMITS)
+    assert within(10**7).encoded(frame) == frame.encoded(NO_LIMITS)
 
 
 @pytest.mark.parametrize(
@@ -84,14 +84,14 @@ async def test_it_fills_the_window_and_is_no_larger_than_what_was_drawn(
 
 async def test_at_rest_it_has_the_bytes_that_there_are_for_a_picture_at_rest(frame: LiveFrame) -> None:
     resting = replace(frame, planned=False, encoding=None)
-    most = len(resting.encoded(np.inf).data) // 3
+    most = len(resting.encoded(NO_LIMITS).data) // 3
     assert len(within(1, most).encoded(resting).data) <= most
 
 
 async def test_the_last_picture_at_rest_has_the_bytes_of_some_seconds(desk: Desk, frame: LiveFrame) -> None:
     """Of either tier: none comes after it that could be better."""
     resting = replace(frame, planned=False, encoding=None)
-    best = resting.encoded(np.inf)
+    best = resting.encoded(NO_LIMITS)
     most = int(len(best.data) / (0.8 * FINAL_TIMES))
     coarse, last = (within(1, most).encoded(replace(resting, final=final)) for final in (False, True))
     assert coarse.thrifty

@@ -137,6 +137,8 @@ class FrameSender:
         self._now = clock
         self._has_room = has_room
         self._threads = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2), "encode")
+        self._final_thread = ThreadPoolExecutor(1, "encode-final")
+        """Of final pictures, which take long: nobody else's wait for them."""
 
     def publish(
         self, session: Session, outgoing: Outgoing, learn: Callable[[Coded], None], frame: LiveFrame, begun_at: float
@@ -171,7 +173,8 @@ class FrameSender:
 
     def stop(self) -> None:
         """Encode nothing more."""
-        self._threads.shutdown(wait=False, cancel_futures=True)
+        for threads in (self._threads, self._final_thread):
+            threads.shutdown(wait=False, cancel_futures=True)
 
     async def _encode_and_send(self, departure: _Departure) -> None:
         outgoing = departure.outgoing
@@ -208,8 +211,7 @@ class FrameSender:
                     codecs |= {track.codec}  # as JPEG
                 else:
                     video[track] = frame.coded(track.codec, packet, track.sequence)
-            at_rest = outgoing.allowance.resting(final=frame.final)
-            picture = await self._in_thread(frame.encoded, at_rest) if codecs else None
+            picture = await self._in_thread(frame.encoded, outgoing.allowance, final=frame.final) if codecs else None
             encode_seconds = time.perf_counter() - started
             if frame.encoding is not None:
                 for coded in [*video.values(), *([] if picture is None else [picture])]:
@@ -247,7 +249,7 @@ class FrameSender:
         session, outgoing, frame = departure.session, departure.outgoing, departure.frame
         lesser = outgoing.lesser
         try:
-            less = await self._in_thread(lesser.encoded, frame)
+            less = await self._in_thread(lesser.encoded, frame, final=frame.final)
             message = frame.pack(session, less, time.perf_counter() - started)
         except Exception as error:
             lesser.message = None
@@ -264,8 +266,9 @@ class FrameSender:
             watch, rest = message[:WATCH_BYTES], message[WATCH_BYTES:]
             self._send(topic_of(watch, codec) + rest)
 
-    async def _in_thread(self, call: Callable[..., T], *arguments: object) -> T:
-        return await asyncio.get_running_loop().run_in_executor(self._threads, call, *arguments)
+    async def _in_thread(self, call: Callable[..., T], *arguments: object, final: bool = False) -> T:
+        threads = self._final_thread if final else self._threads
+        return await asyncio.get_running_loop().run_in_executor(threads, call, *arguments)
 
 
 def _numbered(message: bytes | None, sequence: int) -> bytes | None:

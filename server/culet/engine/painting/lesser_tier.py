@@ -13,6 +13,7 @@ from culet.engine.governing.thrift import NO_LIMITS, Allowance, Room, Thrift, re
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.resting_picture import encode_resting
 
 LEAST_SIDE = 16
 """Pixels."""
@@ -35,13 +36,14 @@ class LesserTier:
         self._thrift = Thrift(read_byte_ladder())
 
     def encoded(self, frame: LiveFrame) -> Coded:
-        """The frame as a JPEG within the limits. Takes milliseconds."""
+        """The frame within the limits. Takes milliseconds, a final one some hundredths of a second."""
         width, height = self.fitting(frame.size)
+        if not frame.planned and not frame.shown.moving:
+            return encode_resting(_shrunk(frame.rgb, width, height), self.allowance, final=frame.final)
         if not frame.planned:
-            quality = jpeg.MOVING_QUALITY if frame.shown.moving else jpeg.RESTING_QUALITY
-            most = self.allowance.resting(final=frame.final)
-            picture = jpeg.encode_within(_shrunk(frame.rgb, width, height), quality, most)
-            return Coded.of_jpeg(picture, thrifty=picture.quality < quality or picture.width < width)
+            most = self.allowance.resting(final=False)
+            picture = jpeg.encode_within(_shrunk(frame.rgb, width, height), jpeg.MOVING_QUALITY, most)
+            return Coded.of_jpeg(picture, thrifty=picture.quality < jpeg.MOVING_QUALITY or picture.width < width)
         best = jpeg.MOVING_QUALITY if frame.encoding is None else frame.encoding.quality
         thrifty = frame.encoding is not None and frame.encoding.thrifty
         if self.room is None:

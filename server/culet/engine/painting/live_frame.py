@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Plan
-from culet.engine.governing.thrift import BEST_CRF, Encoding
+from culet.engine.governing.thrift import BEST_CRF, Allowance, Encoding
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.renderer import Picture
+from culet.engine.painting.resting_picture import encode_resting
 from culet.engine.painting.video_track import TrackedPacket
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, Shown
@@ -111,14 +112,15 @@ class LiveFrame:
             planned=plan is not None,
         )
 
-    def encoded(self, at_rest: float) -> Coded:
-        """Its picture as it is sent; one that does not move has so many bytes at most. Takes milliseconds."""
+    def encoded(self, allowance: Allowance) -> Coded:
+        """Its picture as it is sent; one that does not move has no more bytes than the link allows. Takes milliseconds,
+        a final one some hundredths of a second."""
         if self.encoding is not None:
             picture = jpeg.encode_within(self.rgb, self.encoding.quality, self.encoding.most_bytes)
             return Coded.of_jpeg(picture, thrifty=self.encoding.thrifty or picture.quality < self.encoding.quality)
-        quality = jpeg.MOVING_QUALITY if self.shown.moving else jpeg.RESTING_QUALITY
-        picture = jpeg.encode_within(self.rgb, quality, math.inf if self.shown.moving else at_rest)
-        return Coded.of_jpeg(picture, thrifty=not self.shown.moving and picture.quality < jpeg.RESTING_QUALITY)
+        if self.shown.moving:
+            return Coded.of_jpeg(jpeg.encode_within(self.rgb, jpeg.MOVING_QUALITY, math.inf), thrifty=False)
+        return encode_resting(self.rgb, allowance, final=self.final)
 
     @property
     def size(self) -> tuple[int, int]:
