@@ -29,10 +29,12 @@ def test_a_picture_at_rest_is_judged_against_the_converged_one(tmp_path: Path) -
     assert looks[-1]["shown_estimate"] <= 0.012
     assert looks[-1]["samples"] > 16, "the fewest of a picture at rest"
     for look in looks[1:]:
+        assert look["sent"] > look["shown"], "encoding, and rounding to bytes, lose something"
         for kind in ("shown", "radiance"):
             assert look[f"{kind}_estimate"] / look[kind] == pytest.approx(1, abs=0.5)
     assert f"final after {looks[-1]['seconds']:.1f} s with {looks[-1]['samples']} samples: its target" in run.stdout
-    seconds, extrapolated = found["shown_seconds_to"]["0.004"]
+    assert looks[-1]["sent"] == pytest.approx(looks[-1]["shown"], rel=0.02), "the last one is sent without loss"
+    seconds, extrapolated = found["sent_seconds_to"]["0.004"]
     assert extrapolated
     assert seconds > looks[-1]["seconds"]
 

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
+import PIL.Image
 from numpy.typing import NDArray
 from rich import box
 from rich.table import Table
 
-from culet.engine.painting import jpeg
+from culet.engine.governing.thrift import NO_LIMITS
 from culet.engine.painting.frame_work import FrameWork, Kind
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Session
@@ -34,6 +37,8 @@ TARGETS = (0.02, 0.01, 0.007, 0.004)
 """RMSE to which seconds are told."""
 CONVERGED_BANDS = 16
 """Wavelengths of each sample of the converged picture, where the scene leaves them to the renderer."""
+Error = Literal["sent", "shown", "radiance"]
+WORDS: dict[Error, str] = {"sent": "as sent", "shown": "as shown before it is encoded", "radiance": "of radiance"}
 WARM_UP = 64, 64
 """Pixels of a picture that has machine code made."""
 
@@ -45,8 +50,10 @@ class Look:
     seconds: float
     """Since the first one was begun: rendering, developing and encoding."""
     samples: int
+    sent: float
+    """RMSE of what is shown, from 0 to 1: of the picture as it is sent, decoded."""
     shown: float
-    """RMSE of what is shown, from 0 to 1."""
+    """The same before it is encoded, not rounded to bytes."""
     shown_estimate: float
     radiance: float
     """RMSE of linear radiance."""
@@ -68,16 +75,15 @@ class Resting:
     samples: int
     """Of the reference: those after the last picture's own, so that it shares none with any of them."""
 
-    def seconds_to(self, target: float, *, shown: bool) -> TimeTo:
-        """Until that RMSE, as shown or of radiance."""
-        errors = [look.shown if shown else look.radiance for look in self.looks]
+    def seconds_to(self, target: float, kind: Error) -> TimeTo:
+        """Until that RMSE."""
+        errors = [getattr(look, kind) for look in self.looks]
         return time_to([look.seconds for look in self.looks], errors, target)
 
     def document(self) -> str:
         """As JSON."""
         values = asdict(self) | {
-            f"{kind}_seconds_to": {f"{target:g}": self.seconds_to(target, shown=kind == "shown") for target in TARGETS}
-            for kind in ("shown", "radiance")
+            f"{kind}_seconds_to": {f"{target:g}": self.seconds_to(target, kind) for target in TARGETS} for kind in WORDS
         }
         text = json.dumps(values, indent=1, default=str)
         return text.replace("NaN", "null")
@@ -100,13 +106,16 @@ def measure(
     renderer = CuttingRenderer()
     renderer.make_ready(stage)
     renderer.picture(stage, *WARM_UP, effort=None).refine(2)
-    picture, taken = renderer.picture(stage, width, height, effort=Effort.RESTING), list[tuple[float, int, Image]]()
+    picture, taken = (
+        renderer.picture(stage, width, height, effort=Effort.RESTING),
+        list[tuple[float, int, NDArray[np.uint8], Image]](),
+    )
     estimates = []
     times = []
-    for seconds in _at_rest(renderer, stage, picture, rest):
+    for seconds, sent in _at_rest(renderer, stage, picture, rest):
         times.append(seconds)
         if not picture.under_way:
-            taken.append((seconds, picture.samples_seen, picture.linear()))
+            taken.append((seconds, picture.samples_seen, sent, picture.linear()))
             estimates.append((picture.shown_error(), picture.error_estimate()))
         progress(min(1.0, picture.samples / (rest.samples + samples)))
     met, own = picture.meets(rest), picture.samples
@@ -120,10 +129,10 @@ def measure(
     reference = (picture.samples * picture.linear().astype(np.float64) - last) / samples
     film, looks = stage.scene.film, list[Look]()
     shown = as_shown(reference, film)
-    for (seconds, count, image), (shown_estimate, radiance_estimate) in zip(taken, estimates, strict=True):
-        off = math.sqrt(np.mean(np.square(as_shown(image, film) - shown)))
+    for (seconds, count, sent, image), (shown_estimate, radiance_estimate) in zip(taken, estimates, strict=True):
+        off_sent, off = (math.sqrt(np.mean(np.square(seen - shown))) for seen in (sent / 255, as_shown(image, film)))
         of_radiance = radiance_error(image, reference)["rmse"]
-        looks.append(Look(seconds, count, off, shown_estimate, of_radiance, radiance_estimate))
+        looks.append(Look(seconds, count, off_sent, off, shown_estimate, of_radiance, radiance_estimate))
     gaps = [after - before for before, after in pairwise(times)]
     return Resting(width, height, looks, max(gaps, default=0.0), met, samples)
 
@@ -133,8 +142,11 @@ def _with_bands(stage: Stage, bands: int) -> Stage:
     return stage.showing(stage.scene.model_copy(update={"optics": optics}))
 
 
-def _at_rest(renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Target) -> Iterator[float]:
-    """Yields the seconds that it took so far, whenever a viewer would get the picture."""
+def _at_rest(
+    renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Target
+) -> Iterator[tuple[float, NDArray[np.uint8]]]:
+    """Whenever a viewer whose link has no limits would get the picture: the seconds that it took so far, and what the
+    viewer sees, (height, width, 3)."""
     shown, size, spent = Session("0" * 32, stage).shown, (picture.width, picture.height), 0.0
     final, over = False, None
     while not final:
@@ -147,17 +159,19 @@ def _at_rest(renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Ta
             pass
         assert work.frame is not None  # noqa: S101 - all pieces are done
         over = work.frame.rgb
-        jpeg.encode(over, jpeg.RESTING_QUALITY)
+        data = work.frame.encoded(NO_LIMITS).data
         spent += time.perf_counter() - begun
         final = work.final
-        yield spent
+        with PIL.Image.open(io.BytesIO(data)) as sent:
+            yield spent, np.asarray(sent.convert("RGB"))
 
 
 def table(found: Resting) -> Table:
     """A row for each picture."""
-    rows = Table("seconds", "samples", "error as shown", "estimated", "of radiance", "estimated", box=box.SIMPLE)
+    heads = "seconds", "samples", "error as sent", "before that", "estimated", "of radiance", "estimated"
+    rows = Table(*heads, box=box.SIMPLE)
     for look in found.looks:
-        errors = (look.shown, look.shown_estimate, look.radiance, look.radiance_estimate)
+        errors = (look.sent, look.shown, look.shown_estimate, look.radiance, look.radiance_estimate)
         rows.add_row(f"{look.seconds:.2f}", str(look.samples), *("-" if math.isnan(e) else f"{e:.4f}" for e in errors))
     return rows
 
@@ -167,10 +181,10 @@ def described(found: Resting) -> Iterator[str]:
     last = found.looks[-1]
     reached = "its target" if found.met else "the limit of samples, not its target"
     yield f"final after {last.seconds:.1f} s with {last.samples} samples: {reached}"
-    for kind, shown in (("as shown", True), ("of radiance", False)):
+    for kind, said in WORDS.items():
         for target in TARGETS:
-            until = found.seconds_to(target, shown=shown)
+            until = found.seconds_to(target, kind)
             words = "never" if until.seconds is None else f"after {until.seconds:.1f} s"
             note = " (extrapolated)" if until.extrapolated else ""
-            yield f"error {kind} under {target:g}: {words}{note}"
+            yield f"error {said} under {target:g}: {words}{note}"
     yield f"longest time between two pictures: {found.longest_gap:.2f} s"
