@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from command_line import invoke
+from culet.engine.governing.governor import ERRORS
 from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
@@ -165,8 +166,12 @@ def test_a_run_without_changes_tells_of_the_steady_scene_alone() -> None:
     text = governor.described(measured, SIZE, 30)
     assert "out of order         0 frames" in text
     assert "simulated            1.000 s a second" in text
+    assert "100.0%               64x36       0.01     48" in text
+    assert f"of 48x27 at 0.03 {governor.goal_error():.4f}" in text
     assert "change" not in text.replace("changes of setting", "")
-    assert json.loads(governor.document(measured, SIZE, 30))["changes"] == []
+    report = json.loads(governor.document(measured, SIZE, 30))
+    assert report["changes"] == []
+    assert report["shown_error_mean"] == ERRORS.shown(1, 0.01, 48) < report["shown_error_goal"]
 
 
 def test_a_file_that_cannot_be_written_is_refused_before_anything_is_measured(tmp_path: Path) -> None:

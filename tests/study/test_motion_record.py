@@ -8,6 +8,7 @@ from itertools import accumulate, chain, repeat
 
 import pytest
 
+from culet.engine.governing.governor import ERRORS
 from culet.study.motion_record import (
     SETTLED_FRAMES,
     Change,
@@ -15,6 +16,7 @@ from culet.study.motion_record import (
     Summary,
     longest_run,
     moving_pairs,
+    setting_shares,
     settle,
     summarise,
 )
@@ -53,6 +55,23 @@ def test_stages_that_go_on_beside_each_other_are_told_from_such_that_wait() -> N
     for frame, expected in ((waiting, 0.5), (beside, 1.5)):
         frames = [replace(each, render_ms=frame.render_ms) for each in falling([INTERVAL] * 10)]
         assert summary_of(frames).side_by_side == pytest.approx(expected)
+
+
+def test_settings_count_by_the_time_for_which_they_were_seen() -> None:
+    """And not by their frames: of a setting that is too dear fewer come."""
+    frames = falling([0.1, 0.1, 0.2, 0.4, 0.2])
+    for number in (2, 3):  # seen for 0.6 s of 1.0
+        frames[number] = replace(frames[number], width=1280, height=720, cutoff=0.01, max_bounces=256)
+    shares, mean = setting_shares(frames, (1280, 720), ERRORS)
+    assert [(share.width, share.height, share.cutoff, share.max_bounces) for share in shares] == [
+        (1280, 720, 0.01, 256), (1024, 576, 0.02, 48)
+    ]  # fmt: skip
+    assert [share.share for share in shares] == pytest.approx([0.6, 0.4])
+    best, coarse = ERRORS.shown(1, 0.01, 256), ERRORS.shown(0.8, 0.02, 48)
+    assert best < coarse
+    assert [share.error for share in shares] == pytest.approx([best, coarse])
+    assert mean == pytest.approx(0.6 * best + 0.4 * coarse)
+    assert setting_shares(frames[:1], (1280, 720), ERRORS)[0] == []
 
 
 def test_frames_in_order_and_in_real_time_are_told_from_others() -> None:

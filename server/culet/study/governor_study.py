@@ -16,17 +16,17 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from culet.engine.governing.governor import asked_rate
+from culet.engine.governing.governor import ERRORS, asked_rate, read_ladder
 from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
-from culet.study.motion_record import LATE_MS, Change, Seen, Settled, Summary, settle, summarise
+from culet.study.motion_record import LATE_MS, Change, Seen, Settled, Summary, setting_shares, settle, summarise
 from culet.study.provenance import commit, processor
 from culet_protocol.engine import CloseSession, Control, Demand, OpenSession
 from culet_protocol.frame import Flags, Frame
@@ -49,6 +49,10 @@ START_SECONDS = 60.0
 """Patience with an engine that starts, and with the first frame: programs may have to be compiled."""
 WARM_SECONDS = 4.0
 """Of falling that do not count: programs are compiled, the governor learns what a frame costs."""
+GOAL = 0.75, 0.03
+"""Of width and height, and the cut-off: what a frame of 1280x720 is to be at least, 960x540, or what misses no more."""
+LEAST_SHARE = 0.005
+"""Of the time: settings seen for less are told together."""
 CHANGE_SECONDS = 4.0
 """Between two changes of the scene."""
 CHANGES: tuple[tuple[str, SessionEvent], ...] = (
@@ -213,6 +217,7 @@ def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
         f"asked for            {size[0]}x{size[1]}, {rate:g} frames/s",
         *_rows(summarise(measured.steady, rate)),
         f"processor            {milliseconds:.1f} ms a frame, on {os.cpu_count()} cores",
+        *_share_rows(measured.steady, size),
     ]
     if not measured.changes:
         return "\n".join(rows)
@@ -248,6 +253,36 @@ def _rows(summary: Summary | None) -> list[str]:
     ]
 
 
+def goal_error() -> float:
+    """Root mean square of what is shown, 0 to 1, of frames of GOAL in the ladder, with all
+    bounces."""
+    scale, cutoff = GOAL
+    return ERRORS.shown(scale, cutoff, max(rung.max_bounces for rung in read_ladder()))
+
+
+def _share_rows(seen: Sequence[Seen], size: tuple[int, int]) -> Iterator[str]:
+    """How long each setting was seen, and what it misses."""
+    shares, mean = setting_shares(seen, size, ERRORS)
+    if not shares:
+        return
+    yield ""
+    yield "share of the time    drawn       cut-off  bounces  error as shown"
+    for share in shares:
+        if share.share >= LEAST_SHARE:
+            drawn = f"{share.width}x{share.height}"
+            error = "unknown" if math.isnan(share.error) else f"{share.error:.4f}"
+            yield f"{share.share:<20.1%} {drawn:<11} {share.cutoff:<8g} {share.max_bounces:<8} {error}"
+    rest = [share.share for share in shares if share.share < LEAST_SHARE]
+    if rest:
+        yield f"{sum(rest):<20.1%} {len(rest)} others"
+    scale, cutoff = GOAL
+    goal, known = (
+        f"{scale * size[0]:.0f}x{scale * size[1]:.0f} at {cutoff:g}",
+        "unknown" if math.isnan(mean) else f"{mean:.4f}",
+    )
+    yield f"mean of all          {known}; of {goal} {goal_error():.4f}"
+
+
 def _change_row(settled: Settled) -> str:
     when = f"not in {CHANGE_SECONDS:g} s" if settled.seconds is None else f"{settled.seconds:.2f} s"
     return f"{settled.name:<20} {when:<15} {settled.setting_changes + 1}"
@@ -256,6 +291,7 @@ def _change_row(settled: Settled) -> str:
 def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
     """JSON: the summary (null if nothing moved), and every frame's header."""
     summary = summarise(measured.steady, rate)
+    shares, mean = setting_shares(measured.steady, size, ERRORS)
     frames = [asdict(seen) | {"error": None if math.isnan(seen.error) else seen.error} for seen in measured.steady]
     return json.dumps(
         {
@@ -264,6 +300,11 @@ def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
             "size": size,
             "rate": rate,
             "steady": None if summary is None else summary.as_json(),
+            "settings": [
+                asdict(share) | {"error": None if math.isnan(share.error) else share.error} for share in shares
+            ],
+            "shown_error_mean": None if math.isnan(mean) else mean,
+            "shown_error_goal": goal_error(),
             "processor_seconds": measured.processor_seconds,
             "changes": [asdict(settled) for settled in settle(measured.changing, measured.changes, rate)],
             "frames": frames,

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from itertools import chain, pairwise
 from typing import Any
 
+from culet.engine.governing.measured_errors import SettingErrors
 from culet_protocol.frame import Flags, Frame
 
 LATE_MS = 50.0
@@ -58,6 +59,20 @@ class Seen:
     def setting(self) -> tuple[int, int, float, int]:
         """What the governor chose."""
         return self.width, self.height, round(self.cutoff, 6), self.max_bounces
+
+
+@dataclass(frozen=True)
+class SettingShare:
+    """Of the time for which a moving stone was seen."""
+
+    width: int
+    height: int
+    cutoff: float
+    max_bounces: int
+    share: float
+    """0 to 1, of the time until the frame after it came."""
+    error: float
+    """Root mean square of what is shown, 0 to 1, that the ladder measured of such a setting; NaN beyond it."""
 
 
 @dataclass(frozen=True)
@@ -148,6 +163,22 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
         side_by_side=sum(after.stages_ms for _, after in pairs) / 1e3 / sum(intervals),
         error_mean=statistics.fmean(errors) if errors else None,
     )
+
+
+def setting_shares(
+    seen: Sequence[Seen], wanted: tuple[int, int], errors: SettingErrors
+) -> tuple[list[SettingShare], float]:
+    """How long each setting was seen, the longest first, and the mean error of all, by time: NaN if that of one of them
+    is not known. `wanted` are the pixels that the viewer asked for."""
+    times = dict[tuple[int, int, float, int], float]()
+    for before, after in moving_pairs(seen):
+        times[before.setting] = times.get(before.setting, 0.0) + after.arrived - before.arrived
+    total, shares = sum(times.values()), list[SettingShare]()
+    for setting, seconds in sorted(times.items(), key=lambda item: -item[1]):
+        width, height, cutoff, bounces = setting
+        error = errors.shown(min(1.0, width / wanted[0]), cutoff, bounces)
+        shares.append(SettingShare(width, height, cutoff, bounces, seconds / total, error))
+    return shares, sum(share.share * share.error for share in shares) if shares else math.nan
 
 
 def settle(seen: Sequence[Seen], changes: Sequence[Change], rate: float) -> list[Settled]:
