@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from culet.command.places import opened
 from culet.command.single import single_command
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
+from culet.errors import CuletError
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 app = single_command()
 
@@ -25,6 +29,14 @@ def bench(
     ] = False,
     light: Annotated[
         bool, typer.Option("--light", help="Also what maps of the light that stones throw cost, and frames with them.")
+    ] = False,
+    profile: Annotated[
+        bool,
+        typer.Option(
+            "--profile",
+            help="Instead, where the processor time of a moving frame goes, of a stone and of twelve: by stage, beside "
+            "the work that was counted, and its share of the machine's measured limit.",
+        ),
     ] = False,
     out: Annotated[
         Path | None,
@@ -47,6 +59,10 @@ def bench(
     from culet.study.tables import case_table, feature_table, light_table, print_comparison
 
     console = report_console()
+    if profile:
+        with errors_in_one_line():
+            _profile(console, width, height, repeats, alone=not (features or light or out or against))
+        return
     with errors_in_one_line(), opened(out) as file:
         baseline = last_line(against) if against is not None else None
         renderer = Renderer()
@@ -71,3 +87,25 @@ def bench(
             for doubt in doubts(json.loads(line)):
                 console.print(f"note: no line to compare others with: {doubt}", soft_wrap=True)
             print(line, file=file)
+
+
+def _profile(console: Console, width: int, height: int, repeats: int, *, alone: bool) -> None:
+    from culet.rendering.renderer import Renderer
+    from culet.study.cases import CASES
+    from culet.study.profile import FLOPS_PER_INSTRUCTION, PROFILED, measure_profile
+    from culet.study.tables import profile_table
+
+    if not alone:
+        raise CuletError("expected --profile by itself, or with --width, --height and --repeats")
+    renderer = Renderer()
+    device = renderer.describe()["device"]
+    console.print(f"{device}, {width} x {height}, a frame while stones move, median of {repeats}, processor time")
+    for found in measure_profile(renderer, {name: CASES[name] for name in PROFILED}, width, height, repeats):
+        console.print(profile_table(found))
+    limits = found.limits
+    console.print(
+        f"limits, of one processor: {limits.single_flops / FLOPS_PER_INSTRUCTION / 1e9:.1f} G multiply-adds a second, "
+        f"each of one lane; {limits.bandwidth_per_second / 1e9:.1f} GB/s copied (read and written). Of tracing, the "
+        "search for facets alone is counted.",
+        soft_wrap=True,
+    )

@@ -74,10 +74,11 @@ def _cheapest(planes: Array) -> FacetRows:
     if len(planes) > MOST_FACETS:
         count = len(planes)
         return FacetRows(np.eye(3), planes, (0, 0, 0, 0, count), planes)
-    return min((_rows(planes, axes) for axes in frames(planes)), key=_cost)
+    return min((_rows(planes, axes) for axes in frames(planes)), key=search_cost)
 
 
-def _cost(rows: FacetRows) -> float:
+def search_cost(rows: FacetRows) -> float:
+    """Instructions for the facet that a ray reaches first."""
     return float(np.diff([0, *rows.ends]) @ COSTS)
 
 

@@ -12,6 +12,7 @@ from rich.table import Table
 from culet.study.baseline import FIGURES, Comparison, compare_benches
 from culet.study.bench import FeatureCost, Timing
 from culet.study.light_bench import LightTiming
+from culet.study.profile import Profile
 
 
 def case_table(timings: Sequence[Timing]) -> Table:
@@ -43,6 +44,28 @@ def light_table(timings: Sequence[LightTiming]) -> Table:
             f"{timing.ratio:.2f}",
             "-" if timing.beams is None else f"{timing.beams:.0f}",
         )
+    return table
+
+
+def profile_table(profile: Profile) -> Table:
+    """A row for each stage of a frame, and one for all."""
+    table = _table(profile.name, "ms", "of all", "counted", "work", "of the limit")
+    for stage in profile.stages:
+        counted = "-"
+        if stage.instructions is not None:
+            counted = f"{stage.instructions / 1e9:.2f} G"
+        elif stage.bytes is not None:
+            counted = f"{stage.bytes / 1e6:.1f} MB"
+        share = stage.share(profile.limits)
+        table.add_row(
+            stage.name,
+            f"{1e3 * stage.seconds:.2f}",
+            f"{stage.seconds / profile.seconds:.1%}",
+            counted,
+            stage.work or "-",
+            "-" if share is None else f"{share:.0%}",
+        )
+    table.add_row("all", f"{1e3 * profile.seconds:.2f}", "100%", "-", "-", "-")
     return table
 
 
