@@ -198,12 +198,18 @@ WITHOUT: dict[str, dict[str, Any]] = {
     "a sky that hides its lamps": {"environment": {"kind": "dark"}, "emitters": [SUN]},
     "the report's estimator": {"optics": {"estimator": "classic"}},
     "a studio floor under wide lamps": {**STUDIO, "emitters": LAMPS},
+    "sharp shadows of one stone alone": {"optics": {"caustics": "off"}, "emitters": [POINT]},
 }
 WITH: dict[str, tuple[dict[str, Any], tuple[int, ...]]] = {
     "matte room": ({}, (0, 1, 2, 3)),
     "matte floor": ({"walls": {"kind": "mirror"}}, (0,)),
     "matte walls": ({"floor": {"kind": "mirror"}}, (1, 2, 3)),
-    "caustics off": ({"optics": {"caustics": "off"}}, (0, 1, 2, 3)),
+    "shadows of a sun": ({"optics": {"caustics": "off"}, "emitters": [SUN, POINT]}, (0, 1, 2, 3)),
+    "shadows of two stones": (
+        {"optics": {"caustics": "off"}, "emitters": [POINT], "stones": [{}, {"id": "b"}]},
+        (0, 1, 2, 3),
+    ),
+    "shadows on a studio floor": ({**STUDIO, "optics": {"caustics": "off"}, "emitters": [POINT]}, (0,)),
     "wide lamps": ({"emitters": LAMPS, "walls": {"kind": "none"}}, (0,)),
     "a studio floor under a sun": (STUDIO, (0,)),
     "a studio floor under a point": ({**STUDIO, "emitters": [POINT]}, (0,)),

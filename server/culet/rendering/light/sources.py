@@ -143,13 +143,22 @@ def spots_of(stage: Stage) -> tuple[Lamp, ...]:
 
 def mapped_surfaces(stage: Stage) -> tuple[int, ...]:
     """Surfaces that need a light map: matte ones that a source can reach past a stone, and a studio floor if a compact
-    one is among them."""
+    one is among them. None does where kernels find all that is thrown by themselves."""
     scene, sources = stage.scene, sources_of(stage)
-    if not sources:
+    if not sources or _throws_sharp_shadows_alone(stage, sources):
         return ()
     studio = isinstance(scene.floor, StudioFloor) and any(source.compact for source in sources)
     floor = (0,) if scene.floor.kind == "matte" or studio else ()
     return (*floor, 1, 2, 3) if scene.walls.kind == "matte" else floor
+
+
+def _throws_sharp_shadows_alone(stage: Stage, sources: tuple[Source, ...]) -> bool:
+    """Whether one stone throws the hard shadows of points, and nothing else, onto surfaces that are lit point by point:
+    kernels then ask whether the stone is in the way, which takes less time than to look a map up, and is exact. Past
+    several stones a map takes less."""
+    points = all(isinstance(source.light, PointLight) for source in sources)
+    studio = isinstance(stage.scene.floor, StudioFloor)
+    return stage.scene.optics.caustics == "off" and len(stage.shapes) == 1 and points and not studio
 
 
 def rays_of(stage: Stage, number: int, *, moving: bool = False) -> list[Ray]:
