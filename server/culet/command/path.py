@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, assert_never
 
 import typer
 
@@ -189,6 +189,8 @@ def _happens(step: answer.Step) -> str:
             return f"is dropped{' inside' if step.inside else ''}, {_percent(sum(each.cut for each in step.passes))}"
         case "chance":
             return f"goes on by chance, {kept:.3g} times as heavy"
+        case _:
+            assert_never(step.kind)
 
 
 def _percent(share: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import NamedTuple
+from typing import NamedTuple, assert_never
 
 import numpy as np
 
@@ -54,6 +54,8 @@ def answered(
         case Ray(origin, direction):
             seen = stage.showing(stage.scene.model_copy(update={"camera": camera_along(origin, direction)}))
             return path_of(record(seen, 1, 1, 0, 0), pixel=False)
+        case _:
+            assert_never(asked)
 
 
 def camera_along(origin: Sequence[float], direction: Sequence[float]) -> Camera:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,6 +163,8 @@ class _Teller:
                 return np.asarray(start + SHORT * direction)
             case "chance":
                 return start
+            case _:
+                assert_never(kind)
 
     def _is_inside(self, event: np.void, parent: _Draft | None, before: int) -> bool:
         """Whether a chain ends in a stone: said by the kernel, but for one that ends as it enters."""
@@ -229,6 +232,8 @@ class _Teller:
                 return {("cut", None): light}
             case "enters" | "meets" | "chance":
                 return {}
+            case _:
+                assert_never(kind)
 
     def _seen(self, event: np.void, chain: int, light: Array) -> dict[Source, Array]:
         if chain < 0 and self._scene.backdrop.kind != "none":

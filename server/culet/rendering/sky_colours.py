@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from culet.scene.sky import (
     ConstantEnvironment,
+    DarkEnvironment,
     Environment,
     GradientEnvironment,
     HalfEnvironment,
+    ImageEnvironment,
     LightEnvironment,
     StudioEnvironment,
 )
@@ -25,5 +29,7 @@ def sky_colours(environment: Environment) -> tuple[tuple[float, ...], tuple[floa
             return ambient, ambient
         case LightEnvironment():
             return (0.7, 0.85, 1), (0.7, 0.85, 1)
-        case _:
+        case DarkEnvironment() | ImageEnvironment():  # of a picture, which is looked up, nobody sees this
             return (0.05, 0.05, 0.1), (0.2, 0.2, 0.3)
+        case _:
+            assert_never(environment)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import assert_never
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
 from culet.rendering.placed_stone import PlacedStone
-from culet.scene.backdrop import Backdrop, GradientBackdrop, PlainBackdrop
+from culet.scene.backdrop import Backdrop, GradientBackdrop, NoBackdrop, PlainBackdrop
 from culet.scene.emitters import BoxLamp, boxes, discs
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y, StudioFloor
@@ -98,6 +99,10 @@ def _set_backdrop(p: NDArray[np.void], backdrop: Backdrop, width: int, height: i
             p["backdrop_centre"], p["backdrop_edge"] = centre, edge
             p["backdrop_focus"] = width / 2 + focus[0] * height, height / 2 - focus[1] * height
             p["backdrop_scale"] = 1 / (size[0] * height), 1 / (size[1] * height)
+        case NoBackdrop():
+            pass
+        case _:
+            assert_never(backdrop)
     p["has_backdrop"] = backdrop.kind != "none"
 
 

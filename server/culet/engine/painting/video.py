@@ -10,7 +10,7 @@ import importlib.util
 import logging
 from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,7 +167,9 @@ def _context(codec: Codec, width: int, height: int, crf: int) -> VideoCodecConte
             context.options = X264 | {"crf": str(crf)}
         case Codec.VP9:
             context.options = LIBVPX | {"crf": str(crf + VP9_CRF_OFFSET)}
-        case _:
+        case Codec.JPEG | Codec.PNG:
             raise VideoError(f"expected a codec of video, got {codec.name}")
+        case _:
+            assert_never(codec)
     context.open()
     return context
