@@ -14,6 +14,12 @@ if os.name == "posix":
     import fcntl
 
 
+MOST_TOLD = 5
+"""Differences that a refusal names."""
+MOST_LETTERS = 40
+"""Of a value in it."""
+
+
 class Journal:
     """The first line says which work it is; each line after it holds a record that is safely on the disk."""
 
@@ -96,13 +102,14 @@ class Journal:
             raise InputError(
                 f"{self.path} is no journal of a {self._kind}; give another place, or --fresh to replace it"
             )
-        differing = [name for name in {**found, **identity} if found.get(name) != identity.get(name)]
+        differing = differences(found, identity)
         if differing:
-            told = ", ".join(
-                f"{name} {_short(found.get(name))}, now {_short(identity.get(name))}" for name in differing
-            )
+            told = [f"{path} {_short(then)}, now {_short(now)}" for path, then, now in differing[:MOST_TOLD]]
+            if len(differing) > MOST_TOLD:
+                told.append(f"and {len(differing) - MOST_TOLD} more")
             raise InputError(
-                f"{self.path} is of another {self._kind} ({told}); give another place, or --fresh to {self._anew}"
+                f"{self.path} is of another {self._kind} ({'; '.join(told)}); give another place, or --fresh to "
+                f"{self._anew}"
             )
 
     def _read(self, line: str) -> object:
@@ -112,6 +119,24 @@ class Journal:
             raise InputError(f"{self.path} holds a line that is no JSON; give --fresh to {self._anew}") from error
 
 
+def differences(then: object, now: object, path: str = "") -> list[tuple[str, Any, Any]]:
+    """Where two values of JSON differ: the names down to there with dots between, and both values; None for one that
+    there is not. Lists of one length differ in their elements, others as a whole."""
+    if isinstance(then, Mapping) and isinstance(now, Mapping):
+        pairs = [(name, then.get(name), now.get(name)) for name in {**then, **now}]
+    elif isinstance(then, list) and isinstance(now, list) and len(then) == len(now):
+        pairs = [(str(number), *pair) for number, pair in enumerate(zip(then, now, strict=True))]
+    else:
+        return [] if then == now else [(path, then, now)]
+    return [
+        found
+        for name, before, after in pairs
+        if before != after
+        for found in differences(before, after, f"{path}.{name}" if path else name)
+    ]
+
+
 def _short(value: object) -> str:
-    text = str(value)
-    return text if len(text) <= 24 else text[:21] + "..."
+    text = "none" if value is None else json.dumps(value, ensure_ascii=False) if isinstance(value, list) else str(value)
+    short = text if len(text) <= MOST_LETTERS else f"{text[: MOST_LETTERS - 3]}..."
+    return f"{short} ({len(value)} values)" if isinstance(value, list) and short != text else short

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,10 @@ SIZE = 48, 27
 
 def film(frames: int = 3, samples: int = 2) -> Animation:
     return Animation(turntable(DEFAULT, times_of(1, frames)), *SIZE, samples)
+
+
+def narrowed(scene: Scene) -> Scene:
+    return scene.model_copy(update={"camera": scene.camera.model_copy(update={"fov_degrees": 20.0})})
 
 
 def files_in(folder: Path) -> dict[str, bytes]:
@@ -71,8 +76,15 @@ def test_an_animation_that_was_interrupted_goes_on_and_renders_no_frame_twice(
 def test_another_animation_is_refused_unless_it_begins_anew(tmp_path: Path) -> None:
     list(render_frames(film(3), tmp_path))
     was = files_in(tmp_path)
-    for other in (film(2), film(3, samples=3)):
-        with pytest.raises(InputError, match=r"of another animation .* --fresh"):
+    wide = film(3)
+    narrow = tuple(stage.showing(narrowed(stage.scene)) for stage in wide.stages)
+    for other, said in (
+        (film(2), r"\(frames 3, now 2; motion.digest \w+\.\.\., now \w+\.\.\.\)"),
+        (film(3, samples=3), r"\(samples 2, now 3\)"),
+        (replace(wide, stages=narrow), r"\(scene\.camera\.fov_degrees 13\.5, now 20\.0\)"),
+        (replace(wide, stages=wide.stages[:1] * 3), r"\(motion\.moving \[.*, now \[\]; motion\.digest "),
+    ):
+        with pytest.raises(InputError, match=rf"of another animation {said}.* --fresh"):
             list(render_frames(other, tmp_path))
         assert files_in(tmp_path) == was
     list(render_frames(film(2), tmp_path, fresh=True))

@@ -100,13 +100,14 @@ def test_another_sweep_is_refused_unless_it_begins_anew(tmp_path: Path) -> None:
     out = tmp_path / "a.csv"
     list(run(SCALES, out))
     was = out.read_bytes(), journal_of(out).read_bytes()
-    for other in (
-        replace(SCALES, variations=(variation("scale=1,3"),)),
-        replace(SCALES, metrics=("radiance",)),
-        replace(SCALES, effort=Effort(width=32, height=36, samples=2)),
-        replace(SCALES, stage=Stage.of(Scene.read({"stones": [{"cut": "oval"}]}))),
+    for other, said in (
+        (replace(SCALES, variations=(variation("scale=1,3"),)), r"vary\.scale\.1 2, now 3\)"),
+        (replace(SCALES, variations=(variation("scale=1,2,4"),)), r"vary\.scale \[1, 2\], now \[1, 2, 4\]\)"),
+        (replace(SCALES, metrics=("radiance",)), r"metrics"),
+        (replace(SCALES, effort=Effort(width=32, height=36, samples=2)), r"effort\."),
+        (replace(SCALES, stage=Stage.of(Scene.read({"stones": [{"cut": "oval"}]}))), r"scene\.stones\.0\.cut"),
     ):
-        with pytest.raises(InputError, match=r"of another sweep .* --fresh"):
+        with pytest.raises(InputError, match=rf"of another sweep \({said}.* --fresh"):
             list(run(other, out))
         assert (out.read_bytes(), journal_of(out).read_bytes()) == was
     list(run(replace(SCALES, variations=(variation("scale=3"),)), out, fresh=True))

@@ -12,7 +12,7 @@ from typing import Any
 
 from culet.batch.cameras import Way, along
 from culet.batch.crew import IN_PROCESS, Crew, in_turn
-from culet.batch.digest import digest_of
+from culet.batch.digest import identity_of, motion_of
 from culet.errors import InputError
 from culet.falls import simulate_stage
 from culet.journal import Journal
@@ -41,11 +41,11 @@ class Animation:
     format: str = "png"
 
     def identity(self) -> dict[str, Any]:
-        """What of another animation is different."""
-        frames = hashlib.sha256("".join(map(digest_of, self.stages)).encode()).hexdigest()
+        """What of another animation is different; all of one have the shapes and the sky of its first frame."""
         return {
-            "animation": __version__, "frames": len(self.stages), "scenes": frames, "width": self.width,
-            "height": self.height, "samples": self.samples, "error": self.error, "format": self.format,
+            "animation": __version__, "frames": len(self.stages), "width": self.width, "height": self.height,
+            "samples": self.samples, "error": self.error, "format": self.format, **identity_of(self.stages[0]),
+            "motion": motion_of([stage.scene for stage in self.stages]),
         }  # fmt: skip
 
     def task(self) -> FrameTask:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from culet.batch.crew import IN_PROCESS, Crew, in_turn
-from culet.batch.digest import digest_of
+from culet.batch.digest import identity_of
 from culet.batch.metrics import Effort, check_metrics, columns_of, light_sums, measure
 from culet.batch.variation import Variation, points_of, varied
 from culet.errors import InputError
@@ -43,8 +43,9 @@ class Sweep:
         """What of another sweep is different."""
         return {
             "sweep": __version__,
-            "scene": digest_of(self.stage),
-            "vary": [[each.field, list(each.values)] for each in self.variations],
+            **identity_of(self.stage),
+            "fields": [each.field for each in self.variations],
+            "vary": {each.field: list(each.values) for each in self.variations},
             "metrics": list(self.metrics),
             "effort": asdict(self.effort),
         }
