@@ -89,8 +89,8 @@ delay: $(DONE)/dev opencl browser $(DONE)/solver $(WEB_BUILD)
 study: $(DONE)/study opencl
 	$(BIN)/culet study rendering $(ARGS)
 
-compose-test: $(DONE)/dev
-	.ci/compose-test
+compose-test: $(DONE)/dev browser
+	.ci/compose-test $(ARGS)
 
 # What the images install of the Python index, by hashes. `make lock` follows pyproject.toml, `make lock ARGS=--upgrade` takes the newest.
 LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --custom-compile-command "make lock"
@@ -102,10 +102,12 @@ lock: $(DONE)/base
 	$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"], sep="\n")' | \
 	$(LOCK) $(ARGS) --output-file docker/requirements-build.txt -
 
-# The digests of the images that others are built from: what to write behind their names in docker/Dockerfile.
+# What the images rest on, with its digest of today: for CULET_BASE of Compose, or `docker build --build-arg BASE=`.
+BASE ?= $(shell sed -n 's/^ARG BASE=//p' docker/Dockerfile)
+
 digests:
-	@sed -n 's/^FROM \([^ ]*:[^ ]*\).*/\1/p' docker/Dockerfile | sort -u | while read -r image; do \
-	echo "$$image@$$(docker buildx imagetools inspect --format '{{.Manifest.Digest}}' "$$image")" || exit 1; done
+	@digest=$$(docker buildx imagetools inspect --format '{{json .Manifest.Digest}}' $(BASE)) && \
+	echo "$(BASE)@$$(tr -d '"' <<<"$$digest")"
 
 $(DONE)/venv:
 	@PYTHON=$(PYTHON) .ci/need venv

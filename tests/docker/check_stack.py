@@ -8,10 +8,9 @@ from __future__ import annotations
 import argparse
 import asyncio
 import io
-import json
 import signal
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -19,11 +18,12 @@ import httpx
 from PIL import Image
 
 from culet_protocol.messages import Message, Orbit, ToggleFall
+from docker.claims import PATIENCE, check, until
+from docker.confinement import check_confined
 from docker.containers import Containers
 from docker.watcher import Watcher, first_snapshot, watching
+from e2e.units import LIVELY
 
-PATIENCE = 60.0
-"""Seconds for each answer: the first picture waits for the compiler."""
 HANG_PATIENCE = 240.0
 """Seconds until an engine that hangs is replaced: 20 s, or 150 s if a compiler was at work."""
 MOST_WARNINGS = 20
@@ -48,35 +48,6 @@ OCTAHEDRON = b"""OFF
 3 3 1 5
 3 0 3 5
 """
-CONFINEMENT = """
-import json, pathlib, os
-from culet.engine.process.machine import memory_of_machine
-status = dict(line.split(":", 1) for line in pathlib.Path("/proc/self/status").read_text().splitlines())
-mounts = [line.split() for line in pathlib.Path("/proc/self/mounts").read_text().splitlines()]
-root = next(options for _, place, _, options, *_ in mounts if place == "/")
-print(json.dumps({
-    "uid": os.getuid(), "root": root.split(",")[0], "memory": memory_of_machine(),
-    "capabilities": int(status["CapBnd"], 16), "no_new_privileges": int(status["NoNewPrivs"]),
-}))
-"""
-"""Run within a container; the gateway's too, since both have the same package."""
-
-
-def check(holds: bool, claim: str) -> None:
-    """Print the claim, or end with it."""
-    if not holds:
-        raise SystemExit(f"not true: {claim}")
-    print(f"  {claim}", flush=True)
-
-
-async def until(claim: str, condition: Callable[[], Awaitable[bool]], patience: float = PATIENCE) -> None:
-    """Wait for the claim to come true, or end with it."""
-    began = time.monotonic()
-    while not await condition():
-        if time.monotonic() - began > patience:
-            raise SystemExit(f"not true within {patience:g} s: {claim}")
-        await asyncio.sleep(0.2)
-    check(True, f"{claim}, after {time.monotonic() - began:.1f} s")
 
 
 class Stack:
@@ -114,20 +85,6 @@ class Stack:
         return str(answer.json()["id"])
 
 
-async def check_confinement(containers: Containers) -> None:
-    """What a process in each container may do."""
-    for service in ("engine", "gateway"):
-        found = json.loads(await containers.python(service, CONFINEMENT))
-        limits = (await containers.inspect(service))["HostConfig"]
-        limit = limits["Memory"]
-        check(found["uid"] == 10001, f"{service}: nobody is root")
-        check(found["root"] == "ro", f"{service}: the file system is read-only")
-        check(found["capabilities"] == 0, f"{service}: there are no capabilities to be had")
-        check(found["no_new_privileges"] == 1, f"{service}: no program gives privileges")
-        check(0 < found["memory"] == limit, f"{service}: culet sees its limit of memory, {limit / 2**20:.0f} MiB")
-        check((limits["PidsLimit"] or 0) > 0, f"{service}: its processes are limited")
-
-
 async def check_answers(stack: Stack) -> None:
     """The page, a picture, and to which names the gateway answers."""
     page = await stack.http.get("/")
@@ -145,12 +102,12 @@ async def check_answers(stack: Stack) -> None:
 
 
 async def uploaded_scene(stack: Stack) -> dict[str, Any]:
-    """One of an uploaded mesh under an uploaded sky."""
+    """One of an uploaded mesh under an uploaded sky, whose stone never comes to rest."""
     sky = io.BytesIO()
     Image.linear_gradient("L").resize((64, 32)).convert("RGB").save(sky, "PNG")
     mesh = await stack.upload("meshes", "octahedron.off", OCTAHEDRON)
     image = await stack.upload("skies", "sky.png", sky.getvalue())
-    return {"stones": [{"mesh": mesh}], "environment": {"kind": "image", "image": image}}
+    return LIVELY | {"stones": [{"mesh": mesh}], "environment": {"kind": "image", "image": image}}
 
 
 @asynccontextmanager
@@ -207,7 +164,8 @@ async def check_faults(stack: Stack) -> None:
             await stack.tell(session, ToggleFall())
         await stack.tell(session, Orbit(yaw=0.3, pitch=0.1))
         before = await stack.described(session), await pose(stack, session)
-        check(not before[0]["falling"] and before[1] is not None, "the stone is held, and has a pose")
+        check(not before[0]["falling"], "the stone is held")
+        check(before[1] is not None, "it has a pose")
 
         engine = (await containers.workers("engine"))[0]
         async with fault(stack, watcher, "gateway", "the gateway is killed"):
@@ -259,7 +217,8 @@ async def main() -> None:
     async with httpx.AsyncClient(base_url=f"http://{arguments.address}", timeout=PATIENCE) as http:
         stack = Stack(arguments.address, http, Containers(arguments.compose))
         await until("the gateway is ready", stack.ready)
-        await check_confinement(stack.containers)
+        for service in ("engine", "gateway"):
+            await check_confined(await stack.containers.one(service), service)
         await check_answers(stack)
         await check_faults(stack)
         await check_answers(stack)

@@ -42,6 +42,42 @@ class CommandError(SystemExit):
     """A command of Docker's failed; it has said why."""
 
 
+class Container:
+    """One of them."""
+
+    def __init__(self, identity: str) -> None:
+        self.identity = identity
+
+    async def run(self, *command: str) -> str:
+        """What a program prints there, run by the container's own user."""
+        return await said("docker", "exec", self.identity, *command)
+
+    async def python(self, code: str, *words: str) -> str:
+        """What a piece of Python prints there."""
+        return await self.run("python3", "-c", code, *words)
+
+    async def inspect(self) -> dict[str, Any]:
+        """What Docker knows of it."""
+        described: list[dict[str, Any]] = json.loads(await said("docker", "inspect", self.identity))
+        return described[0]
+
+    async def kill(self) -> None:
+        """As a power cut would: Docker does not start it again."""
+        await said("docker", "kill", self.identity)
+
+    async def start(self) -> None:
+        """Again."""
+        await said("docker", "start", self.identity)
+
+    async def workers(self) -> list[tuple[int, int]]:
+        """The processes that do what it is for, the ones that work first; others stand by."""
+        try:
+            found: list[list[int]] = json.loads(await self.python(WORKERS))
+        except CommandError:  # it is being started again
+            return []
+        return [(since, process) for since, process in found]
+
+
 class Containers:
     """What `docker compose` and its options stand for."""
 
@@ -50,14 +86,33 @@ class Containers:
         self.fault_at = 0.0
         """When something was last done to a process, `time.monotonic`."""
 
+    async def all(self, service: str) -> list[Container]:
+        """A service's containers, the eldest first."""
+        identities = (await said(*self._compose, "ps", "--all", "--quiet", service)).split()
+        found = [Container(identity) for identity in identities]
+        numbers = [(await each.inspect())["Config"]["Labels"]["com.docker.compose.container-number"] for each in found]
+        return [each for _, each in sorted(zip(map(int, numbers), found, strict=True), key=lambda pair: pair[0])]
+
+    async def one(self, service: str) -> Container:
+        """The only container of a service."""
+        (found,) = await self.all(service)
+        return found
+
+    async def compose(self, *words: str, fails: str | None = None) -> str:
+        """What a command of `docker compose` prints; `fails` is what it must say if it has to fail."""
+        return await said(*self._compose, *words, fails=fails)
+
+    async def scale(self, service: str, number: int) -> None:
+        """Have so many containers of a service, all healthy, and leave the others alone."""
+        await self.compose("up", "--detach", "--no-recreate", "--wait", "--scale", f"{service}={number}", service)
+
     async def python(self, service: str, code: str, *words: str) -> str:
         """What a piece of Python prints in a service's container."""
-        return await _said(*self._compose, "exec", "--no-TTY", service, "python3", "-c", code, *words)
+        return await (await self.one(service)).python(code, *words)
 
     async def inspect(self, service: str) -> dict[str, Any]:
         """What Docker knows of a service's container."""
-        described: list[dict[str, Any]] = json.loads(await _said("docker", "inspect", await self._container(service)))
-        return described[0]
+        return await (await self.one(service)).inspect()
 
     async def restarts(self, service: str) -> int:
         """How often the restart policy brought the service back."""
@@ -65,15 +120,11 @@ class Containers:
 
     async def log(self, service: str) -> str:
         """All that it has said."""
-        return await _said(*self._compose, "logs", "--no-log-prefix", service)
+        return await self.compose("logs", "--no-log-prefix", service)
 
     async def workers(self, service: str) -> list[tuple[int, int]]:
         """The processes that do what a service's container is for, the one that works first; another stands by."""
-        try:
-            found: list[list[int]] = json.loads(await self.python(service, WORKERS))
-        except CommandError:  # the container is being started again
-            return []
-        return [(since, process) for since, process in found]
+        return await (await self.one(service)).workers()
 
     async def quiet(self, service: str) -> None:
         """Wait until its container has run long enough for the next death to be the first in a row, and until another
@@ -125,13 +176,17 @@ class Containers:
             except TimeoutError:
                 raise SystemExit(f"not true: an engine that hangs ends itself within {HANG_SECONDS:g} s") from None
 
-    async def _container(self, service: str) -> str:
-        return (await _said(*self._compose, "ps", "--all", "--quiet", service)).strip()
 
-
-async def _said(*command: str) -> str:
-    process = await asyncio.create_subprocess_exec(*command, stdout=asyncio.subprocess.PIPE)
-    said, _ = await process.communicate()
-    if process.returncode != 0:
+async def said(*command: str, fails: str | None = None) -> str:
+    """What a command prints. CommandError if it ends with another code than 0; or, where it has to fail, with 0, or
+    without having said `fails`."""
+    errors = None if fails is None else asyncio.subprocess.PIPE
+    process = await asyncio.create_subprocess_exec(*command, stdout=asyncio.subprocess.PIPE, stderr=errors)
+    printed, told = await process.communicate()
+    if fails is None and process.returncode != 0:
         raise CommandError(f"{' '.join(command)} ended with code {process.returncode}")
-    return said.decode()
+    if fails is not None and (process.returncode == 0 or fails not in told.decode()):
+        raise CommandError(
+            f"{' '.join(command)} was to say {fails!r}, ended with {process.returncode}: {told.decode()}"
+        )
+    return printed.decode()

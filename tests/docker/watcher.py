@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import ssl
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -24,6 +25,7 @@ SIZES = ((320, 180), (336, 189))
 STIR_SECONDS = 0.1
 CONNECT_AGAIN_SECONDS = 0.1
 JOIN_SECONDS = 30.0
+OPEN_SECONDS = 5.0
 
 
 @dataclass
@@ -31,6 +33,8 @@ class Watcher:
     """What came."""
 
     url: str
+    context: ssl.SSLContext | None = None
+    """For wss: whom to believe."""
     frames: list[tuple[float, Frame]] = field(default_factory=list)
     """With `time.monotonic` at arrival; without their pictures."""
 
@@ -51,7 +55,7 @@ class Watcher:
             await asyncio.sleep(CONNECT_AGAIN_SECONDS)
 
     async def _watch(self) -> None:
-        async with _connected(self.url) as socket:
+        async with connected(self.url, self.context) as socket:
             stirring = asyncio.create_task(_stir(socket))
             try:
                 async for message in socket:
@@ -64,9 +68,9 @@ class Watcher:
 
 
 @asynccontextmanager
-async def watching(url: str) -> AsyncIterator[Watcher]:
+async def watching(url: str, context: ssl.SSLContext | None = None) -> AsyncIterator[Watcher]:
     """A watcher of the session that is streamed there."""
-    watcher = Watcher(url)
+    watcher = Watcher(url, context)
     task = asyncio.create_task(watcher.run())
     try:
         yield watcher
@@ -76,16 +80,17 @@ async def watching(url: str) -> AsyncIterator[Watcher]:
 
 async def first_snapshot(url: str) -> dict[str, Any]:
     """What a viewer that joins is told."""
-    async with asyncio.timeout(JOIN_SECONDS), _connected(url) as socket:
+    async with asyncio.timeout(JOIN_SECONDS), connected(url) as socket:
         async for message in socket:
             if isinstance(message, str) and isinstance(told := notice.validate_json(message), Snapshot):
                 return told.snapshot
     raise SystemExit("the stream ended without a snapshot")
 
 
-def _connected(url: str) -> connect:
-    protocols = [Subprotocol(SUBPROTOCOL)]
-    return connect(url, subprotocols=protocols, max_size=None, compression=None, open_timeout=5)
+def connected(url: str, context: ssl.SSLContext | None = None, *protocols: str) -> connect:
+    """A stream; `protocols` are others that the page offers besides."""
+    offered = [Subprotocol(SUBPROTOCOL), *map(Subprotocol, protocols)]
+    return connect(url, ssl=context, subprotocols=offered, max_size=None, compression=None, open_timeout=OPEN_SECONDS)
 
 
 async def _stir(socket: ClientConnection) -> None:

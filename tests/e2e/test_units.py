@@ -18,7 +18,7 @@ from culet_protocol import SUBPROTOCOL, WATCH_SUBPROTOCOL
 from culet_protocol.frame import Frame
 from culet_protocol.messages import Resize
 from e2e.server import PATIENCE, waited_until
-from e2e.units import HAPROXY, TOKEN, WHY_NOT, Units, certificate, configuration
+from e2e.units import HAPROXY, LIVELY, TOKEN, WHY_NOT, Units, certificate, configuration
 from shared.ports import free_port
 
 pytestmark = pytest.mark.skipif(HAPROXY is None, reason=WHY_NOT)
@@ -146,10 +146,6 @@ def page_on(units: Units, browser: Browser, query: str) -> Page:
 
 
 TIME_OF = "culet.lastFrame.simulationTime"
-LIVELY = {
-    "floor": {"kind": "matte"},
-    "simulation": {"restitution": 1, "tangential_damping": 1, "angular_damping": 1, "random_torque": 0},
-}
 
 
 @pytest.mark.soak

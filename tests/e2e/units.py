@@ -18,6 +18,11 @@ REPOSITORY = Path(__file__).parents[2]
 CONFIGURATION = REPOSITORY / "docker" / "haproxy.cfg"
 SILENCE = ("--engine-silence-seconds", "4")
 TOKEN = "a-token-of-these-units"  # noqa: S105 - of these tests alone
+LIVELY = {
+    "floor": {"kind": "matte"},
+    "simulation": {"restitution": 1, "tangential_damping": 1, "angular_damping": 1, "random_torque": 0},
+}
+"""A scene whose stone bounces for ever."""
 HAPROXY = shutil.which("haproxy") or shutil.which("haproxy", path="/usr/sbin")
 WHY_NOT = "there is no haproxy on the PATH; Debian has it as the package haproxy"
 
