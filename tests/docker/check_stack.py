@@ -208,6 +208,16 @@ async def check_killed_engine(stack: Stack, watcher: Watcher, session: str) -> N
     check(now >= last, f"the fall goes on: t = {last:.2f} s before, {now:.2f} s after")
 
 
+async def check_second_engine(stack: Stack) -> None:
+    """A gateway that starts before two engines says that it serves one; the one that was there goes on."""
+    await stack.containers.scale("engine", 2)
+    told = "one gateway serves one engine"
+    await stack.containers.compose("run", "--rm", "--no-deps", "--no-TTY", "gateway", fails=told)
+    check(True, f"before two engines a gateway does not start: {told}")
+    await stack.containers.scale("engine", 1)
+    check(await stack.ready(), "the gateway that had one has it still")
+
+
 async def main() -> None:
     """Ask for everything, in order."""
     parser = argparse.ArgumentParser()
@@ -220,6 +230,7 @@ async def main() -> None:
         for service in ("engine", "gateway"):
             await check_confined(await stack.containers.one(service), service)
         await check_answers(stack)
+        await check_second_engine(stack)
         await check_faults(stack)
         await check_answers(stack)
 
