@@ -51,13 +51,16 @@ print(json.dumps([process for _, process in sorted(found)]))
 async def until_spread(site: Site) -> None:
     """Wait until each unit gets new sessions."""
 
+    units = await site.units()
+    check(len(units) > 1, f"{len(units)} units run")
+
     async def spread() -> bool:
-        made = [(await site.make())["id"] for _ in await site.units()]
+        made = [(await site.make())["id"] for _ in units]
         held = await site.holders(*made)
         await site.delete(*made)
         return all(any(row) for row in held)
 
-    await until(f"each of {len(await site.units())} units is given sessions", spread)
+    await until(f"each of {len(units)} units is given sessions", spread)
 
 
 async def check_spread(site: Site) -> None:
