@@ -8,6 +8,7 @@ import pytest
 
 from culet.rendering.renderer import KEPT, Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
+from culet.stage import Stage
 from rendering.views import take
 
 SIZE = 320, 180
@@ -38,6 +39,20 @@ def test_a_picture_that_nobody_holds_gives_its_memory_back_at_once(own: Renderer
         picture.rgb()
         assert own.pool.active_bytes > 2 * RUN
         del picture
+        assert own.pool.active_bytes == 0
+    finally:
+        gc.enable()
+
+
+def test_a_picture_that_is_given_up_amid_a_sample_gives_its_memory_back_at_once(own: Renderer) -> None:
+    gc.disable()
+    try:
+        picture = own.picture(Stage.of(LEGACY_DEFAULT), *SIZE)
+        pieces = picture.refine_in_pieces(1, 1e-9)
+        next(pieces)
+        assert picture.under_way
+        picture.give_up()
+        del picture, pieces
         assert own.pool.active_bytes == 0
     finally:
         gc.enable()

@@ -305,6 +305,11 @@ class Picture:
         """Whether it was left amid a sample, which some pixels have and others have not."""
         return self._sampling is not None
 
+    def give_up(self) -> None:
+        """Nobody goes on with it: amid a sample it and what it is at would hold each other, and its memory, until
+        Python collects circles."""
+        self._sampling = self._lighting = None
+
     def prepare(self) -> None:
         """Have on the device what the next sample needs, which `refine` does by itself."""
         self._tracings.prepare(self.samples)

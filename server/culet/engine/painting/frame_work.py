@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from time import perf_counter
@@ -86,7 +86,7 @@ class FrameWork:
     """When all is done."""
     first_seconds: float | None = None
     """s of rendering the picture's first sample, if it was this that made it whole."""
-    pieces: Iterator[object] = field(init=False)
+    pieces: Generator[object, None, None] = field(init=False)
 
     @property
     def stage(self) -> Stage:
@@ -113,7 +113,14 @@ class FrameWork:
         """That all of it would take, as far as the part that is done tells."""
         return self.spent / self.part if self.part > 0 else self.spent
 
-    def _made(self, renderer: Renderer) -> Iterator[object]:
+    def give_up(self) -> None:
+        """It is not gone on with. What it holds is given back now, and not when Python next collects circles: a frame
+        with a light map holds some 30 MiB."""
+        self.pieces.close()
+        if self.picture is not None:
+            self.picture.give_up()
+
+    def _made(self, renderer: Renderer) -> Generator[object, None, None]:
         width, height = self.wanted if self.plan is None else self.plan.size
         if not renderer.is_ready(self.stage, self.samples):
             raise Unprepared

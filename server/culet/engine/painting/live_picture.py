@@ -202,6 +202,8 @@ class LivePicture:
         self.making = None
         self.quality.drew(work)
         self.painted, self.painted_size, self.render_seconds = work.shown, work.wanted, work.render_seconds
+        if self.picture is not work.picture:
+            self._let_go()
         match work.kind:
             case Kind.PLANNED:
                 self.state, self.picture, self.settles_at = State.REDUCED, None, now + SETTLE_SECONDS
@@ -211,7 +213,8 @@ class LivePicture:
                 assert_never(work.kind)
         self.seen, self.seen_at = None if work.frame is None else work.frame.rgb, now
         if work.final:
-            self.state, self.picture = State.FINAL, None
+            self._let_go()
+            self.state = State.FINAL
 
     def outdated(self, now: float) -> bool:
         """Whether the frame in the making is to be given up."""
@@ -240,6 +243,7 @@ class LivePicture:
         if work is None:
             return
         self.making = None
+        work.give_up()
         if work.shown is not self.session.shown or work.wanted == self.size:  # else only its size was wrong
             self.changed_at = now
         match work.kind:
@@ -250,7 +254,8 @@ class LivePicture:
             case Kind.FULL:
                 self.quality.give_up_full(work)
             case Kind.REFINED:  # its sums are neither those of before nor those of after
-                self.picture, self.state = None, State.BLANK
+                self._let_go()
+                self.state = State.BLANK
             case _:
                 assert_never(work.kind)
 
@@ -261,7 +266,8 @@ class LivePicture:
 
     def refuse(self, shown: Shown) -> None:
         """It cannot be rendered."""
-        self.making, self.picture, self.painted, self.state = None, None, shown, State.REFUSED
+        self._let_go()
+        self.making, self.painted, self.state = None, shown, State.REFUSED
         self.seen = None
 
     def try_again(self) -> None:
@@ -272,7 +278,8 @@ class LivePicture:
     def draw_anew(self) -> None:
         """The picture at rest is wanted in a form in which it was not sent; a frame under way brings it by itself."""
         if self.making is None and self.state in (State.FULL, State.FINAL):
-            self.picture, self.seen, self.state = None, None, State.BLANK
+            self._let_go()
+            self.seen, self.state = None, State.BLANK
 
     def resize_lesser(self, size: tuple[int, int]) -> None:
         """Lesser pictures are to fill other windows. One at rest is made anew if it is smaller than that."""
@@ -285,15 +292,23 @@ class LivePicture:
 
     def abandon(self, now: float) -> None:
         """Nobody watches: free the picture's memory, keep the message, and what it shows if that is still shown."""
-        if isinstance(self.making, FrameWork):
+        if self.work is not None:
+            self.work.give_up()
             self.making = None
-        self.picture, self.seen = None, None
+        self._let_go()
+        self.seen = None
         self.session.motion.look_away()
         self.unwatched_at = now
         if self.state in (State.REDUCED, State.FULL):
             self.state = State.BLANK
         if self.painted is not self.session.shown:
             self.painted = None
+
+    def _let_go(self) -> None:
+        """Give back the picture's memory."""
+        if self.picture is not None:
+            self.picture.give_up()
+        self.picture = None
 
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""

@@ -78,6 +78,9 @@ class Picture(Protocol):
         """Root mean square error of what is shown, from 0 to 1, that more samples would take away: estimated. NaN below
         two samples, and without `refine_until`."""
 
+    def give_up(self) -> None:
+        """Nobody goes on with it. Amid a sample it and what it is at hold each other, until this is called."""
+
     def develop_in_pieces(self, *, soft: bool = False) -> Iterator[Any]:
         """Tone-map for `rgb`, or with `soft` for `softened`, yielding between short pieces of work."""
 
