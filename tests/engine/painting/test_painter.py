@@ -20,6 +20,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
+from culet.engine.governing.thrift import Allowance
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.frame_work import FrameWork, Kind, has_shape
@@ -442,11 +443,11 @@ async def test_the_next_frame_is_begun_while_the_last_one_is_encoded(monkeypatch
     drawing = [threading.Event() for _ in range(8)]
     encoded, world = list[int](), World(0.1)
 
-    def encode(frame: LiveFrame, at_rest: float) -> Coded:
+    def encode(frame: LiveFrame, _: Allowance) -> Coded:
         number = len(encoded)
         encoded.append(number)
         assert number + 1 >= len(drawing) or drawing[number + 1].wait(PATIENCE)
-        return Coded.of_jpeg(jpeg.encode_within(frame.rgb, 50, at_rest), thrifty=False)
+        return Coded.of_jpeg(jpeg.encode_within(frame.rgb, 50, math.inf), thrifty=False)
 
     def picture(stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
         for begun in drawing[: len(world.drawn) + 1]:
