@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from pathlib import Path
 from urllib.error import HTTPError, URLError
 from urllib.request import Request, urlopen
 
@@ -15,8 +16,8 @@ BUSY = 429
 
 
 def main() -> int:
-    """Ask for a picture, with the token that all units share."""
-    token = os.environ.get("CULET_TOKEN")
+    """Ask for a picture, with the token that the server has, if it has one."""
+    token = _token()
     request = Request(PICTURE, headers={"Authorization": f"Bearer {token}"} if token else {})
     try:
         with urlopen(request, timeout=PATIENCE_SECONDS) as answer:  # noqa: S310 - the constant above
@@ -25,6 +26,14 @@ def main() -> int:
         return 0 if refused.code == BUSY else 1
     except (URLError, TimeoutError):
         return 1
+
+
+def _token() -> str | None:
+    """One that was made when the server was started stands in a file alone."""
+    file = os.environ.get("CULET_TOKEN_FILE")
+    if file is not None and Path(file).is_file():
+        return Path(file).read_text(encoding="ascii")
+    return os.environ.get("CULET_TOKEN")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import json
+import runpy
 import socket
 from pathlib import Path
 from typing import cast
@@ -24,6 +25,7 @@ from culet.gateway.app import create_app
 from culet.gateway.openapi import Application
 from culet.gateway.server_token import PATTERN, Token, is_own_machine
 from culet.gateway.settings import GatewaySettings, settings_of, with_token
+from culet.gateway.token_file import token_kept
 from culet.service.parts import gateway_part
 from culet_client import RefusedError, connect
 from culet_protocol import SUBPROTOCOL, WATCH_SUBPROTOCOL
@@ -179,6 +181,40 @@ def test_a_gateway_that_wants_no_token_does_not_take_up_the_environment_s(monkey
     for name, value in part.environment.items():
         monkeypatch.setenv(name, value)
     assert GatewaySettings.model_validate_json(part.command[-1]).token is None
+
+
+def test_a_token_stands_in_a_file_of_this_user_alone_while_the_server_runs(tmp_path: Path) -> None:
+    file = tmp_path / "token"
+    file.write_text("what a server that was killed has left")
+    file.chmod(0o644)
+    with token_kept(settings(token_file=file, token=TOKEN)):
+        assert file.read_text() == TOKEN
+        assert file.stat().st_mode & 0o777 == 0o600
+        assert [*tmp_path.iterdir()] == [file]
+    assert not file.exists()
+    file.write_text("another one's")
+    with token_kept(settings(token_file=file, token=None)):
+        assert not file.exists(), "a server without a token has none to tell"
+    with (
+        pytest.raises(InputError, match=r"token_file: cannot keep the token in .*nowhere"),
+        token_kept(settings(token_file=tmp_path / "nowhere" / "token", token=TOKEN)),
+    ):
+        pass
+
+
+async def test_the_health_check_of_the_image_has_a_picture_by_a_token_that_it_was_not_told(
+    engine: Endpoints, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    health = runpy.run_path(str(Path(__file__).parents[2] / "docker" / "unit_health.py"))
+    async with gateway_before(engine, web=tmp_path, token=TOKEN) as guarded:
+        health["main"].__globals__["PICTURE"] = f"{guarded.url}api/render.png?width=16&height=16&samples=1"
+        monkeypatch.delenv("CULET_TOKEN", raising=False)
+        monkeypatch.setenv("CULET_TOKEN_FILE", str(tmp_path / "token"))
+        assert await asyncio.to_thread(health["main"]) == 1
+        with token_kept(settings(token_file=tmp_path / "token", token=TOKEN)):
+            assert await asyncio.to_thread(health["main"]) == 0
+        monkeypatch.setenv("CULET_TOKEN", TOKEN)
+        assert await asyncio.to_thread(health["main"]) == 0
 
 
 async def test_without_the_token_nothing_is_made_rendered_or_uploaded(engine: Endpoints, tmp_path: Path) -> None:

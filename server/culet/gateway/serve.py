@@ -11,6 +11,7 @@ from culet.gateway.address import entrance
 from culet.gateway.engine_door import check_one_engine
 from culet.gateway.listener import Listener
 from culet.gateway.settings import settings_of, with_token
+from culet.gateway.token_file import token_kept
 
 
 def run_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
@@ -23,7 +24,7 @@ def run_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     check_one_engine({"control": control, "frames": frames})
     asked = settings_of(given, reachable(control), reachable(frames))
     settings = with_token(asked)
-    with Listener(settings) as listener:
+    with Listener(settings) as listener, token_kept(settings):
         asyncio.run(serve_and_announce(listener, settings.token if asked.token is None else None))
 
 

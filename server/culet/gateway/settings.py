@@ -39,6 +39,11 @@ class GatewaySettings(Settings):
         "letters, digits, - and _. One is made, and printed with the address, if other machines can reach the server: "
         "by --host, or by a proxy that --trusted-proxy or a name that --allow-host tells of.",
     )
+    token_file: Path | None = Field(
+        None,
+        description="Keep the token in this file while the server runs, which only this user can read: for what looks "
+        "after the server on this machine and does not know a token that was made.",
+    )
     no_token: bool = Field(default=False, description="Make no token: whoever reaches the server may do everything.")
     open_health: bool = Field(default=True, description="Answer /healthz and /readyz without the token.")
     open_metrics: bool = Field(default=False, description="Answer /metrics without the token.")

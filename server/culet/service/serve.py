@@ -15,6 +15,7 @@ from culet.endpoints import check_free, reachable
 from culet.gateway.address import entrance, listening_socket, local_url_of, url_of
 from culet.gateway.engine_door import check_one_engine
 from culet.gateway.settings import GatewaySettings, settings_of, with_token
+from culet.gateway.token_file import token_kept
 from culet.service.keeping import keep
 from culet.service.parts import engine_part, gateway_part
 from culet.service.socket_folder import socket_folder
@@ -48,7 +49,7 @@ def serve(
             settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
         endpoints = [own_frames, *([frames] if frames else [])]
         engine = engine_part(control, *endpoints, options=engine_options, spare=spare)
-        with listening_socket(settings.host, settings.port) as listening:
+        with listening_socket(settings.host, settings.port) as listening, token_kept(settings):
             gateway = gateway_part(listening, settings, spare=spare)
             url = entrance(url_of(listening, settings.host), _made(asked, settings))
             page = entrance(local_url_of(listening, settings.host), settings.token) if open_page else None
@@ -74,7 +75,7 @@ def serve_gateway(given: Mapping[str, Any], control: str, frames: str) -> None:
     check_one_engine({"control": control, "frames": frames})
     asked = settings_of(given, reachable(control), reachable(frames))
     settings = with_token(asked)
-    with socket_folder() as folder, listening_socket(settings.host, settings.port) as listening:
+    with socket_folder() as folder, listening_socket(settings.host, settings.port) as listening, token_kept(settings):
         if settings.uploads_folder is None:
             settings = settings.model_copy(update={"uploads_folder": folder / "uploads"})
         gateway = gateway_part(listening, settings, alone=True)
