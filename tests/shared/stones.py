@@ -18,7 +18,7 @@ from culet.geometry.load import shape_of
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene import StoneSettings
-from culet.study.extremes import ball, box, tetrahedron
+from culet.study.solids import ball, box, tetrahedron
 from geometry.shapes import obj, star_outline
 from geometry.shapes import prism as extruded
 

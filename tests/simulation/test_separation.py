@@ -13,7 +13,7 @@ from culet.simulation.bodies import Body
 from culet.simulation.rotation import IDENTITY
 from culet.simulation.solver.polyhedron import Polyhedron, polyhedron_of
 from culet.study.contacts.worlds import corners, triple, turned
-from culet.study.extremes import ball, box, brilliant, tetrahedron
+from culet.study.solids import ball, box, brilliant, tetrahedron
 from simulation.worlds import world
 
 SHAPES = {

@@ -18,7 +18,7 @@ from scipy.spatial import ConvexHull
 from culet.geometry.shape import Shape
 from culet.simulation.bodies import Body, BodyState
 from culet.study.contacts.worlds import corners, momenta, triple, turned
-from culet.study.extremes import box
+from culet.study.solids import box
 from simulation.worlds import world
 
 Floats = NDArray[np.float64]

@@ -18,7 +18,7 @@ from culet.simulation.surfaces import FLOOR, Surface
 from culet.simulation.world import World
 from culet.study.contacts.heaps import scattered
 from culet.study.contacts.worlds import BOWL, advance, law, level, standing, step_cut, triple, turned
-from culet.study.extremes import brilliant
+from culet.study.solids import brilliant
 from validation.other_engines import FRICTION, MISSING, Positions, mujoco, rapier
 
 pytestmark = pytest.mark.validation

@@ -26,9 +26,9 @@ from culet.stage import Stage
 from culet.study.contacts.heaps import dearest_quarter, heap
 from culet.study.convergence import fit_order
 from culet.study.crowd import running_service
-from culet.study.extremes import ball
 from culet.study.journal import Journal
 from culet.study.report import Figure, Fit, Point
+from culet.study.solids import ball
 
 FIGURES: dict[str, Figure] = {
     "processor_seconds": Figure(unit="s", about="Of all cores together, median: of a frame of one sample; of a step of "

@@ -24,7 +24,7 @@ from culet.simulation.settings import SimulationSettings as Settings
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR, WALLS, Surface
-from culet.study.extremes import ball, box, brilliant, tetrahedron
+from culet.study.solids import ball, box, brilliant, tetrahedron
 
 GAIN = 1e-6
 """Of the energy above lying on the floor: rounding, and the fourth order of the rotation."""

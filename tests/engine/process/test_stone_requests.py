@@ -16,7 +16,7 @@ from culet.engine.process.stone_requests import StoneRequests
 from culet.errors import MeshError
 from culet.paths.recorder import GivenUpError
 from culet.stage import NOTHING, Library
-from culet.study.extremes import ball
+from culet.study.solids import ball
 from culet_protocol.engine import DrawDiagram, Grade, TracePath
 from engine.peer import PATIENCE
 

@@ -17,7 +17,7 @@ from culet.simulation.surfaces import FLOOR, WALLS, Surface
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import BOWL, Course, law, triple, turned, watch
-from culet.study.extremes import ball, box, brilliant, tetrahedron
+from culet.study.solids import ball, box, brilliant, tetrahedron
 
 OVERLAP = 1e-3
 """R, at any time."""

@@ -13,7 +13,7 @@ from culet.simulation.bodies import Body
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import BOWL, G, advance, law, overlap, triple, turned
-from culet.study.extremes import brilliant
+from culet.study.solids import brilliant
 
 SEEDS = (1, 2, 3, 4, 5)
 DEEPEST = {12: 1e-3, 32: 2e-3, 64: 5e-3}

@@ -29,7 +29,7 @@ from culet.study.contacts.worlds import (
     turned,
     turning,
 )  # fmt: skip
-from culet.study.extremes import box, brilliant
+from culet.study.solids import box, brilliant
 
 TABLE = (0.0, 1.0, 0.0)
 """The normal of a brilliant's table."""

@@ -12,7 +12,7 @@ from culet.simulation.rotation import IDENTITY
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import about, advance, angle_between, law, level, momenta, overlap, standing, step_cut
-from culet.study.extremes import box, brilliant
+from culet.study.solids import box, brilliant
 
 CUBE = box(1, 1, 1)
 SIDE = 1 / math.sqrt(3)

@@ -14,6 +14,7 @@ SHIPPED = frozenset({"standard-round-brilliant"})
 @lru_cache
 def shipped_shape(name: str) -> Shape:
     """Of one of SHIPPED."""
-    from culet.geometry.stone_file import shape_from_file  # of the few scenes that name one
+    from culet.geometry.designs.reader import read_design  # of the few scenes that name one
+    from culet.geometry.designs.solid import shape_of_design
 
-    return shape_from_file((files(__name__) / f"{name}.asc").read_bytes(), "asc", name=name)
+    return shape_of_design(read_design((files(__name__) / f"{name}.asc").read_bytes(), "asc"), name)
