@@ -21,7 +21,7 @@ import pyopencl as cl
 import culet_kernels
 from culet.rendering.build import FLAGS, Variant
 from culet.rendering.device import Device, open_device
-from culet.rendering.features import ESTIMATOR, FRESNEL, SKY, SURFACE, Features, Geometry, Stones
+from culet.rendering.features import ESTIMATOR, FRESNEL, SKY, SURFACE, Features, Geometry, StoneCount
 
 # Pragmas, since PoCL refuses -W as an option. A file does not use all of what it includes; and where a packet has one
 # lane, the lanes' `&` is one of scalars.
@@ -47,12 +47,12 @@ FIXED = [
 ]  # fmt: skip
 """All decided when the program is made, each of their kinds at least once."""
 MANY = [
-    Features(Geometry.HULL, stones=Stones.MANY),
-    Features(Geometry.MESH, stones=Stones.MANY, few_mirrors=1),
-    Features(Geometry.MESH, stones=Stones.MANY, spectral=1, polarised=1),
+    Features(Geometry.HULL, stones=StoneCount.MANY),
+    Features(Geometry.MESH, stones=StoneCount.MANY, few_mirrors=1),
+    Features(Geometry.MESH, stones=StoneCount.MANY, spectral=1, polarised=1),
     Features(
         Geometry.HULL, SURFACE["none"], SURFACE["none"], 0, SKY["constant"], dispersion=0, absorption=-1,
-        fresnel=FRESNEL["exact"], camera_inside=0, stones=Stones.MANY,
+        fresnel=FRESNEL["exact"], camera_inside=0, stones=StoneCount.MANY,
     ),
 ]  # fmt: skip
 """Of several stones, which the chain estimator alone takes."""

@@ -23,7 +23,7 @@ FILM_SIZE = 1280, 720
 """Pixels of a film, unless somebody says otherwise."""
 
 
-class Source(Protocol):
+class FrameSource(Protocol):
     """Whence frames come."""
 
     def receive(self, timeout_seconds: float) -> Frame:
@@ -56,7 +56,7 @@ class FrameStream:
 
 def frames_of(
     address: str, watched: str, timeout_seconds: float, size: tuple[int, int] | None = None
-) -> AbstractContextManager[Source]:
+) -> AbstractContextManager[FrameSource]:
     """Every frame of a session, by its watch id, or its id where a gateway is asked: from where an engine publishes
     frames (`tcp://`, `ipc://`), or by WebSocket from a server (`http://`, `ws://`, and with an s)."""
     if urlsplit(address).scheme in ZEROMQ:
@@ -141,7 +141,7 @@ def record_film(
     return film.count
 
 
-def recorded(source: Source, seconds: float, timeout_seconds: float) -> Iterator[tuple[Frame, float]]:
+def recorded(source: FrameSource, seconds: float, timeout_seconds: float) -> Iterator[tuple[Frame, float]]:
     """Every frame that comes in some seconds, counted from the first, once each, and when it came, s."""
     frame = source.receive(timeout_seconds)
     end = time.monotonic() + seconds

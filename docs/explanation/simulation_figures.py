@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.camera import Camera
-from culet.scene.motion import Simulation as Laws
+from culet.scene.motion import MotionLaws
 from culet.scene.room import Plane
 from culet.simulation import Simulation, record
 from culet.simulation.plot import plot
@@ -27,7 +27,7 @@ TIMES = (0.2, 0.6, 0.8, 1.0, 1.3, 1.8, 6.0)
 
 
 def scene_of(**settings: object) -> Scene:
-    scene = Scene(floor=Plane(kind="matte"), simulation=Laws.model_validate(settings))
+    scene = Scene(floor=Plane(kind="matte"), simulation=MotionLaws.model_validate(settings))
     return scene.moved((START, TILT))
 
 

@@ -156,7 +156,7 @@ class Render(Message):
 
 class Grade(Message):
     """Grade a stone of a scene, or of what a session shows, the first if none is named; the reply's result is a
-    `culet.grading.answer.Report`. `error` is twice the standard error of ISO, in points."""
+    `culet.grading.answer.GradeReport`. `error` is twice the standard error of ISO, in points."""
 
     type: Literal["grade"] = "grade"
     scene: dict[str, Any] | None = None

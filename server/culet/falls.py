@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from culet.errors import InputError
 from culet.places import check_place
 from culet.scene import Scene
-from culet.simulation.paths import ENDINGS, Progress, record, write
-from culet.simulation.paths import Path as OnePath
+from culet.simulation.paths import ENDINGS, Progress, StonePath, record, write
 from culet.simulation.several_paths import SeveralPaths, record_several
 from culet.simulation.staged import dropped
 from culet.sources import load_scene, load_stage
@@ -31,7 +30,7 @@ class Motion:
 
     scene: Scene
     """With the stones at their starts."""
-    path: OnePath | SeveralPaths
+    path: StonePath | SeveralPaths
     """What was recorded, as the solver of one stone or of several has it."""
     findings: tuple[str, ...] = ()
     """What was found in the mesh's file, repaired or left out, and which stones overlap, a sentence each."""

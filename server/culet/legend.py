@@ -16,7 +16,7 @@ from culet.scene.camera import Camera
 from culet.scene.model import Scene
 from culet.scene.sky import ImageEnvironment
 
-Colour = tuple[int, int, int]
+ByteColour = tuple[int, int, int]
 
 RED, GREEN, BLUE, WHITE, BLACK = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255), (0, 0, 0)
 ASIDE = 45
@@ -30,7 +30,7 @@ class Line:
     """Of a legend."""
 
     text: str
-    colour: Colour | None = None
+    colour: ByteColour | None = None
     """Of the patch before the text."""
 
 

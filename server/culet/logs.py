@@ -8,7 +8,7 @@ import time
 from typing import Literal
 
 Level = Literal["debug", "info", "warning", "error"]
-Format = Literal["text", "json"]
+LogFormat = Literal["text", "json"]
 
 FIELDS = "fields"
 """Name under which a record carries what belongs to it: `extra={FIELDS: {...}}`; its message says the same in words."""
@@ -17,7 +17,7 @@ _CHATTY = ("uvicorn.error", "python_multipart", "asyncio")
 """Loggers that tell of each bad request, or of each start; what matters of that is said by the gateway's own."""
 
 
-def configure(level: Level, log_format: Format) -> None:
+def configure(level: Level, log_format: LogFormat) -> None:
     """Send all records of a level and above to stderr."""
     handler = logging.StreamHandler()
     formatter = _Json() if log_format == "json" else logging.Formatter(_TEXT)

@@ -15,7 +15,7 @@ PATIENCE = "WATCHDOG_USEC"
 """Before the microseconds of silence after which the process counts as hung."""
 
 
-class Notice(StrEnum):
+class ServiceNotice(StrEnum):
     """What is said."""
 
     READY = "READY=1"
@@ -28,10 +28,10 @@ class Notice(StrEnum):
 
 def notify_patience(seconds: float) -> None:
     """Ask the supervisor to take this process for hung only after so long, from now on."""
-    _send(f"{PATIENCE}={round(1e6 * seconds)}\n{Notice.ALIVE}")
+    _send(f"{PATIENCE}={round(1e6 * seconds)}\n{ServiceNotice.ALIVE}")
 
 
-def notify(notice: Notice) -> None:
+def notify(notice: ServiceNotice) -> None:
     """Tell the supervisor, if there is one; never waits, never fails."""
     _send(notice)
 

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, ByteSize, Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from culet.errors import InputError
-from culet.logs import Format, Level
+from culet.logs import Level, LogFormat
 from culet.scene.wording import expected
 
 PREFIX = "CULET_"
@@ -44,7 +44,7 @@ class Settings(BaseSettings):
     )
 
     log_level: Level = Field("info", description="What is told on stderr: events of this level and above.")
-    log_format: Format = Field("text", description="How it is told: as text, or as one JSON object a line.")
+    log_format: LogFormat = Field("text", description="How it is told: as text, or as one JSON object a line.")
     keys: Path | None = Field(
         None,
         description="Folder of keys for tcp:// endpoints, made by `culet keys`: what travels there is encrypted, and "

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from culet.errors import InputError
 from culet.rendering import files
 from culet.rendering.cut_out import CuttingRenderer
-from culet.rendering.renderer import Picture as Refined
+from culet.rendering.renderer import DevicePicture
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.scene.film import MOST_SAMPLES
@@ -275,7 +275,7 @@ def render_stage(
         return Picture(stage.scene, linear, rgb, cost, _missed(picture), error, met, findings)
 
 
-def _missed(picture: Refined) -> Missed:
+def _missed(picture: DevicePicture) -> Missed:
     return Missed(
         cut=picture.cut(),
         bound=picture.truncation_bound(),

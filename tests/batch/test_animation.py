@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from culet.batch.animation import JOURNAL, Animation, Frame, FrameTask, fall, render_frames, times_of, turntable
+from culet.batch.animation import JOURNAL, Animation, FrameTask, RenderedFrame, fall, render_frames, times_of, turntable
 from culet.batch.film import check_film, write_film
 from culet.errors import InputError
 from culet.scene import Scene
@@ -52,7 +52,7 @@ def test_an_animation_that_was_interrupted_goes_on_and_renders_no_frame_twice(
     rendered = []
     render = FrameTask.__call__
 
-    def counting(task: FrameTask, item: tuple[int, Scene]) -> Frame:
+    def counting(task: FrameTask, item: tuple[int, Scene]) -> RenderedFrame:
         rendered.append(item[0])
         if rendered == [0, 1, 2]:
             raise KeyboardInterrupt

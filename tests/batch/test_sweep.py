@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from culet.batch import sweep as sweeping
-from culet.batch.metrics import Effort, outline_mask
+from culet.batch.metrics import MetricEffort, outline_mask
 from culet.batch.sweep import Sweep, journal_of, run
 from culet.batch.variation import variation
 from culet.errors import InputError
@@ -21,7 +21,7 @@ from culet.stage import Library, Stage
 from culet.stills import render_stage
 from geometry.designs.files import design
 
-QUICK = Effort(grade_error=5, width=64, height=36, samples=2)
+QUICK = MetricEffort(grade_error=5, width=64, height=36, samples=2)
 DEFAULT = Stage.of(Scene())
 SCALES = Sweep(DEFAULT, (variation("scale=1,2"),), ("seconds",), QUICK)
 
@@ -104,7 +104,7 @@ def test_another_sweep_is_refused_unless_it_begins_anew(tmp_path: Path) -> None:
         (replace(SCALES, variations=(variation("scale=1,3"),)), r"vary\.scale\.1 2, now 3\)"),
         (replace(SCALES, variations=(variation("scale=1,2,4"),)), r"vary\.scale \[1, 2\], now \[1, 2, 4\]\)"),
         (replace(SCALES, metrics=("radiance",)), r"metrics"),
-        (replace(SCALES, effort=Effort(width=32, height=36, samples=2)), r"effort\."),
+        (replace(SCALES, effort=MetricEffort(width=32, height=36, samples=2)), r"effort\."),
         (replace(SCALES, stage=Stage.of(Scene.read({"stones": [{"cut": "oval"}]}))), r"scene\.stones\.0\.cut"),
     ):
         with pytest.raises(InputError, match=rf"of another sweep \({said}.* --fresh"):

@@ -2,7 +2,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from culet.engine.session.motion import Motion
+from culet.engine.session.motion import StonesMotion
 from culet.engine.session.session import Session
 from engine.peer import EngineProcess, running_engine
 
@@ -11,7 +11,7 @@ from engine.peer import EngineProcess, running_engine
 def steps_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """A session of the test's own process takes all steps that are due, however long the machine takes for one: what is
     given up of them (`Allowance`) has tests of its own, with a timer of theirs."""
-    for kind in (Session, Motion):
+    for kind in (Session, StonesMotion):
         defaults = kind.__init__.__kwdefaults__
         assert defaults is not None
         monkeypatch.setitem(defaults, "timer", lambda: 0.0)

@@ -12,7 +12,7 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from culet.gateway.admission import Bodies
+from culet.gateway.admission import BodyBytes
 from gateway.running import FOREIGN, Gateway, gateway_alone
 from shared.patience import PATIENCE
 
@@ -187,7 +187,7 @@ async def test_a_body_of_two_lengths_is_refused(alone: Gateway) -> None:
 
 
 async def test_bodies_under_way_are_bounded_for_each_client_and_in_all() -> None:
-    bodies = Bodies(100, 60)
+    bodies = BodyBytes(100, 60)
     assert bodies.room_for("a", 60)
     bodies.take("a", 50)
     assert not bodies.room_for("a", 11)

@@ -15,7 +15,7 @@ from PIL import Image
 from culet.gateway.uploads import Uploads
 from culet.scene import PRESETS
 from culet.scene.cuts import CUTS
-from culet.scene.motion import Simulation
+from culet.scene.motion import MotionLaws
 from culet.scene.stone import MaterialName
 from culet_client import FrameSubscription
 from culet_protocol.engine import Grade
@@ -211,7 +211,7 @@ async def test_materials_and_cuts_can_be_named_in_a_scene(gateway: Gateway) -> N
 
 async def test_the_integrators_listed_are_those_of_the_scene(gateway: Gateway) -> None:
     integrators = (await gateway.http.get("/api/integrators")).json()["integrators"]
-    named = Simulation.model_json_schema()["properties"]["integrator"]["enum"]
+    named = MotionLaws.model_json_schema()["properties"]["integrator"]["enum"]
     assert [integrator["name"] for integrator in integrators] == named
     assert all(integrator["summary"].endswith(".") for integrator in integrators)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from culet.gateway.tiers import ENTER_SECONDS, FEW_FRAMES, LEAVE_SECONDS, Tiers
+from culet.gateway.tiers import ENTER_SECONDS, FEW_FRAMES, LEAVE_SECONDS, StreamTiers
 from culet.gateway.viewer import Viewer
 from culet_protocol.frame import Codec
 from culet_protocol.watch import LESSER, Stream
@@ -25,7 +25,7 @@ class Room:
 
     links: list[SimulatedLink]
     viewers: list[Viewer] = field(default_factory=list)
-    tiers: Tiers = field(default_factory=Tiers)
+    tiers: StreamTiers = field(default_factory=StreamTiers)
     now: float = 0.0
     number: int = 0
     lesser_frames: int = 0
@@ -140,14 +140,14 @@ def test_a_window_of_less_than_half_the_size_each_way_is_sent_no_more_than_it_sh
     size: tuple[int, int], lesser: bool
 ) -> None:
     """A tall one may cut the picture off at its sides."""
-    tiers, viewers = Tiers(), watching(SIZE, size)
+    tiers, viewers = StreamTiers(), watching(SIZE, size)
     for now in (0.0, ENTER_SECONDS / 2, ENTER_SECONDS):
         tiers.assign(viewers, viewers[0], SIZE, now)
     assert viewers[1].feed.lesser is lesser
 
 
 def test_pictures_at_rest_move_nobody_to_another_tier() -> None:
-    tiers, viewers = Tiers(), watching(SIZE, SIZE)
+    tiers, viewers = StreamTiers(), watching(SIZE, SIZE)
     slow = viewers[1].credit
     slow.take(1, FULL, 0)
     slow.acknowledge(1, 2)
@@ -161,7 +161,7 @@ def test_pictures_at_rest_move_nobody_to_another_tier() -> None:
     assert not viewers[1].feed.lesser
 
 
-def moved(tiers: Tiers, viewers: list[Viewer], now: float, seconds: float) -> float:
+def moved(tiers: StreamTiers, viewers: list[Viewer], now: float, seconds: float) -> float:
     """Ticks in which nothing comes; the time afterwards."""
     for _ in range(round(seconds / 0.1)):
         now += 0.1
@@ -170,7 +170,7 @@ def moved(tiers: Tiers, viewers: list[Viewer], now: float, seconds: float) -> fl
 
 
 def test_a_small_window_that_grows_at_rest_gets_the_first_tier_and_the_frame_anew() -> None:
-    tiers, viewers = Tiers(), watching(SIZE, (320, 180))
+    tiers, viewers = StreamTiers(), watching(SIZE, (320, 180))
     viewers[1].credit.take(1, 8_000, 0)
     viewers[1].credit.acknowledge(1, 0.1)
     now, lesser = 1.0, []
@@ -183,7 +183,7 @@ def test_a_small_window_that_grows_at_rest_gets_the_first_tier_and_the_frame_ane
 
 
 def test_a_window_that_is_dragged_to_and_fro_about_half_the_size_changes_tiers_once() -> None:
-    tiers, viewers = Tiers(), watching(SIZE, SIZE)
+    tiers, viewers = StreamTiers(), watching(SIZE, SIZE)
     now, lesser = 0.0, []
     for width in (700, 600, 700, 800):
         viewers[1].resize(width, width * 9 // 16)
@@ -205,7 +205,7 @@ def test_a_slow_viewer_keeps_lesser_pictures_at_rest() -> None:
 
 
 def test_a_small_window_of_a_viewer_of_video_goes_on_with_that() -> None:
-    tiers, viewers = Tiers(), watching(SIZE, (320, 180))
+    tiers, viewers = StreamTiers(), watching(SIZE, (320, 180))
     now, lesser = 0.0, []
     for codec in (Codec.H264, None):
         viewers[1].feed.follow(codec)
@@ -215,7 +215,7 @@ def test_a_small_window_of_a_viewer_of_video_goes_on_with_that() -> None:
 
 
 def test_of_frames_no_more_is_remembered_than_is_counted() -> None:
-    tiers = Tiers()
+    tiers = StreamTiers()
     for number in range(6_000):
         tiers.came(Codec.JPEG, FULL, number / 60)
         tiers.came(LESSER, FULL, number / 60)

@@ -17,7 +17,7 @@ from PIL import Image, ImageSequence
 from culet.errors import BusyError
 from culet.gateway.state import CLIENT_TURNTABLES, MOST_TURNTABLES
 from culet.gateway.still_places import StillPlaces
-from culet.gateway.turntables import Kind, TurntableQuery, _made
+from culet.gateway.turntables import TurntableFormat, TurntableQuery, _made
 from gateway.running import PATIENCE, Gateway, eventually
 from gateway.test_rest import assert_problem
 
@@ -133,7 +133,7 @@ async def test_a_turntable_keeps_its_place_until_nobody_packs_its_frames(gateway
         return b""
 
     query = TurntableQuery.model_validate(QUERY | {"frames": 2})
-    kind, place = Kind("image/webp", packed), contextlib.ExitStack()
+    kind, place = TurntableFormat("image/webp", packed), contextlib.ExitStack()
     place.enter_context(gateway.parts.turntables.place("127.0.0.1"))
     with place:
         making = asyncio.create_task(_made(gateway.parts, query.scene(), query, kind, "127.0.0.1", place))

@@ -12,7 +12,7 @@ import pytest
 import culet.geometry.meets
 from culet.errors import InputError, MeshError
 from culet.geometry.cuts.cut import shape_of_cut
-from culet.geometry.designs.measures import Outline, outline_of, proportions_of
+from culet.geometry.designs.measures import DesignOutline, outline_of, proportions_of
 from culet.geometry.designs.recut import angles_of, angles_that_followed, recut_design
 from culet.geometry.designs.solid import Solid, shape_of_design
 from culet.geometry.half_spaces import shape_from_half_spaces
@@ -25,7 +25,7 @@ from geometry.designs.files import design
 BOX = np.array([[x, y, z, 1] for x, y, z in [*np.eye(3), *-np.eye(3)]])
 
 
-def meets(outline: Outline) -> set[frozenset[int]]:
+def meets(outline: DesignOutline) -> set[frozenset[int]]:
     """Of each corner its facets."""
     found: list[set[int]] = [set() for _ in outline.corners]
     for facet, face in enumerate(outline.faces):

@@ -18,7 +18,7 @@ from culet.grading.grades import BATCHES, grade, grades_of, tilt_curve, weighted
 from culet.grading.optics import StoneOptics, optics_of
 from culet.grading.report import reports_of
 from culet.grading.rules import GEMRAY, Glare, Rules, rules_of
-from culet.grading.sums import FIRE_DEGREES, KERNEL, LightSums, View
+from culet.grading.sums import FIRE_DEGREES, KERNEL, DomeView, LightSums
 from culet.rendering.device import Device
 from culet.scene import Scene
 from culet.scene.cuts import BrilliantCut, HeartCut, OvalCut, PrincessCut
@@ -110,7 +110,7 @@ def test_a_slab_lets_through_what_its_faces_do(light: LightSums) -> None:
 def test_a_window_is_the_leak_of_light_that_meets_one_facet_inside(light: LightSums) -> None:
     glass, rules = StoneOptics.of_index(1.4), Rules()
     whole, once = (
-        light.of(BRILLIANT, glass, each, [View()], batches=4, rays=2048)[0].sum(axis=0)
+        light.of(BRILLIANT, glass, each, [DomeView()], batches=4, rays=2048)[0].sum(axis=0)
         for each in (rules, Rules(bounces=1))
     )
     assert whole[KERNEL["WINDOW"]] == pytest.approx(once[KERNEL["LEAK"]], rel=1e-6)
@@ -119,7 +119,7 @@ def test_a_window_is_the_leak_of_light_that_meets_one_facet_inside(light: LightS
 
 def test_in_a_closed_setting_facets_that_look_down_mirror_nothing(light: LightSums) -> None:
     """As the stone is tilted to its edge, half of what is seen is pavilion; what that mirrors is glare of all alone."""
-    edge_on = View.tilted(80, 0)
+    edge_on = DomeView.tilted(80, 0)
     everything, crown, none = (
         light.of(BRILLIANT, DIAMOND, Rules(glare=glare), [edge_on], batches=4, rays=2048)[0].sum(axis=0)
         for glare in GLARES
@@ -157,7 +157,7 @@ def test_a_prism_parts_two_wavelengths_by_snells_law(light: LightSums) -> None:
     normal = (math.sin(slope), math.cos(slope), 0.0)
     sides = [(-1, 0, 0, 1), (1, 0, 0, 1), (0, 0, 1, 1), (0, 0, -1, 1)]
     wedge = shape_from_half_spaces("wedge", np.array([(*normal, 0.7), (0, -1, 0, 0), *sides], float))
-    over = [View(axis=(0.0, -1.0, 0.0))]  # the dome turned over, so that what leaves through the base counts
+    over = [DomeView(axis=(0.0, -1.0, 0.0))]  # the dome turned over, so that what leaves through the base counts
     optics, rules = StoneOptics(1.52, 1.53, 1.51), Rules(head_degrees=0, glare="none", bounces=1)
     sums = light.of(wedge, optics, rules, over, batches=4, rays=4096, fire=True)
     found = sums[0].sum(axis=0)
@@ -178,7 +178,7 @@ def test_the_mean_parting_is_of_light_that_takes_the_same_facets_alone(light: Li
     slopes = [(math.sin(angle), math.cos(angle), 0, math.cos(angle)) for angle in (flat, -steep)]
     sides = [(0, -1, 0, 0), (-1, 0, 0, 1), (1, 0, 0, 1), (0, 0, 1, 1), (0, 0, -1, 1)]
     shape = shape_from_half_spaces("roof", np.array([*slopes, *sides], float))
-    over = [View(axis=(0.0, -1.0, 0.0))]
+    over = [DomeView(axis=(0.0, -1.0, 0.0))]
     optics, rules = StoneOptics(2.4, 2.45, 2.35), Rules(head_degrees=0, glare="none", bounces=1)
     (sums,) = light.of(shape, optics, rules, over, batches=4, rays=4096, fire=True)
 
@@ -228,7 +228,7 @@ def test_errors_are_what_repeats_show(light: LightSums) -> None:
     shape = shape_of_cut(PrincessCut())
     repeats = [
         grades_of(
-            light.of(shape, DIAMOND, Rules(), [View()], batches=BATCHES, rays=512, seed=seed, fire=True)[0], DIAMOND
+            light.of(shape, DIAMOND, Rules(), [DomeView()], batches=BATCHES, rays=512, seed=seed, fire=True)[0], DIAMOND
         )
         for seed in range(24)
     ]
@@ -242,7 +242,7 @@ def test_single_precision_is_enough(light: LightSums, device: Device) -> None:
     double = LightSums(device, np.float64)
     shape = shape_of_cut(PrincessCut())
     single, exact = (
-        each.of(shape, DIAMOND, Rules(), [View()], batches=4, rays=4096)[0].sum(axis=0) for each in (light, double)
+        each.of(shape, DIAMOND, Rules(), [DomeView()], batches=4, rays=4096)[0].sum(axis=0) for each in (light, double)
     )
     for name in ("ISO", "LEAK", "MIRRORED"):
         assert single[KERNEL[name]] / single[0] == pytest.approx(exact[KERNEL[name]] / exact[0], abs=2e-3)

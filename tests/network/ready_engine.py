@@ -15,7 +15,7 @@ import numpy as np
 import zmq
 import zmq.asyncio
 
-from culet.engine.governing.thrift import Allowance, Thrift, read_byte_ladder
+from culet.engine.governing.thrift import ByteAllowance, Thrift, read_byte_ladder
 from culet.engine.painting import jpeg
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
@@ -55,7 +55,7 @@ class Shown:
     key: bytes
     thrift: Thrift
     rate: float = 0.0
-    allowance: Allowance = Allowance()  # noqa: RUF009 - immutable
+    allowance: ByteAllowance = ByteAllowance()  # noqa: RUF009 - immutable
     size: tuple[int, int] = LIVE_SIZE
     sequence: int = 0
     due_at: float = 0.0
@@ -103,7 +103,7 @@ async def serve(control: str, frames: str) -> None:
                 shown.rate = float(str(request["frames_per_second"]))
                 shown.size = int(str(request["width"])), int(str(request["height"]))
                 numbers = (request["bytes_per_frame"], request["bytes_at_rest"])
-                shown.allowance = Allowance(*(None if number is None else int(str(number)) for number in numbers))
+                shown.allowance = ByteAllowance(*(None if number is None else int(str(number)) for number in numbers))
         return {}
 
     async def beat() -> None:

@@ -15,7 +15,7 @@ from culet.paths.recorder import GivenUpError, PathRecorder
 from culet.rendering.chains import first_sample
 from culet.rendering.device import Device
 from culet.rendering.features import features_of
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.scene import Scene
 from culet.scene.presets import preset
 from culet.stage import Stage
@@ -66,12 +66,12 @@ def test_the_parts_of_a_pixel_sum_to_what_the_picture_shows(
     renderer = renderer_of(1 if alone else device.lanes, np.float32)
     needed = features_of(first_sample(stage))
     shared = replace(needed.general, few_mirrors=needed.few_mirrors)  # one program for many scenes
-    picture = renderer.picture(first_sample(stage), *SIZE, features=shared, effort=Effort.RESTING)
+    picture = renderer.picture(first_sample(stage), *SIZE, features=shared, effort=LightEffort.RESTING)
     picture.refine()
     shown, cut = picture.linear().astype(float), picture.cut_map()
     told_lengths = []
     for column, row in PIXELS:
-        told = answered(recorder, stage, Pixel(column, row, *SIZE), effort=Effort.RESTING)
+        told = answered(recorder, stage, Pixel(column, row, *SIZE), effort=LightEffort.RESTING)
         scale = max(abs(shown[row, column]).max(), 1e-3)
         np.testing.assert_allclose(told.value, shown[row, column], rtol=0, atol=2e-6 * scale)  # measured: 7e-7
         assert told.cut == pytest.approx(cut[row, column], rel=1e-3, abs=1e-7)

@@ -15,7 +15,7 @@ import pytest
 
 from conftest import RendererOf
 from culet.rendering.features import Features, Geometry
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene.legacy import legacy
 from pictures import compared
 from rendering.views import BARE, radiance, take
@@ -54,7 +54,7 @@ ROUNDING = 1e-4
 """Radiance; lamps have up to 11, and their soft edges make ten of an error of one."""
 
 
-def general(renderer: Renderer, case: Case) -> Picture:
+def general(renderer: Renderer, case: Case) -> DevicePicture:
     return take(renderer, legacy(case.scene), size=SIZE, features=GENERAL)
 
 

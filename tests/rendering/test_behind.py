@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.frame_work import FrameWork, WorkKind
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Session
 from culet.optics.tone import TONE_MAPS, tone_map
@@ -45,7 +45,7 @@ def test_a_colour_that_a_tone_map_never_shows_becomes_one_that_looks_like_it() -
 def test_at_any_exposure_there_is_a_colour_that_a_scene_may_have(exposure: float) -> None:
     film = {"background": "#f4f1ea", "exposure": exposure}
     shown = Session("0" * 32, staged(Scene.read({"film": film}))).shown
-    frame = FrameWork(Kind.FULL, shown, (64, 36), Account(None), begun_at=0)
+    frame = FrameWork(WorkKind.FULL, shown, (64, 36), Account(None), begun_at=0)
     backdrop = frame.stage.scene.backdrop
     assert isinstance(backdrop, PlainBackdrop)
     assert max(backdrop.colour) <= LARGEST_COMPONENT

@@ -11,7 +11,7 @@ import pytest
 
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import tone_map
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.rendering.target import Target
 from culet.scene import preset
 from culet.scene.film import Film
@@ -42,7 +42,7 @@ def as_shown(linear: Array, film: Film) -> Array:
     return np.clip(tone_map(into_gamut(film.exposure * linear, film.gamut), film.tone_map), 0, 1)
 
 
-def ratios(picture: Picture, counts: Sequence[int], converged: int) -> dict[str, dict[int, float]]:
+def ratios(picture: DevicePicture, counts: Sequence[int], converged: int) -> dict[str, dict[int, float]]:
     """Estimated over true error, of radiance and as shown, by samples; the truth is the same picture, refined much
     further."""
     estimates, images, film = {}, {}, picture.scene.film

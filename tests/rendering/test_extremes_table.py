@@ -11,7 +11,7 @@ import pytest
 from culet.rendering.features import Features
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
-from culet.study.extremes import EXTREMES, MODES, ROUNDING, Extreme, _judged, count
+from culet.study.extremes import EXTREMES, MODES, ROUNDING, SceneExtreme, _judged, count
 from rendering.views import program_between_few_mirrors
 
 MANY = (
@@ -36,7 +36,7 @@ def special(needed: Features) -> Features:
 
 
 def assert_nothing_wrong(
-    renderer: Renderer, extreme: Extreme, mode: str, program: Callable[[Features], Features]
+    renderer: Renderer, extreme: SceneExtreme, mode: str, program: Callable[[Features], Features]
 ) -> None:
     found = count(renderer, extreme, mode, program=program)
     assert found.pixels > 0
@@ -46,14 +46,14 @@ def assert_nothing_wrong(
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("extreme", QUICK, ids=lambda extreme: extreme.name)
-def test_no_pixel_is_wrong(renderer: Renderer, extreme: Extreme, mode: str) -> None:
+def test_no_pixel_is_wrong(renderer: Renderer, extreme: SceneExtreme, mode: str) -> None:
     assert_nothing_wrong(renderer, extreme, mode, general)
 
 
 @pytest.mark.validation
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name)
-def test_no_pixel_of_any_case_is_wrong_in_its_own_program(renderer: Renderer, extreme: Extreme, mode: str) -> None:
+def test_no_pixel_of_any_case_is_wrong_in_its_own_program(renderer: Renderer, extreme: SceneExtreme, mode: str) -> None:
     assert_nothing_wrong(renderer, extreme, mode, special)
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from conftest import RendererOf
 from culet.rendering.features import FRESNEL, RUNTIME, SKY, SURFACE, Features, Geometry, features_of
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene import PRESETS
 from culet.scene.legacy import LEGACY_DEFAULT, LEGACY_LAMPS, legacy
 from pictures import compared
@@ -44,7 +44,7 @@ DECIDED: dict[str, tuple[str, int, dict[str, Any]]] = {
 OFF = ("no floor", "no walls", "no lights", "no absorption", "exact Fresnel", "no lamps")
 
 
-def machine_code(picture: Picture) -> int:
+def machine_code(picture: DevicePicture) -> int:
     """Bytes of machine code in the program: the text sections of the objects that PoCL has made of it.
 
     The container around them also holds the bitcode and names that vary in length; the text is what the processor runs.

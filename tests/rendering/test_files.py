@@ -15,7 +15,7 @@ from culet.errors import InputError
 from culet.gateway.stills import MEDIA_TYPES
 from culet.rendering import files
 from culet.rendering.files import FORMATS, encode, write
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
 from rendering.views import take
 
@@ -24,11 +24,11 @@ WIDTH, HEIGHT = 97, 55
 
 
 @pytest.fixture(scope="module")
-def picture(renderer: Renderer) -> Picture:
+def picture(renderer: Renderer) -> DevicePicture:
     return take(renderer, LEGACY_DEFAULT, size=(WIDTH, HEIGHT))
 
 
-def test_a_tga_is_what_its_specification_says_byte_by_byte(picture: Picture) -> None:
+def test_a_tga_is_what_its_specification_says_byte_by_byte(picture: DevicePicture) -> None:
     """Truevision TGA File Format Specification, version 2.0: an 18-byte header, pixels as blue, green, red from the
     bottom row up, and a 26-byte footer."""
     data = encode("tga", picture.rgb, picture.linear)
@@ -45,20 +45,20 @@ def test_a_tga_is_what_its_specification_says_byte_by_byte(picture: Picture) -> 
 
 
 @pytest.mark.parametrize("name", ["tga", "png", "webp"])
-def test_lossless_formats_hold_what_is_shown(picture: Picture, name: str) -> None:
+def test_lossless_formats_hold_what_is_shown(picture: DevicePicture, name: str) -> None:
     with PIL.Image.open(io.BytesIO(encode(name, picture.rgb, picture.linear))) as image:
         assert image.mode == "RGB"
         assert (np.asarray(image) == picture.rgb()).all()
 
 
-def test_a_jpeg_is_close_to_what_is_shown(picture: Picture) -> None:
+def test_a_jpeg_is_close_to_what_is_shown(picture: DevicePicture) -> None:
     with PIL.Image.open(io.BytesIO(encode("jpeg", picture.rgb, picture.linear))) as image:
         error = np.asarray(image).astype(int) - picture.rgb()
     assert np.sqrt((error**2).mean()) < 3  # levels
     assert encode("jpg", picture.rgb, picture.linear) == encode("jpeg", picture.rgb, picture.linear)
 
 
-def test_an_exr_holds_the_linear_radiance_untouched(picture: Picture, tmp_path: Path) -> None:
+def test_an_exr_holds_the_linear_radiance_untouched(picture: DevicePicture, tmp_path: Path) -> None:
     (tmp_path / "a.exr").write_bytes(encode("exr", picture.rgb, picture.linear))
     channels = OpenEXR.File(str(tmp_path / "a.exr")).channels()
     assert channels["RGB"].pixels.dtype == np.float32
@@ -66,7 +66,7 @@ def test_an_exr_holds_the_linear_radiance_untouched(picture: Picture, tmp_path: 
     assert channels["RGB"].pixels.max() > 1  # more than a screen can show
 
 
-def test_an_npy_holds_the_linear_radiance_untouched(picture: Picture) -> None:
+def test_an_npy_holds_the_linear_radiance_untouched(picture: DevicePicture) -> None:
     array = np.load(io.BytesIO(encode("npy", picture.rgb, picture.linear)), allow_pickle=False)
     assert array.dtype == np.float32
     assert array.shape == (HEIGHT, WIDTH, 3)
@@ -85,7 +85,7 @@ def test_the_gateway_names_the_media_type_of_every_format_but_numpys() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(FORMATS))
-def test_a_file_is_written_by_its_ending(picture: Picture, tmp_path: Path, name: str) -> None:
+def test_a_file_is_written_by_its_ending(picture: DevicePicture, tmp_path: Path, name: str) -> None:
     path = tmp_path / f"picture.{name.upper()}"
     write(path, picture.rgb, picture.linear)
     assert path.read_bytes() == encode(name, picture.rgb, picture.linear)
@@ -94,7 +94,7 @@ def test_a_file_is_written_by_its_ending(picture: Picture, tmp_path: Path, name:
 
 
 @pytest.mark.parametrize("name", ["picture.gif", "picture", "picture.tar.gz"])
-def test_an_unknown_ending_is_refused_with_those_that_exist(picture: Picture, tmp_path: Path, name: str) -> None:
+def test_an_unknown_ending_is_refused_with_those_that_exist(picture: DevicePicture, tmp_path: Path, name: str) -> None:
     with pytest.raises(
         InputError, match=r"expected a name that ends in \.tga, \.png, \.jpeg, \.jpg, \.webp, \.exr, \.npy; got"
     ) as refusal:
@@ -104,7 +104,7 @@ def test_an_unknown_ending_is_refused_with_those_that_exist(picture: Picture, tm
 
 
 def test_a_file_that_cannot_be_written_leaves_the_old_one(
-    picture: Picture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    picture: DevicePicture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whether encoding fails or the file's last step: the old picture stays, and nothing beside it."""
     path = tmp_path / "picture.png"

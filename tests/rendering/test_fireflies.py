@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from culet.rendering.cut_out import CuttingRenderer
 from culet.rendering.fireflies import LEAST_SAMPLES, RATIO
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene import Scene, preset
 from culet.scene.optics import Optics
 from culet.stage import Stage
@@ -24,7 +24,7 @@ def hiding(scene: Scene, **film: str) -> Stage:
     return Stage.of(scene.model_copy(update={"film": scene.film.model_copy(update={"fireflies": "hide", **film})}))
 
 
-def refined(renderer: Renderer, stage: Stage, samples: int) -> Picture:
+def refined(renderer: Renderer, stage: Stage, samples: int) -> DevicePicture:
     picture = renderer.picture(stage, *SIZE)
     picture.refine(samples)
     return picture

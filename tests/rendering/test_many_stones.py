@@ -17,8 +17,8 @@ from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.rendering.chains import GROUPS, chain_table
-from culet.rendering.features import Features, Geometry, Stones, features_of
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.features import Features, Geometry, StoneCount, features_of
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
 from culet.scene.room import FLOOR_Y, Plane
@@ -80,7 +80,9 @@ def under_any_sky(of: Stage) -> Features:
     return features_of(of).general
 
 
-def take(renderer: Renderer, of: Stage, features: Features | None = None, size: tuple[int, int] = SIZE) -> Picture:
+def take(
+    renderer: Renderer, of: Stage, features: Features | None = None, size: tuple[int, int] = SIZE
+) -> DevicePicture:
     picture = renderer.picture(of, *size, features=features)
     picture.refine()
     return picture
@@ -111,7 +113,7 @@ def test_how_the_scene_orders_stones_changes_no_bit(renderer: Renderer) -> None:
 
 def test_one_stone_in_a_table_looks_as_it_does_alone(exact: Renderer) -> None:
     one = stage(TRIO[:1], **VIEW)
-    alone, in_table = take(exact, one), take(exact, one, replace(features_of(one), stones=Stones.MANY))
+    alone, in_table = take(exact, one), take(exact, one, replace(features_of(one), stones=StoneCount.MANY))
     assert alone.segments() == in_table.segments() > 0
     with compared(radiance(in_table), radiance(alone)):
         assert radiance(in_table) == pytest.approx(radiance(alone), abs=1e-9)

@@ -12,8 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.geometry.load import shape_of
-from culet.rendering.light.effort import Effort
-from culet.rendering.pace import Pace
+from culet.rendering.light.effort import LightEffort
+from culet.rendering.pace import KernelPace
 from culet.rendering.renderer import Renderer, jitter
 from culet.rendering.target import Target
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
@@ -66,7 +66,7 @@ def test_pieces_make_the_same_picture_to_the_last_bit(
     size = (20, 18) if steps == 1 else (70, 50)  # six tiles, some of them not full
     whole = take(renderer, scene, size=size, samples=2)
     pieced = renderer.picture(Stage.of(scene), *size)
-    monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: steps)
+    monkeypatch.setattr(KernelPace, "steps", lambda _pace, _seconds: steps)
     progress = list(pieced.refine_in_pieces(2, 1.0))
     assert pieced.linear().tobytes() == whole.linear().tobytes()
     assert pieced.cut_map().tobytes() == whole.cut_map().tobytes()
@@ -101,16 +101,16 @@ def test_a_picture_is_seen_amid_a_sample_where_that_is_done(
 ) -> None:
     """Elsewhere it is what was seen before; and it ends as if nobody had looked."""
     size, stage, target = (150, 110), Stage.of(SCENE), Target(5)
-    expected = renderer.picture(stage, *size, effort=Effort.RESTING)
+    expected = renderer.picture(stage, *size, effort=LightEffort.RESTING)
     for _ in expected.refine_until(target, math.inf):
         if expected.samples == samples + 1 and not expected.under_way:
             break
     whole = expected.softened() if samples == 0 else expected.rgb()
-    picture = renderer.picture(stage, *size, effort=Effort.RESTING)
+    picture = renderer.picture(stage, *size, effort=LightEffort.RESTING)
     if samples > 0:
         for _ in picture.refine_until(Target(samples), math.inf):
             pass
-    monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: 300)
+    monkeypatch.setattr(KernelPace, "steps", lambda _pace, _seconds: 300)
     monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
     over = np.full((*size[::-1], 3), 77, np.uint8)
     seen, looks = over, 0
@@ -131,7 +131,7 @@ def test_a_picture_is_seen_amid_a_sample_where_that_is_done(
     assert 0 < (seen != over).any(axis=2).mean() < 1
     for _ in picture.refine_until(target, 1.0):
         pass
-    at_once = renderer.picture(stage, *size, effort=Effort.RESTING)
+    at_once = renderer.picture(stage, *size, effort=LightEffort.RESTING)
     for _ in at_once.refine_until(target, math.inf):
         pass
     assert picture.samples == 5
@@ -145,7 +145,7 @@ def test_a_picture_is_left_after_a_sample_if_the_next_one_would_not_be_whole_in_
 ) -> None:
     """Or that sample would not be seen until the next but one is whole."""
     monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
-    picture = renderer.picture(Stage.of(SCENE), 48, 27, effort=Effort.RESTING)
+    picture = renderer.picture(Stage.of(SCENE), 48, 27, effort=LightEffort.RESTING)
     for _ in picture.refine_until(Target(3), math.inf, due=lambda seconds: seconds > 0):
         pass
     assert (picture.samples, picture.under_way) == (1, False)
@@ -155,9 +155,9 @@ def test_a_tile_that_is_dealt_is_not_done_and_says_nothing_yet(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A picture of one tile, where there was another picture's."""
-    picture = renderer.picture(Stage.of(SCENE), 40, 30, effort=Effort.RESTING)
+    picture = renderer.picture(Stage.of(SCENE), 40, 30, effort=LightEffort.RESTING)
     cl.enqueue_fill_buffer(renderer.device.queue, picture._tallies, np.full(1, 9, np.float32), 0, picture._tallies.size)
-    monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: 20)
+    monkeypatch.setattr(KernelPace, "steps", lambda _pace, _seconds: 20)
     for part in picture.refine_until(Target(1), 1.0, due=lambda _: True):
         assert part == 0
     assert picture.under_way

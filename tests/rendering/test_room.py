@@ -10,7 +10,7 @@ import pytest
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.rendering.features import Features, Geometry
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_LAMPS, legacy
 from pictures import compared
@@ -52,7 +52,7 @@ def compare(renderer: Renderer, scene: Scene, stone: Shape | None, tolerance: fl
     agree(take(renderer, scene, stone, SIZE), look_around(scene, stone, *SIZE), tolerance, doubtful)
 
 
-def agree(picture: Picture, expected: Seen, tolerance: float, doubtful: int) -> None:
+def agree(picture: DevicePicture, expected: Seen, tolerance: float, doubtful: int) -> None:
     """But for so many pixels, whose rays meet an edge."""
     seen, room = radiance(picture), ~expected.stone
     assert room.mean() > 0.3

@@ -12,7 +12,7 @@ from culet.errors import InputError
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import TONE_MAPS, tone_map
 from culet.rendering.doublings import MOST, Doublings
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
@@ -22,7 +22,7 @@ SIZE = 150, 70
 """No multiple of what the kernels take at a time."""
 
 
-def refined(renderer: Renderer, scene: Scene, target: Target, *, seconds: float = math.inf) -> Picture:
+def refined(renderer: Renderer, scene: Scene, target: Target, *, seconds: float = math.inf) -> DevicePicture:
     picture = take(renderer, scene, size=SIZE, samples=0)
     for _ in picture.refine_until(target, seconds):
         pass

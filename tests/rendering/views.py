@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from culet.geometry.shape import Shape
 from culet.rendering.features import Features, features_of
 from culet.rendering.light.light_map import BoundMap
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene import Scene
 from shared.stages import staged
 
@@ -32,7 +32,7 @@ def take(
     samples: int = 1,
     features: Features | None = None,
     light_map: BoundMap | None = None,
-) -> Picture:
+) -> DevicePicture:
     """A finished picture; the stone is the scene's own cut unless another is given. No light map is made for it."""
     stage = staged(scene, stone)
     if features is None and renderer.variant.real is np.float32:
@@ -48,7 +48,7 @@ def program_between_few_mirrors(needed: Features) -> Features | None:
     return needed if needed.few_mirrors else None
 
 
-def radiance(picture: Picture) -> Array:
+def radiance(picture: DevicePicture) -> Array:
     """(height, width, 3), in double precision whatever the picture was made in."""
     return picture.linear().astype(np.float64)
 

@@ -23,7 +23,7 @@ from culet.errors import EngineUnavailableError, InputError
 from culet.gateway.listener import Listener
 from culet.gateway.settings import GatewaySettings
 from culet.service.serve import serve
-from culet.service.supervisor import STARTS_BEFORE_GIVING_UP, Part, Supervisor
+from culet.service.supervisor import STARTS_BEFORE_GIVING_UP, ServerPart, Supervisor
 from culet_client import FrameSubscription
 from culet_protocol.frame import Flags, Frame
 from culet_protocol.messages import Orbit, ToggleFall
@@ -329,7 +329,7 @@ async def test_an_engine_does_not_outlive_a_killed_parent(own: Served, tmp_path:
 
 
 async def test_an_engine_that_never_starts_is_given_up(tmp_path: Path) -> None:
-    supervisor = Supervisor(Part("engine", ["false"], 10), tmp_path)
+    supervisor = Supervisor(ServerPart("engine", ["false"], 10), tmp_path)
     with pytest.raises(EngineUnavailableError, match=r"the engine ended with code 1, 4 times in a row"):
         await supervisor.run()
     assert supervisor.starts == STARTS_BEFORE_GIVING_UP
@@ -338,7 +338,7 @@ async def test_an_engine_that_never_starts_is_given_up(tmp_path: Path) -> None:
 async def test_an_engine_that_does_not_listen_is_killed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("culet.service.supervisor.STOP_SECONDS", 0.2)
     deaf = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"
-    supervisor = Supervisor(Part("engine", [sys.executable, "-c", deaf], 10), tmp_path)
+    supervisor = Supervisor(ServerPart("engine", [sys.executable, "-c", deaf], 10), tmp_path)
     running = asyncio.create_task(supervisor.run())
 
     async def started() -> bool:
@@ -440,7 +440,7 @@ async def test_a_process_that_falls_silent_is_replaced_by_the_one_that_stands_by
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("culet.service.supervisor.SPARE_PAUSE_SECONDS", 0)
-    part = Part("engine", [sys.executable, "-c", SPEAKER, "1"], silence_seconds=0.3, has_spare=True)
+    part = ServerPart("engine", [sys.executable, "-c", SPEAKER, "1"], silence_seconds=0.3, has_spare=True)
     supervisor = Supervisor(part, tmp_path)
     running = asyncio.create_task(supervisor.run())
 
@@ -454,7 +454,9 @@ async def test_a_process_that_falls_silent_is_replaced_by_the_one_that_stands_by
 
 async def test_a_process_that_asks_for_patience_gets_it(tmp_path: Path) -> None:
     impatient, patient = (
-        Supervisor(Part(name, [sys.executable, "-c", SPEAKER, seconds], silence_seconds=0.1, has_spare=True), tmp_path)
+        Supervisor(
+            ServerPart(name, [sys.executable, "-c", SPEAKER, seconds], silence_seconds=0.1, has_spare=True), tmp_path
+        )
         for name, seconds in (("impatient", "0.1"), ("patient", "600"))
     )
     running = [asyncio.create_task(supervisor.run()) for supervisor in (impatient, patient)]

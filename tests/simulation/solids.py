@@ -10,7 +10,7 @@ import numpy as np
 
 from culet.geometry.shape import Shape
 from culet.simulation.body import RigidBody
-from culet.simulation.motion import Motion, gaps
+from culet.simulation.motion import BodyMotion, gaps
 from culet.simulation.rotation import IDENTITY, normalised
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
@@ -67,8 +67,8 @@ def digest(path: list[RigidState]) -> str:
     return sha.hexdigest()
 
 
-def motion_of(state: RigidState) -> Motion:
-    return Motion(state.position, state.orientation, state.momentum, state.angular_momentum)
+def motion_of(state: RigidState) -> BodyMotion:
+    return BodyMotion(state.position, state.orientation, state.momentum, state.angular_momentum)
 
 
 def nearest(moving: Simulation) -> float:
@@ -102,7 +102,7 @@ def tilted_floor(angle: float) -> Surface:
     return Surface(normal, -math.cos(angle))
 
 
-def random_body(stone: Shape, rng: np.random.Generator) -> tuple[RigidBody, Motion]:
+def random_body(stone: Shape, rng: np.random.Generator) -> tuple[RigidBody, BodyMotion]:
     """The stone with a vertex, edge or facet on the floor, in random motion."""
     body = RigidBody.of(SimulationSettings.model_validate({"model": "rigid", "mass": 1}), stone)
     kind = rng.integers(3)
@@ -115,7 +115,7 @@ def random_body(stone: Shape, rng: np.random.Generator) -> tuple[RigidBody, Moti
         q = np.array([1 - down[1], down[2], 0.0, -down[0]]) if down[1] < 1 else np.array([0.0, 1.0, 0.0, 0.0])
     w, x, y, z = q.tolist()
     orientation = normalised((w, x, y, z))
-    motion = Motion((0.0, 0.0, 0.0), orientation, tuple(rng.normal(size=3).tolist()), (0.0, 0.0, 0.0))
+    motion = BodyMotion((0.0, 0.0, 0.0), orientation, tuple(rng.normal(size=3).tolist()), (0.0, 0.0, 0.0))
     omega = tuple((3 * rng.normal(size=3)).tolist())
     depth = float(gaps(motion, body, FLOOR).min())
     return body, motion._replace(

@@ -11,7 +11,7 @@ from culet.simulation.body import RigidBody
 from culet.simulation.contact import contacts
 from culet.simulation.impulses import with_impulses
 from culet.simulation.linear import factorised, solution
-from culet.simulation.motion import Motion, velocities
+from culet.simulation.motion import BodyMotion, velocities
 from culet.simulation.settings import SimulationSettings
 from simulation.solids import UPRIGHT, lowest
 
@@ -41,7 +41,7 @@ def test_refining_solves_four_corners_that_stick_or_slip(
     """The default mass is a whole number; two corners would be enough, so that the impulses are not unique."""
     settings = SimulationSettings.model_validate(changes)
     body, mass = RigidBody.of(settings, box), settings.mass
-    motion = Motion((0.0, lowest(box), 0.0), UPRIGHT, (2 * mass, -1 * mass, 0.0), (0.0, 0.0, 0.0))
+    motion = BodyMotion((0.0, lowest(box), 0.0), UPRIGHT, (2 * mass, -1 * mass, 0.0), (0.0, 0.0, 0.0))
     points = contacts(motion, body)
     assert len(points) == 4
     for point in points:  # as Gauss-Seidel's first passes would leave them: pressed, and rubbed against the slip

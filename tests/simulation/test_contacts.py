@@ -17,7 +17,7 @@ from culet.simulation.solver import library
 from culet.simulation.solver.build import build
 from culet.simulation.world import World
 from culet.study.contacts import extreme, heaps, one_stone, pairs
-from culet.study.contacts.extreme import EXTREMES, Extreme
+from culet.study.contacts.extreme import EXTREMES, ContactExtreme
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import advance
 
@@ -54,7 +54,7 @@ def test_several_stones_do_as_what_is_known_says(trial: str) -> None:
 
 
 @pytest.mark.parametrize("case", EXTREMES, ids=lambda case: case.name)
-def test_what_must_hold_of_several_stones_holds_at_every_extreme(case: Extreme) -> None:
+def test_what_must_hold_of_several_stones_holds_at_every_extreme(case: ContactExtreme) -> None:
     assert failures(case.findings()) == []
 
 

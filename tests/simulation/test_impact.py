@@ -11,7 +11,7 @@ from culet.geometry.shape import Shape
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact, closing_speed, contacts
 from culet.simulation.impact import impact
-from culet.simulation.motion import Motion, gaps, kinetic_energy
+from culet.simulation.motion import BodyMotion, gaps, kinetic_energy
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR
@@ -22,16 +22,16 @@ SETTINGS = SimulationSettings.model_validate({"model": "rigid", "mass": 2})
 
 def landed(
     stone: Shape, orientation: Quaternion, velocity: Triple, omega: Triple
-) -> tuple[RigidBody, Motion, list[Contact]]:
+) -> tuple[RigidBody, BodyMotion, list[Contact]]:
     """Touching the floor with its lowest vertices, in motion."""
     body = RigidBody.of(SETTINGS, stone)
     x, y, z = velocity
-    motion = Motion((0.0, 0.0, 0.0), orientation, (2 * x, 2 * y, 2 * z), body.angular_momentum(orientation, omega))
+    motion = BodyMotion((0.0, 0.0, 0.0), orientation, (2 * x, 2 * y, 2 * z), body.angular_momentum(orientation, omega))
     motion = motion._replace(position=(0.0, -float(gaps(motion, body, FLOOR).min()), 0.0))
     return body, motion, contacts(motion, body)
 
 
-def speeds(body: RigidBody, motion: Motion, points: list[Contact]) -> list[float]:
+def speeds(body: RigidBody, motion: BodyMotion, points: list[Contact]) -> list[float]:
     """Towards the floor, of each touching vertex."""
     velocity = (motion.momentum[0] / body.mass, motion.momentum[1] / body.mass, motion.momentum[2] / body.mass)
     omega = body.angular_velocity_at(motion.orientation, motion.angular_momentum)
@@ -126,7 +126,7 @@ def _on_its_table(angle: float) -> Quaternion:
     return (0.0, w, 0.0, -y)
 
 
-def check(body: RigidBody, before: Motion, e: float, friction: float) -> None:
+def check(body: RigidBody, before: BodyMotion, e: float, friction: float) -> None:
     """No energy out of nothing, no way into the floor, no force outside the friction disc, no pull."""
     points = contacts(before, body)
     closing = speeds(body, before, points)

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from culet.study.motion_extremes import EXTREMES, REFUSED, Extreme, Record, recorded, refusal
+from culet.study.motion_extremes import EXTREMES, REFUSED, DropExtreme, DropRecord, recorded, refusal
 
 
 @pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name)
-def test_what_must_hold_of_a_drop_holds_at_every_extreme(extreme: Extreme) -> None:
+def test_what_must_hold_of_a_drop_holds_at_every_extreme(extreme: DropExtreme) -> None:
     found = recorded(extreme)
     assert found.held, found
 
@@ -22,7 +22,7 @@ def test_what_makes_no_sense_is_refused_with_a_reason(case: str) -> None:
 
 
 def test_each_flaw_is_told() -> None:
-    sound = Record(fastest=1, bound=1)
+    sound = DropRecord(fastest=1, bound=1)
     assert sound.held
     for flawed in (
         replace(sound, finite=False),

@@ -14,14 +14,14 @@ import pytest
 from culet.errors import InputError, SceneError, TooLargeError
 from culet.geometry.shape import Shape
 from culet.scene import Scene, preset
-from culet.simulation.paths import MAX_STEPS, Path, record, write
+from culet.simulation.paths import MAX_STEPS, StonePath, record, write
 from culet.simulation.simulation import Simulation
 from culet.stage import Stage
 from shared.stages import staged
 
 
 @pytest.fixture(scope="module")
-def path(box: Shape) -> Path:
+def path(box: Shape) -> StonePath:
     return record(staged(preset("classic"), box), 10)
 
 
@@ -29,13 +29,13 @@ def names(folder: pathlib.Path) -> list[str]:
     return [entry.name for entry in folder.iterdir()]
 
 
-def test_ten_seconds_are_the_start_and_three_hundred_steps(path: Path) -> None:
+def test_ten_seconds_are_the_start_and_three_hundred_steps(path: StonePath) -> None:
     assert path.step.tolist() == list(range(301))
     assert path.time[-1] == pytest.approx(10, rel=1e-13, abs=0)
     assert {len(column) for column in path.columns().values()} == {301}
 
 
-def test_a_path_is_the_simulations(path: Path, box: Shape) -> None:
+def test_a_path_is_the_simulations(path: StonePath, box: Shape) -> None:
     moving = Simulation.of(Stage(preset("classic"), (box,), None))
     for index in range(301):
         state = moving.state
@@ -56,14 +56,14 @@ def test_a_path_counts_the_steps_that_were_too_full_to_follow(box: Shape) -> Non
     assert (coarse[0], coarse[1]) == (0, 1)
 
 
-def test_the_sphere_touches_at_rest_and_not_in_the_air(path: Path) -> None:
+def test_the_sphere_touches_at_rest_and_not_in_the_air(path: StonePath) -> None:
     assert path.contacts[0] == 0
     assert path.contacts[-1] == 1
     assert ((path.position[:, 1] <= 0) == (path.contacts == 1)).all()
     assert (path.penetration == 0).all()
 
 
-def test_the_clearance_is_that_of_the_lowest_turned_vertex(path: Path, box: Shape) -> None:
+def test_the_clearance_is_that_of_the_lowest_turned_vertex(path: StonePath, box: Shape) -> None:
     upright = 4 + 1 - 3 / 7  # half an edge of 6/7 below the centre
     assert path.clearance[0] == pytest.approx(upright, rel=1e-14, abs=0)  # measured 0
     for index in (50, 300):
@@ -73,7 +73,7 @@ def test_the_clearance_is_that_of_the_lowest_turned_vertex(path: Path, box: Shap
         assert path.clearance[index] == pytest.approx(lowest, abs=1e-15)
 
 
-def test_the_sphere_holds_the_resting_stone_off_the_floor(path: Path) -> None:
+def test_the_sphere_holds_the_resting_stone_off_the_floor(path: StonePath) -> None:
     assert path.asleep[-1]
     assert path.clearance[-1] > 0.01  # measured 0.04 R: no vertex touches, which is the classic model's known flaw
 
@@ -110,7 +110,7 @@ def test_progress_ends_at_one(box: Shape) -> None:
     assert parts[-1] == 1
 
 
-def test_csv_reads_back_as_the_same_doubles(path: Path, tmp_path: pathlib.Path) -> None:
+def test_csv_reads_back_as_the_same_doubles(path: StonePath, tmp_path: pathlib.Path) -> None:
     write(path, tmp_path / "path.csv")
     with (tmp_path / "path.csv").open(newline="") as file:
         header, *rows = csv.reader(file)
@@ -120,14 +120,14 @@ def test_csv_reads_back_as_the_same_doubles(path: Path, tmp_path: pathlib.Path) 
         assert [float(text) for text in texts] == path.columns()[name].tolist()
 
 
-def test_json_reads_back_as_the_same_doubles_and_settings(path: Path, tmp_path: pathlib.Path) -> None:
+def test_json_reads_back_as_the_same_doubles_and_settings(path: StonePath, tmp_path: pathlib.Path) -> None:
     write(path, tmp_path / "path.json")
     document = json.loads((tmp_path / "path.json").read_text())
     assert document["columns"] == {name: column.tolist() for name, column in path.columns().items()}
     assert Scene.read({"simulation": document["simulation"]}).simulation == preset("classic").simulation
 
 
-def test_npz_reads_back_as_the_same_arrays_and_settings(path: Path, tmp_path: pathlib.Path) -> None:
+def test_npz_reads_back_as_the_same_arrays_and_settings(path: StonePath, tmp_path: pathlib.Path) -> None:
     write(path, tmp_path / "path.NPZ")
     with np.load(tmp_path / "path.NPZ", allow_pickle=False) as arrays:
         assert (arrays["orientation"] == path.orientation).all()
@@ -137,18 +137,18 @@ def test_npz_reads_back_as_the_same_arrays_and_settings(path: Path, tmp_path: pa
 
 
 @pytest.mark.parametrize("name", ["path.txt", "path", ".csv", "path.csv.gz"])
-def test_an_unknown_ending_is_refused(path: Path, tmp_path: pathlib.Path, name: str) -> None:
+def test_an_unknown_ending_is_refused(path: StonePath, tmp_path: pathlib.Path, name: str) -> None:
     with pytest.raises(InputError, match=r"\.csv, \.json, \.npz; got"):
         write(path, tmp_path / name)
     assert names(tmp_path) == []
 
 
-def test_a_folder_that_is_not_there_is_refused(path: Path, tmp_path: pathlib.Path) -> None:
+def test_a_folder_that_is_not_there_is_refused(path: StonePath, tmp_path: pathlib.Path) -> None:
     with pytest.raises(InputError, match="No such file or directory"):
         write(path, tmp_path / "nowhere" / "path.csv")
 
 
-def test_a_folder_in_the_files_place_is_refused_and_nothing_is_left(path: Path, tmp_path: pathlib.Path) -> None:
+def test_a_folder_in_the_files_place_is_refused_and_nothing_is_left(path: StonePath, tmp_path: pathlib.Path) -> None:
     (tmp_path / "path.csv").mkdir()
     with pytest.raises(InputError, match="Is a directory"):
         write(path, tmp_path / "path.csv")
@@ -156,7 +156,7 @@ def test_a_folder_in_the_files_place_is_refused_and_nothing_is_left(path: Path, 
 
 
 def test_a_write_that_fails_leaves_the_old_file_whole(
-    path: Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    path: StonePath, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "path.csv"
     file.write_text("what was there before")
@@ -171,7 +171,7 @@ def test_a_write_that_fails_leaves_the_old_file_whole(
     assert names(tmp_path) == ["path.csv"]
 
 
-def test_an_old_file_is_replaced(path: Path, tmp_path: pathlib.Path) -> None:
+def test_an_old_file_is_replaced(path: StonePath, tmp_path: pathlib.Path) -> None:
     file = tmp_path / "path.csv"
     file.write_text("old")
     write(path, file)

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull
 from culet.geometry.shape import Shape
 from culet.simulation.bodies import Body
 from culet.simulation.rotation import IDENTITY
-from culet.simulation.solver.polyhedron import Polyhedron, polyhedron_of
+from culet.simulation.solver.polyhedron import SolverHull, polyhedron_of
 from culet.study.contacts.worlds import corners, triple, turned
 from culet.study.solids import ball, box, brilliant, tetrahedron
 from simulation.worlds import world
@@ -61,7 +61,7 @@ def test_a_hull_of_too_many_corners_keeps_the_farthest_and_says_how_much_is_miss
     rng = np.random.default_rng(0)
     points = rng.normal(size=(3000, 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
-    hull = Polyhedron.of(points, most=500)
+    hull = SolverHull.of(points, most=500)
     assert len(hull.vertices) == 500
     beyond = (points @ hull.planes[:, :3].T - hull.planes[:, 3]).max()
     assert hull.thinned == pytest.approx(beyond)

@@ -73,8 +73,8 @@ def test_the_sources_compile_without_a_warning(compiler: str) -> None:
 
 def test_python_knows_the_structures_as_the_header_has_them(tmp_path: Path) -> None:
     structures = {
-        "CuletLaw": interface.Law, "CuletHull": interface.Hull, "CuletBody": interface.Properties,
-        "CuletState": interface.State, "CuletTouch": interface.Touch,
+        "CuletLaw": interface.CuletLaw, "CuletHull": interface.CuletHull, "CuletBody": interface.Properties,
+        "CuletState": interface.CuletState, "CuletTouch": interface.CuletTouch,
     }  # fmt: skip
     sizes = "".join(f'printf("%zu ", sizeof({name}));' for name in structures)
     numbers = 'printf("%d %d %d", CULET_INTERFACE, CULET_MAX_VERTICES, CULET_MAX_SURFACES);'

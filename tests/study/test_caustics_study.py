@@ -16,7 +16,7 @@ from culet.study.studies import study_caustics
 from shared.stages import staged
 from shared.stones import ring
 
-TINY = caustics.Extent((3e-3, 3e-4, 3e-5), (1, 4), 3, 1e-6, 1e-4, 8, 1, (1e-3, 1e-4), 1)
+TINY = caustics.CausticsEffort((3e-3, 3e-4, 3e-5), (1, 4), 3, 1e-6, 1e-4, 8, 1, (1e-3, 1e-4), 1)
 
 
 @contextlib.contextmanager

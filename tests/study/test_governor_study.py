@@ -17,8 +17,8 @@ from culet.gateway.link import EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
 from culet.study import governor_study as governor
-from culet.study.governor_study import Measured, Play, Recorder
-from culet.study.motion_record import Change, Seen
+from culet.study.governor_study import GovernorRecord, Play, Recorder
+from culet.study.motion_record import SceneChange, SeenFrame
 from culet_protocol.engine import Control
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Message, ResetStone, ToggleFall, ToggleMirror
@@ -153,16 +153,16 @@ async def test_a_frame_from_before_the_drop_does_not_count_as_rest() -> None:
 
 
 def test_a_run_in_which_nothing_moved_is_told_like_any_other() -> None:
-    still = tuple(Seen.of(frame(step, Flags.NONE), arrived=step) for step in range(3))
-    measured = Measured(still, (), (Change("walls", 1.0),), 1.0)
+    still = tuple(SeenFrame.of(frame(step, Flags.NONE), arrived=step) for step in range(3))
+    measured = GovernorRecord(still, (), (SceneChange("walls", 1.0),), 1.0)
     text = governor.described(measured, SIZE, 30)
     assert text.count("no two frames came of the same fall") == 2
     assert json.loads(governor.document(measured, SIZE, 30))["steady"] is None
 
 
 def test_a_run_without_changes_tells_of_the_steady_scene_alone() -> None:
-    seen = tuple(Seen.of(frame(step, Flags.MOVING), arrived=step / 30) for step in range(3))
-    measured = Measured(seen, (), (), 1.0)
+    seen = tuple(SeenFrame.of(frame(step, Flags.MOVING), arrived=step / 30) for step in range(3))
+    measured = GovernorRecord(seen, (), (), 1.0)
     text = governor.described(measured, SIZE, 30)
     assert "out of order         0 frames" in text
     assert "simulated            1.000 s a second" in text

@@ -9,18 +9,20 @@ from pathlib import Path
 import pytest
 
 from culet.study import growth
-from culet.study.growth import Extent, Sweep, beside_each_other, fits_of, steeper_than_they_should_be
+from culet.study.growth import GrowthEffort, GrowthSweep, beside_each_other, fits_of, steeper_than_they_should_be
 from culet.study.page import page
 from culet.study.report import Point, Report
 from culet.study.studies import study_growth
 
-TINY = Extent({name: Sweep((1, 2), sweep.most) for name, sweep in growth.FULL.sweeps.items()}, 18, 1, 0.2, 0.2)
+TINY = GrowthEffort(
+    {name: GrowthSweep((1, 2), sweep.most) for name, sweep in growth.FULL.sweeps.items()}, 18, 1, 0.2, 0.2
+)
 TINY.sweeps.update(
     {
-        "pixels": Sweep((144, 576), 1),
-        "facets": Sweep((16, 32), 1),
-        "bands": Sweep((3, 6), 1),
-        "bounces": Sweep((1, 8), 1),
+        "pixels": GrowthSweep((144, 576), 1),
+        "facets": GrowthSweep((16, 32), 1),
+        "bands": GrowthSweep((3, 6), 1),
+        "bounces": GrowthSweep((1, 8), 1),
     }
 )
 
@@ -60,7 +62,7 @@ def test_frames_come_to_every_viewer(finished: Report) -> None:
 
 
 def test_a_power_is_found_in_the_larger_half_and_judged() -> None:
-    extent = Extent({"stones": Sweep((1, 2, 4, 8), 1.05)}, 18, 1, 1, 1)
+    extent = GrowthEffort({"stones": GrowthSweep((1, 2, 4, 8), 1.05)}, 18, 1, 1, 1)
     costs = {1: 2.7, 2: 2**1.5, 4: 4**1.5, 8: 8**1.5}
     points = [
         Point(key=f"stones={n}", group="stones", label=str(n), knobs={"stones": n}, figures={"processor_seconds": cost})
@@ -70,7 +72,7 @@ def test_a_power_is_found_in_the_larger_half_and_judged() -> None:
     assert fit.order == pytest.approx(1.5)
     (words,) = steeper_than_they_should_be([fit], extent)
     assert words == "stones: cost grows as the number to the 1.50, expected at most 1.05"
-    assert not list(steeper_than_they_should_be([fit], extent._replace(sweeps={"stones": Sweep((1,), 1.8)})))
+    assert not list(steeper_than_they_should_be([fit], extent._replace(sweeps={"stones": GrowthSweep((1,), 1.8)})))
 
 
 @pytest.mark.parametrize("number", [1, 2, 12, 64])

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from culet.errors import InputError
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.report import Point
 
 IDENTITY: dict[str, object] = {"study": "rendering", "width": 320}
@@ -18,53 +18,53 @@ def point(key: str) -> Point:
 
 
 def test_points_are_there_when_it_is_opened_again(tmp_path: Path) -> None:
-    with Journal(tmp_path / "new" / "j", IDENTITY) as journal:
+    with PointJournal(tmp_path / "new" / "j", IDENTITY) as journal:
         journal.add(point("a"))
-    with Journal(tmp_path / "new" / "j", IDENTITY) as journal:
+    with PointJournal(tmp_path / "new" / "j", IDENTITY) as journal:
         assert journal.points == {"a": point("a")}
         journal.add(point("b"))
-    with Journal(tmp_path / "new" / "j", IDENTITY) as journal:
+    with PointJournal(tmp_path / "new" / "j", IDENTITY) as journal:
         assert list(journal.points) == ["a", "b"]
 
 
 def test_a_line_that_was_cut_off_in_the_middle_is_measured_again(tmp_path: Path) -> None:
     path = tmp_path / "j"
-    with Journal(path, IDENTITY) as journal:
+    with PointJournal(path, IDENTITY) as journal:
         journal.add(point("a"))
         journal.add(point("b"))
     path.write_bytes(path.read_bytes()[:-20])
-    with Journal(path, IDENTITY) as journal:
+    with PointJournal(path, IDENTITY) as journal:
         assert list(journal.points) == ["a"]
         journal.add(point("b"))
-    with Journal(path, IDENTITY) as journal:
+    with PointJournal(path, IDENTITY) as journal:
         assert list(journal.points) == ["a", "b"]
 
 
 def test_points_that_belong_together_are_kept_together_or_not_at_all(tmp_path: Path) -> None:
     path = tmp_path / "j"
-    with Journal(path, IDENTITY) as journal:
+    with PointJournal(path, IDENTITY) as journal:
         journal.add(point("a"))
         journal.add(point("b"), point("c"))
     whole = path.read_bytes()
-    with Journal(path, IDENTITY) as journal:
+    with PointJournal(path, IDENTITY) as journal:
         assert list(journal.points) == ["a", "b", "c"]
     path.write_bytes(whole[: whole.index(b'"c"')])
-    with Journal(path, IDENTITY) as journal:
+    with PointJournal(path, IDENTITY) as journal:
         assert list(journal.points) == ["a"]
 
 
 def test_points_are_on_the_disk_before_the_journal_is_closed(tmp_path: Path) -> None:
-    with Journal(tmp_path / "j", IDENTITY) as journal:
+    with PointJournal(tmp_path / "j", IDENTITY) as journal:
         journal.add(point("a"))
         assert (tmp_path / "j").read_text().count("\n") == 2
 
 
 def test_a_journal_of_another_study_is_refused_and_named(tmp_path: Path) -> None:
-    with Journal(tmp_path / "j", IDENTITY) as journal:
+    with PointJournal(tmp_path / "j", IDENTITY) as journal:
         journal.add(point("a"))
     with pytest.raises(InputError, match="width 320, now 640"):
-        Journal(tmp_path / "j", {**IDENTITY, "width": 640})
-    with Journal(tmp_path / "j", {**IDENTITY, "width": 640}, fresh=True) as journal:
+        PointJournal(tmp_path / "j", {**IDENTITY, "width": 640})
+    with PointJournal(tmp_path / "j", {**IDENTITY, "width": 640}, fresh=True) as journal:
         assert journal.points == {}
 
 
@@ -72,5 +72,5 @@ def test_a_journal_of_another_study_is_refused_and_named(tmp_path: Path) -> None
 def test_a_file_that_is_no_journal_is_refused(tmp_path: Path, content: str) -> None:
     (tmp_path / "j").write_text(content)
     with pytest.raises(InputError, match="--fresh"):
-        Journal(tmp_path / "j", IDENTITY)
+        PointJournal(tmp_path / "j", IDENTITY)
     assert (tmp_path / "j").read_text() == content

@@ -8,7 +8,7 @@ import numpy as np
 
 from culet.engine.governing.governor import Setting
 from culet.engine.governing.measured_errors import SettingErrors
-from culet.study.ladder import BOUNCES, CUTOFFS, SCALES, Measured, errors_of, ladder_of
+from culet.study.ladder import BOUNCES, CUTOFFS, SCALES, MeasuredSetting, errors_of, ladder_of
 
 
 def error(scale: float, cutoff: float, bounces: int) -> float:
@@ -17,7 +17,7 @@ def error(scale: float, cutoff: float, bounces: int) -> float:
 
 
 MEASURED = [
-    Measured(
+    MeasuredSetting(
         Setting(scale, cutoff, bounces, scale**2 * (0.01 / cutoff) ** 0.5 * (bounces / 256) ** 0.2, shown), 2 * shown
     )
     for scale, cutoff, bounces in product(SCALES, CUTOFFS, BOUNCES)

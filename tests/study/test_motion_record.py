@@ -11,8 +11,8 @@ import pytest
 from culet.engine.governing.governor import ERRORS
 from culet.study.motion_record import (
     SETTLED_FRAMES,
-    Change,
-    Seen,
+    SceneChange,
+    SeenFrame,
     Summary,
     longest_run,
     moving_pairs,
@@ -21,7 +21,7 @@ from culet.study.motion_record import (
     summarise,
 )
 
-FRAME = Seen(
+FRAME = SeenFrame(
     arrived=0, sequence=0, moving=True, simulation_time=0, width=1024, height=576, bands=3, max_bounces=48, cutoff=0.02,
     simulate_ms=1, render_ms=20, encode_ms=2, error=0.05,
 )  # fmt: skip
@@ -29,13 +29,13 @@ RATE = 25.0
 INTERVAL = 1 / RATE
 
 
-def falling(intervals: list[float]) -> list[Seen]:
+def falling(intervals: list[float]) -> list[SeenFrame]:
     """Frames of one fall that came so far apart."""
     times = accumulate(intervals, initial=0.0)
     return [replace(FRAME, arrived=t, sequence=number, simulation_time=t) for number, t in enumerate(times)]
 
 
-def summary_of(frames: list[Seen]) -> Summary:
+def summary_of(frames: list[SeenFrame]) -> Summary:
     summary = summarise(frames, RATE)
     assert summary is not None
     return summary
@@ -115,13 +115,13 @@ def test_settings_that_change_are_counted_by_the_minute() -> None:
 def test_a_session_settles_when_its_frames_come_at_the_rate_again() -> None:
     late = 7
     frames = falling([*[INTERVAL] * 20, *[3 * INTERVAL] * late, *[INTERVAL] * 40])
-    (settled,) = settle(frames, [Change("walls", made_at=frames[20].arrived - 0.01)], RATE)
+    (settled,) = settle(frames, [SceneChange("walls", made_at=frames[20].arrived - 0.01)], RATE)
     assert settled.seconds == pytest.approx(0.01 + 3 * late * INTERVAL)
 
 
 def test_a_session_that_never_settles_before_the_next_change_says_so() -> None:
     frames = falling([2 * INTERVAL] * 40 + [INTERVAL] * 2 * SETTLED_FRAMES)
-    changes = [Change("walls", frames[0].arrived), Change("none", frames[40].arrived)]
+    changes = [SceneChange("walls", frames[0].arrived), SceneChange("none", frames[40].arrived)]
     first, second = settle(frames, changes, RATE)
     assert first.seconds is None
     assert second.seconds is not None

@@ -13,8 +13,8 @@ from culet.geometry.shape import MassProperties, Shape
 from culet.simulation.body import RigidBody
 from culet.simulation.rotation import rotate, rotate_back
 from culet.simulation.settings import SimulationSettings as Settings
-from culet.study.journal import Journal
-from culet.study.motions import Motion, bounce_truth, flat_orientation
+from culet.study.journal import PointJournal
+from culet.study.motions import KnownMotion, bounce_truth, flat_orientation
 from culet.study.report import Point
 from culet.study.simulation import fits_of, measure_all, points_of
 from culet.study.tops import TOP_MOMENTS, TOP_SPIN, angle_between, rotation_truth
@@ -86,7 +86,7 @@ def test_a_flat_bounce_comes_back_when_restitution_says(points: dict[str, Point]
 def test_a_point_that_falls_a_second_bounces_until_it_rests(seconds: float, height: float) -> None:
     """From g / 2 it falls a second; with e = 1/2 its bounces last 1, 1/2, 1/4 ... s, 2 s in all. The first rises to a
     quarter of the height, half a second after the landing."""
-    motion = Motion("bounce", seconds, (0.0, 4.905, 0.0), UPRIGHT, {"gravity": 9.81, "restitution": 0.5})
+    motion = KnownMotion("bounce", seconds, (0.0, 4.905, 0.0), UPRIGHT, {"gravity": 9.81, "restitution": 0.5})
     end = bounce_truth(motion, radius=1.0)
     assert end.position is not None
     assert end.position[1] == pytest.approx(height, abs=1e-9)
@@ -107,7 +107,7 @@ def test_points_that_are_in_the_journal_are_not_measured_again(brilliant: Shape,
     told: list[int] = []
     keys = [key for key, _ in points_of(brilliant, quick=True)]
     known = Point(key="", group="g", label="", knobs={}, figures={})
-    with Journal(tmp_path / "j", {"study": "simulation"}) as journal:
+    with PointJournal(tmp_path / "j", {"study": "simulation"}) as journal:
         journal.points |= {key: known.model_copy(update={"key": key}) for key in keys[1:]}
         measure_all(brilliant, journal, quick=True, progress=lambda _, done: told.append(done))
         assert journal.points[keys[0]].group == "rotation"

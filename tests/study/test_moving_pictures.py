@@ -12,7 +12,7 @@ from command_line import invoke
 from culet.rendering.renderer import Renderer
 from culet.scene import preset
 from culet.stage import Stage
-from culet.study.moving_pictures import Way, as_seen, differences, moments_of, planned
+from culet.study.moving_pictures import DrawingWay, as_seen, differences, moments_of, planned
 
 FALLING = Stage.of(preset("falling"))
 SIZE = (96, 54)
@@ -41,10 +41,10 @@ def test_the_moments_are_spread_over_the_fall() -> None:
 def test_what_is_seen_has_the_size_that_was_asked_for_however_it_is_drawn(renderer: Renderer) -> None:
     """Frames that would be late are drawn smaller; a frame of full size is filtered, a smaller one is not."""
     wide = (1280, 720)
-    quick, slow = (planned(FALLING, wide, Way(30, 1, softened=True), unit) for unit in (0.001, 10.0))
+    quick, slow = (planned(FALLING, wide, DrawingWay(30, 1, softened=True), unit) for unit in (0.001, 10.0))
     assert quick.size == wide
     assert slow.size < wide
-    small = planned(FALLING, SIZE, Way(30, 1, softened=True), 0.001)
+    small = planned(FALLING, SIZE, DrawingWay(30, 1, softened=True), 0.001)
     plain, softened = (as_seen(renderer, FALLING, small, softened=soft)[0] for soft in (False, True))
     assert plain.shape == softened.shape == (*SIZE[::-1], 3)
     assert np.abs(np.diff(softened.astype(int), axis=1)).mean() < np.abs(np.diff(plain.astype(int), axis=1)).mean()

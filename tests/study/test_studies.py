@@ -16,15 +16,15 @@ from culet.rendering.device import Device
 from culet.scene import Scene
 from culet.scene.legacy import legacy
 from culet.study import race, studies
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.knobs import base_knobs
 from culet.study.renderers import Renderers
 from culet.study.report import Report
 from culet.study.shot import Shot
-from culet.study.studies import Effort, study_rendering
+from culet.study.studies import StudyEffort, study_rendering
 from shared.stages import staged
 
-TINY = Effort(48, 27, 32, 4, 1, 0, 0.0, 0)
+TINY = StudyEffort(48, 27, 32, 4, 1, 0, 0.0, 0)
 GROUPS = frozenset({"cutoff", "samples", "scale"})
 
 Advance = Callable[[str, int], None]
@@ -158,13 +158,13 @@ def test_a_race_is_run_once_and_tells_its_references_error(
 ) -> None:
     monkeypatch.setattr(race, "mitsuba_missing", lambda: True)
     effort = TINY._replace(width=16, height=9, race_samples=16, race_seconds=0.2)
-    with Journal(tmp_path / "j", {"study": "rendering"}) as journal:
+    with PointJournal(tmp_path / "j", {"study": "rendering"}) as journal:
         first, *_ = studies._run_race(Renderers(device), effort, journal, Told(), tmp_path)
         assert {point.knobs["renderer"] for point in journal.points.values()} == set(race.ENTRANTS)
         assert {point.knobs["samples"] for point in journal.points.values()} <= {1, 2, 4}
     assert re.search(r"an RMSE of some 0\.\d+\. It is of 12 samples", first)
     before = (tmp_path / "j").read_text()
-    with Journal(tmp_path / "j", {"study": "rendering"}) as journal:
+    with PointJournal(tmp_path / "j", {"study": "rendering"}) as journal:
         assert studies._run_race(Renderers(device), effort, journal, Told(), tmp_path)[0] == first
     assert (tmp_path / "j").read_text() == before
 

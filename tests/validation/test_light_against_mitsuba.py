@@ -19,7 +19,7 @@ from culet.geometry.shape import Shape
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.light_map import MapFrame, frame_of
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.placed_stone import placed_stones
 from culet.scene import Scene
 from culet.stage import Stage
@@ -121,7 +121,7 @@ def thrown(device: Device, stage: Stage) -> Array:
     for follows in (True, False):
         target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
         Beams(device, np.float64).make(
-            stage, [Ray((1, 1, 1), towards=(x, y, z), follows=follows)], frame, target, cutoff=CUTOFF
+            stage, [LightRay((1, 1, 1), towards=(x, y, z), follows=follows)], frame, target, cutoff=CUTOFF
         )
         made = np.empty(frame.shape, np.float32)
         cl.enqueue_copy(device.queue, made, target)

@@ -14,7 +14,16 @@ from typing import Any
 import numpy as np
 from scipy.optimize import Bounds, minimize
 
-from culet.batch.candidates import ANGLE_DECIMALS, BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Search, TrialDesign
+from culet.batch.candidates import (
+    ANGLE_DECIMALS,
+    BRIGHTNESS,
+    FIRE,
+    AskTrial,
+    Candidate,
+    Candidates,
+    Search,
+    TrialDesign,
+)
 from culet.errors import MeshError
 from culet.geometry.meets import LEAST_DEGREES, MOST_DEGREES, angle_of_tiers, independent_tiers
 from culet.geometry.recut import OF_A_SHAPE, recut_shape
@@ -62,7 +71,7 @@ def angle_search(shape: Shape, start: Candidate, value: Value, reach: float, mos
         return None
     tiers, middle = list(own), np.round(list(own.values()), ANGLE_DECIMALS)
 
-    def lost(ask: Ask, degrees: Any) -> float:  # noqa: ANN401 - as scipy gives them
+    def lost(ask: AskTrial, degrees: Any) -> float:  # noqa: ANN401 - as scipy gives them
         each = ask(TrialDesign.of(start.crown_ratio, start.pavilion_ratio, dict(zip(tiers, degrees, strict=True))))
         return -value(start) + WORSE if each is None else -value(each)
 
@@ -70,7 +79,7 @@ def angle_search(shape: Shape, start: Candidate, value: Value, reach: float, mos
     first = FIRST_STEP * reach
     options = {"maxfev": most, "initial_tr_radius": first, "final_tr_radius": min(SMALLEST_STEP, first)}
 
-    def search(ask: Ask) -> None:
+    def search(ask: AskTrial) -> None:
         minimize(partial(lost, ask), middle, method="COBYQA", bounds=bounds, options=options)
 
     return Search(search, together=2 * len(tiers) + 1)  # the first models' points

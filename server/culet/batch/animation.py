@@ -87,7 +87,7 @@ def on_a_way(stage: Stage, way: Way, seconds: float, times: Sequence[float]) -> 
 
 
 @dataclass(frozen=True)
-class Frame:
+class RenderedFrame:
     """A rendered frame."""
 
     data: bytes
@@ -109,11 +109,11 @@ class FrameTask:
     error: float | None
     format: str
 
-    def __call__(self, item: tuple[int, Scene]) -> Frame:
+    def __call__(self, item: tuple[int, Scene]) -> RenderedFrame:
         """The still of that scene."""
         stage = self.stage.showing(item[1])
         picture = render_stage(stage, self.width, self.height, samples=self.samples, error=self.error)
-        return Frame(picture.encoded(self.format), picture.cost.samples, picture.cost.seconds)
+        return RenderedFrame(picture.encoded(self.format), picture.cost.samples, picture.cost.seconds)
 
 
 def render_frames(
@@ -162,7 +162,7 @@ def whole(animation: Animation, folder: Path, records: Sequence[Any]) -> set[int
     return found
 
 
-def write_frame(animation: Animation, folder: Path, number: int, frame: Frame) -> dict[str, Any]:
+def write_frame(animation: Animation, folder: Path, number: int, frame: RenderedFrame) -> dict[str, Any]:
     """Whole or not at all; its record for the journal."""
     write_whole(animation.file(folder, number), frame.data, "out")
     return {

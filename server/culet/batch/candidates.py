@@ -86,7 +86,7 @@ class GradeTask:
         return {name: number_of(grades, name) for name in self.names}
 
 
-Ask = Callable[[TrialDesign], Candidate | None]
+AskTrial = Callable[[TrialDesign], Candidate | None]
 """None of what is no stone; SpentError if no more may be graded."""
 
 
@@ -94,7 +94,7 @@ Ask = Callable[[TrialDesign], Candidate | None]
 class Search:
     """An optimiser at work. It asks the same whenever it is run and told the same."""
 
-    run: Callable[[Ask], object]
+    run: Callable[[AskTrial], object]
     together: int = 1
     """So many designs it asks for at first, whatever it is told of them."""
 

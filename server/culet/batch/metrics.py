@@ -29,7 +29,7 @@ METRICS = (*GRADES, *PICTURE)
 
 
 @dataclass(frozen=True)
-class Effort:
+class MetricEffort:
     """How well each scene is measured."""
 
     rules: Rules = field(default_factory=Rules)
@@ -57,7 +57,7 @@ def columns_of(names: Sequence[str]) -> list[str]:
     return [column for name in names for column in ((name, f"{name}_error") if name in GRADES else (name,))]
 
 
-def measure(sums: LightSums | None, stage: Stage, names: Sequence[str], effort: Effort) -> dict[str, float]:
+def measure(sums: LightSums | None, stage: Stage, names: Sequence[str], effort: MetricEffort) -> dict[str, float]:
     """Those metrics of a stage, by `columns_of`; `sums` may be missing if none is a grade. InputError says why there
     are none, as of a stone that is not convex."""
     found: dict[str, float] = {}

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import direct, minimize
 
-from culet.batch.candidates import BRIGHTNESS, FIRE, Ask, Candidate, Candidates, Search, TrialDesign, UnknownError
+from culet.batch.candidates import BRIGHTNESS, FIRE, AskTrial, Candidate, Candidates, Search, TrialDesign, UnknownError
 
 Range = tuple[float, float]
 
@@ -78,11 +78,11 @@ def _end_division(unknown: list[TrialDesign], _: object) -> None:
 def _simplex_search(balance: float, start: Candidate, ends: list[Range], most: int) -> Search:
     """For the sum that has so much of fire."""
 
-    def lost(ask: Ask, ratios: Any) -> float:  # noqa: ANN401
+    def lost(ask: AskTrial, ratios: Any) -> float:  # noqa: ANN401
         found = ask(TrialDesign.of(*ratios))
         return NO_STONE if found is None else -_balanced(balance, found)
 
-    def search(ask: Ask) -> None:
+    def search(ask: AskTrial) -> None:
         minimize(
             partial(lost, ask), (start.crown_ratio, start.pavilion_ratio), method="Nelder-Mead", bounds=ends,
             options={"maxfev": most, "initial_simplex": _simplex(start, ends)},

@@ -13,7 +13,7 @@ from typing import Any
 
 from culet.batch.crew import IN_PROCESS, Crew, in_turn
 from culet.batch.digest import identity_of
-from culet.batch.metrics import Effort, check_metrics, columns_of, light_sums, measure
+from culet.batch.metrics import MetricEffort, check_metrics, columns_of, light_sums, measure
 from culet.batch.variation import Variation, points_of, varied
 from culet.errors import InputError
 from culet.grading.metrics import GRADES
@@ -37,7 +37,7 @@ class Sweep:
     stage: Stage
     variations: tuple[Variation, ...]
     metrics: tuple[str, ...]
-    effort: Effort = field(default_factory=Effort)
+    effort: MetricEffort = field(default_factory=MetricEffort)
 
     def identity(self) -> dict[str, Any]:
         """What of another sweep is different."""

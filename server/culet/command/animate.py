@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from culet.command.crew import Scheduler, TlsCa, TlsCert, TlsKey, Workers, crew_of
-from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
+from culet.command.options import CutText, MeshFile, PresetOption, SceneFile, SkyFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar
@@ -59,7 +59,7 @@ def animate(
         float | None, typer.Option(metavar="RMSE", help="Each frame to this error as shown, as of culet render.")
     ] = None,
     image: Annotated[str, typer.Option("--format", metavar="png|webp|jpg|tga|exr|npy", help="Of the frames.")] = "png",
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
     cut: CutText = None,

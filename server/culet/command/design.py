@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from culet.command.crew import Scheduler, TlsCa, TlsCert, TlsKey, Workers, crew_of
-from culet.command.subject import Head, Index, Material, RulesName, rules_named, subject, with_material
+from culet.command.subject import (
+    HeadOption,
+    IndexOption,
+    MaterialOption,
+    RulesName,
+    rules_named,
+    subject,
+    with_material,
+)
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
 from culet.errors import InputError, MeshError, WorkersError
 from culet.places import check_place, write_whole
@@ -164,9 +172,9 @@ def optimise(
             min=10, max=100_000, help="Designs to grade besides the given one, at most; half of them of other angles."
         ),
     ] = 200,
-    material: Material = None,
-    index: Index = None,
-    head: Head = None,
+    material: MaterialOption = None,
+    index: IndexOption = None,
+    head: HeadOption = None,
     rules: RulesName = "culet",
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE.csv", help="The front as a table.")] = None,
     workers: Workers = None,

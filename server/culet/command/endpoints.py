@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
-Control = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")]
+ControlEndpoint = Annotated[
+    str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of control, ipc://... or tcp://...")
+]
 Frames = Annotated[str, typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames, ipc://... or tcp://...")]
 Spare = Annotated[
     bool,

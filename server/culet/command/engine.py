@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from culet.blas import keep_blas_to_one_thread
-from culet.command.endpoints import Control, Spare
+from culet.command.endpoints import ControlEndpoint, Spare
 from culet.command.help import ListedHelp
 from culet.command.settings import options_of
 from culet.command.single import single_command
@@ -23,7 +23,7 @@ app = single_command()
 @app.command(cls=ListedHelp)
 @options_of(Engine=Limits)
 def engine(
-    control: Control,
+    control: ControlEndpoint,
     frames: Annotated[
         list[str], typer.Option(metavar="ENDPOINT", help="ZeroMQ endpoint of frames; repeatable, for several at once.")
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from culet.command.endpoints import Control, Frames, Spare
+from culet.command.endpoints import ControlEndpoint, Frames, Spare
 from culet.command.help import ListedHelp
 from culet.command.settings import options_of
 from culet.command.single import single_command
@@ -18,7 +18,7 @@ app = single_command()
 
 @app.command(cls=ListedHelp)
 @options_of(Gateway=GatewaySettings)
-def gateway(control: Control, frames: Frames, spare: Spare = False, *, given: dict[str, Any]) -> None:
+def gateway(control: ControlEndpoint, frames: Frames, spare: Spare = False, *, given: dict[str, Any]) -> None:
     """Run the web process alone, for an engine that runs elsewhere."""
     with errors_in_one_line():
         settings = Settings.read(given)

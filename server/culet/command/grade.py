@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from culet.command.options import Preset
+from culet.command.options import PresetOption
 from culet.command.single import single_command
 from culet.command.subject import (
     Coloured,
     GradeError,
-    Head,
-    Index,
-    Material,
+    HeadOption,
+    IndexOption,
+    MaterialOption,
     RulesName,
-    StoneId,
+    StoneOption,
     Subject,
     rules_named,
     subject,
@@ -28,7 +28,7 @@ from culet.command.terminal import errors_in_one_line, progress_bar, report_cons
 from culet.places import check_place, write_whole
 
 if TYPE_CHECKING:
-    from culet.grading.answer import Report
+    from culet.grading.answer import GradeReport
 
 app = single_command()
 
@@ -36,11 +36,11 @@ app = single_command()
 @app.command()
 def grade(
     what: Subject = None,
-    preset: Preset = None,
-    stone: StoneId = None,
-    material: Material = None,
-    index: Index = None,
-    head: Head = None,
+    preset: PresetOption = None,
+    stone: StoneOption = None,
+    material: MaterialOption = None,
+    index: IndexOption = None,
+    head: HeadOption = None,
     rules: RulesName = "culet",
     coloured: Coloured = False,
     tilt: Annotated[bool, typer.Option("--tilt", help="Print the tilt curves about both axes too.")] = False,
@@ -70,7 +70,7 @@ def grade(
             write_whole(out, (json.dumps(asdict(report), indent=2) + "\n").encode(), "out")
 
 
-def _print(report: Report, target: float) -> None:
+def _print(report: GradeReport, target: float) -> None:
     from rich.table import Table
 
     from culet.grading.grades import SIGMAS

@@ -21,7 +21,7 @@ def _presets_that_begin(incomplete: str) -> list[tuple[str, str]]:
     return [(name, each.summary) for name, each in PRESETS.items() if name.startswith(incomplete)]
 
 
-Preset = Annotated[
+PresetOption = Annotated[
     str | None,
     typer.Option(help=f"Start from a named scene instead: {', '.join(PRESETS)}.", autocompletion=_presets_that_begin),
 ]

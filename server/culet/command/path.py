@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, assert_never
 
 import typer
 
-from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
+from culet.command.options import CutText, MeshFile, PresetOption, SceneFile, SkyFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, report_console
@@ -61,7 +61,7 @@ def path(
         str | None, typer.Option(metavar="NM,...", help="Follow these, in place of the scene's own; at most 16.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print all as JSON, as POST /api/path answers.")] = False,
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
     cut: CutText = None,

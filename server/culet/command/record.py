@@ -10,7 +10,7 @@ import typer
 
 from culet.command.single import single_command
 from culet.command.terminal import errors_in_one_line
-from culet.command.watching import Patience, SessionId, WatchId, watched_at
+from culet.command.watching import Patience, SessionOption, WatchId, watched_at
 
 app = single_command()
 
@@ -21,10 +21,10 @@ Address = Annotated[
         "frames, such as tcp://127.0.0.1:5556."
     ),
 ]
-Target = Annotated[
+OutOption = Annotated[
     Path, typer.Option("-o", "--out", metavar="FOLDER|FILM.mp4", help="Folder for the frames, or a film's name.")
 ]
-Size = Annotated[
+SizeOption = Annotated[
     str | None,
     typer.Option(
         metavar="WIDTHxHEIGHT",
@@ -32,7 +32,7 @@ Size = Annotated[
         "they come, of many sizes while things move.",
     ),
 ]
-Chroma = Annotated[
+ChromaOption = Annotated[
     str, typer.Option(help="Of a film: 444 keeps all colour; 420 halves its resolution, for players that need that.")
 ]
 SIZES = 16, 8192
@@ -41,12 +41,12 @@ SIZES = 16, 8192
 @app.command()
 def record(
     endpoint: Address,
-    session: SessionId = None,
+    session: SessionOption = None,
     watch: WatchId = None,
     seconds: Annotated[float, typer.Option(min=0, help="How long, counted from the first frame.")] = 10,
-    out: Target = Path("frames"),
-    size: Size = None,
-    chroma: Chroma = "444",
+    out: OutOption = Path("frames"),
+    size: SizeOption = None,
+    chroma: ChromaOption = "444",
     timeout: Patience = 10,
 ) -> None:
     """Take every frame of a session that comes in some seconds, into a folder or, with PyAV, into a film."""

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from culet.command.options import CutText, MeshFile, Preset, SceneFile, SkyFile
+from culet.command.options import CutText, MeshFile, PresetOption, SceneFile, SkyFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar
@@ -52,7 +52,7 @@ def render(
     legend: Annotated[
         bool, typer.Option("--legend", help="In a corner, what ASET's or the Ideal-Scope's colours mean, and the tilt.")
     ] = False,
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
     cut: CutText = None,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from culet.command.options import MeshFile, Preset, SceneFile
+from culet.command.options import MeshFile, PresetOption, SceneFile
 from culet.command.single import single_command
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar
@@ -23,7 +23,7 @@ def simulate(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="The stones' paths: .csv .json .npz")] = Path(
         "path.csv"
     ),
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw height, energy and angular speed over time too: .png")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from culet.command.options import MeshFile, Preset, SceneFile, SkyFile
+from culet.command.options import MeshFile, PresetOption, SceneFile, SkyFile
 from culet.command.places import opened
 from culet.command.stage import read_stage
 from culet.command.terminal import errors_in_one_line, progress_bar, report_console
@@ -32,8 +32,8 @@ app = typer.Typer(
 Out = Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the report; made if missing.")]
 Quick = Annotated[bool, typer.Option("--quick", help="Fewer settings and samples, a smaller picture.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Measure anew what an earlier run has left in the folder.")]
-Width = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 640, quick 320.")]
-Height = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 360, quick 180.")]
+WidthOption = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 640, quick 320.")]
+HeightOption = Annotated[int | None, typer.Option(min=16, max=4096, help="Pixels; without it 360, quick 180.")]
 ReportFile = Annotated[Path, typer.Argument(metavar="REPORT.json", help="A report.json of a study.")]
 BenchFile = Annotated[Path, typer.Argument(metavar="BENCH.jsonl", help="A file of `culet bench -o`.")]
 
@@ -45,13 +45,13 @@ SHOWN_RATIOS = 20
 def rendering(
     scene: SceneFile = None,
     out: Out = Path("report/rendering"),
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
     quick: Quick = False,
     fresh: Fresh = False,
-    width: Width = None,
-    height: Height = None,
+    width: WidthOption = None,
+    height: HeightOption = None,
 ) -> None:
     """Sweep the renderer's knobs against converged references in double precision.
 
@@ -64,7 +64,7 @@ def rendering(
 def simulation(
     scene: SceneFile = None,
     out: Out = Path("report/simulation"),
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     quick: Quick = False,
     fresh: Fresh = False,
@@ -77,13 +77,13 @@ def simulation(
 def streaming(
     scene: SceneFile = None,
     out: Out = Path("report/streaming"),
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     sky: SkyFile = None,
     quick: Quick = False,
     fresh: Fresh = False,
-    width: Width = None,
-    height: Height = None,
+    width: WidthOption = None,
+    height: HeightOption = None,
 ) -> None:
     """Sweep codecs and qualities on moving and still frames."""
     _measure("streaming", (scene, preset, mesh, sky), out, quick=quick, fresh=fresh, size=(width, height))
@@ -93,7 +93,7 @@ def streaming(
 def caustics(
     scene: SceneFile = None,
     out: Out = Path("report/caustics"),
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     quick: Quick = False,
     fresh: Fresh = False,
@@ -108,7 +108,7 @@ def caustics(
 @app.command()
 def light(
     scene: SceneFile = None,
-    preset: Preset = None,
+    preset: PresetOption = None,
     mesh: MeshFile = None,
     poses: Annotated[int, typer.Option(min=1, max=1000, help="In which the stones are turned, at random.")] = 16,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 960,
@@ -143,7 +143,7 @@ def light(
 @app.command()
 def resting(
     scene: SceneFile = None,
-    preset: Preset = None,
+    preset: PresetOption = None,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels.")] = 960,
     height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels.")] = 540,
     error: Annotated[
@@ -181,7 +181,7 @@ def resting(
 @app.command()
 def motion(
     scene: SceneFile = None,
-    preset: Preset = None,
+    preset: PresetOption = None,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of what is seen.")] = 1280,
     height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of what is seen.")] = 720,
     seconds: Annotated[float, typer.Option(min=0.1, max=60, help="Of the fall.")] = 3,
@@ -214,7 +214,7 @@ def motion(
 @app.command()
 def video(
     scene: SceneFile = None,
-    preset: Preset = None,
+    preset: PresetOption = None,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 1280,
     height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels of a frame.")] = 720,
     frames: Annotated[int, typer.Option(min=2, max=600, help="Of the fall, 30 a second.")] = 60,
@@ -263,12 +263,12 @@ def gallery(
 ) -> None:
     """Draw every preset, and measure whether it looks as it should; fails if one does not."""
     from culet.rendering.renderer import Renderer
-    from culet.study.gallery import Shown, make_thumbnails
+    from culet.study.gallery import ShownPreset, make_thumbnails
     from culet.study.gallery import gallery as all_presets
     from culet.study.gallery_page import write_gallery
 
     with errors_in_one_line():
-        renderer, seen = Renderer(), list[Shown]()
+        renderer, seen = Renderer(), list[ShownPreset]()
         for each in all_presets(renderer):
             typer.echo(f"{each.preset.name}: {', '.join(each.failures) or 'as it should be'}")
             seen.append(each)
@@ -325,7 +325,7 @@ def contacts(
 @app.command()
 def governor(
     scene: SceneFile = None,
-    preset: Preset = None,
+    preset: PresetOption = None,
     seconds: Annotated[float, typer.Option(min=5, help="Of the stones that fall in a scene that stays.")] = 60,
     width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 1280,
     height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that the viewer asks for.")] = 720,

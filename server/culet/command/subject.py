@@ -22,13 +22,13 @@ Subject = Annotated[
         "default scene.",
     ),
 ]
-StoneId = Annotated[str | None, typer.Option("--stone", metavar="ID", help="Which stone; without it the first.")]
-Material = Annotated[str | None, typer.Option(metavar="NAME", help="In place of the stone's own.")]
-Index = Annotated[
+StoneOption = Annotated[str | None, typer.Option("--stone", metavar="ID", help="Which stone; without it the first.")]
+MaterialOption = Annotated[str | None, typer.Option(metavar="NAME", help="In place of the stone's own.")]
+IndexOption = Annotated[
     float | None,
     typer.Option(min=1.0, max=10.0, help="Refractive index, in place of a material; then there is no fire."),
 ]
-Head = Annotated[
+HeadOption = Annotated[
     float | None, typer.Option(min=0.0, max=90.0, help="Half the angle of the viewer's head, degrees; 10.")
 ]
 RulesName = Annotated[

@@ -9,16 +9,16 @@ from typing import Annotated
 import typer
 
 from culet.command.crew import Scheduler, TlsCa, TlsCert, TlsKey, Workers, crew_of
-from culet.command.options import Preset
+from culet.command.options import PresetOption
 from culet.command.single import single_command
 from culet.command.subject import (
     Coloured,
     GradeError,
-    Head,
-    Index,
-    Material,
+    HeadOption,
+    IndexOption,
+    MaterialOption,
     RulesName,
-    StoneId,
+    StoneOption,
     Subject,
     rules_named,
     subject,
@@ -34,7 +34,7 @@ app = single_command()
 @app.command()
 def sweep(
     what: Subject = None,
-    preset: Preset = None,
+    preset: PresetOption = None,
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -52,10 +52,10 @@ def sweep(
         ),
     ] = None,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE.csv", help="Table to write.")] = Path("sweep.csv"),
-    stone: StoneId = None,
-    material: Material = None,
-    index: Index = None,
-    head: Head = None,
+    stone: StoneOption = None,
+    material: MaterialOption = None,
+    index: IndexOption = None,
+    head: HeadOption = None,
     rules: RulesName = "culet",
     coloured: Coloured = False,
     error: GradeError = 0.1,
@@ -73,7 +73,7 @@ def sweep(
 
     Stopped with Ctrl-C, the same command goes on where it was. Scenes that cannot be have their reason in the table.
     """
-    from culet.batch.metrics import Effort, check_metrics
+    from culet.batch.metrics import MetricEffort, check_metrics
     from culet.batch.sweep import Sweep, run
     from culet.batch.variation import variation
     from culet.errors import InputError
@@ -86,7 +86,7 @@ def sweep(
         check_metrics(metrics)
         variations = tuple(variation(text) for text in vary)
         stage = with_material(subject(what, preset), material, index)
-        effort = Effort(rules_named(rules, head), error, stone, coloured, width, height, samples)
+        effort = MetricEffort(rules_named(rules, head), error, stone, coloured, width, height, samples)
         done = already = 0
         with crew_of(workers, scheduler, tls_ca, tls_cert, tls_key) as crew:
             steps = run(Sweep(stage, variations, metrics, effort), out, fresh=fresh, crew=crew)

@@ -9,7 +9,7 @@ import typer
 
 from culet.command.single import single_command
 from culet.command.terminal import errors_in_one_line
-from culet.command.watching import Endpoint, Folder, Patience, SessionId, WatchId, watched_by
+from culet.command.watching import Endpoint, Folder, Patience, SessionOption, WatchId, watched_by
 
 app = single_command()
 
@@ -17,7 +17,7 @@ app = single_command()
 @app.command()
 def view(
     endpoint: Endpoint,
-    session: SessionId = None,
+    session: SessionOption = None,
     watch: WatchId = None,
     frames: Annotated[int, typer.Option(min=1, help="How many frames to take.")] = 10,
     out: Folder = Path("frames"),

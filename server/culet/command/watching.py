@@ -12,7 +12,7 @@ from urllib.parse import parse_qs, urlsplit
 import typer
 
 Endpoint = Annotated[str, typer.Argument(help="Where the engine publishes frames, such as tcp://127.0.0.1:5556.")]
-SessionId = Annotated[
+SessionOption = Annotated[
     str | None, typer.Option(help="The session's id, 32 hexadecimal digits; the page has it in its address.")
 ]
 WatchId = Annotated[

@@ -22,7 +22,7 @@ _PICTURES = re.compile(r"/api/(render|turntable|sessions/[^/]+/frame)\.\w+")
 """GETs that take the engine's time. Any page can have its visitors' browsers ask for them, as an <img>."""
 
 
-class Bodies:
+class BodyBytes:
     """Bytes of request bodies that are under way, in all and of each client."""
 
     def __init__(self, limit: int, limit_of_client: int) -> None:
@@ -62,7 +62,7 @@ class Admission:
         self._largest_form = largest_form
         own = () if is_address(settings.host) else (settings.host,)
         self._hosts = Hosts([*settings.allow_host, *own])
-        self._bodies = Bodies(settings.max_bodies_bytes, settings.max_client_bodies_bytes)
+        self._bodies = BodyBytes(settings.max_bodies_bytes, settings.max_client_bodies_bytes)
         self._open = Holdings()
         """Requests and streams under way, of each client."""
 

@@ -31,7 +31,7 @@ def cost_of(method: str, path: str) -> int:
     return REQUEST_COST if path.startswith("/api/") or path in ("/metrics", "/docs", "/openapi.json") else FILE_COST
 
 
-class Allowance:
+class RequestAllowance:
     """ASGI middleware for HTTP. What is refused further in was asked for, and costs the same."""
 
     def __init__(self, app: ASGIApp, clients: ClientBuckets) -> None:

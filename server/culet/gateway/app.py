@@ -31,7 +31,7 @@ from culet.gateway import (
 from culet.gateway.access import Access
 from culet.gateway.access_log import AccessLog
 from culet.gateway.admission import Admission
-from culet.gateway.allowance import Allowance
+from culet.gateway.allowance import RequestAllowance
 from culet.gateway.bucket import ClientBuckets
 from culet.gateway.link import EngineLink
 from culet.gateway.methods import Methods
@@ -110,7 +110,7 @@ def create_app(settings: GatewaySettings) -> FastAPI:
     app.add_middleware(Methods, routes=[*app.routes, *(route for part in PARTS for route in part.router.routes)])
     app.add_middleware(Access, settings=settings)
     app.add_middleware(Admission, settings=settings, largest_form=upload_routes.largest_form(settings))
-    app.add_middleware(Allowance, clients=app.state.gateway.clients)
+    app.add_middleware(RequestAllowance, clients=app.state.gateway.clients)
     if settings.allow_origin:
         app.add_middleware(
             CORSMiddleware,

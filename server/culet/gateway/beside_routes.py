@@ -18,7 +18,7 @@ from culet.gateway.parts import ThisGateway
 from culet.gateway.picture_response import PictureResponse, picture_answers
 from culet.gateway.problems import answers, finite
 from culet.gateway.quality import quality_headers
-from culet.gateway.session_routes import Step
+from culet.gateway.session_routes import StepNumber
 from culet.gateway.stills import MEDIA_TYPES, Error, Height, Samples, Width
 from culet.scene.fields import Model, Orientation, Vector
 from culet.scene.stone import StoneId, UploadId
@@ -43,7 +43,7 @@ class BesideRequest(Model):
 
     stone: StoneId
     design: OtherDesign
-    step: Step | None = None
+    step: StepNumber | None = None
     width: Width | None = None
     height: Height | None = None
     samples: Samples | None = None

@@ -52,7 +52,7 @@ WAITING = (Phase.HEAD, Phase.BODY, Phase.LINGER)
 
 
 @dataclass(eq=False)
-class Connection:
+class GuardedConnection:
     """One connection, as the guard knows it."""
 
     protocol: Guarded

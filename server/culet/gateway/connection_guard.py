@@ -14,7 +14,7 @@ from ipaddress import ip_address
 from typing import assert_never
 
 from culet.gateway.client_address import Network, client_at
-from culet.gateway.connection import LINGER_SECONDS, WAITING, Connection, Guarded, Phase
+from culet.gateway.connection import LINGER_SECONDS, WAITING, Guarded, GuardedConnection, Phase
 from culet.gateway.holdings import Holdings
 from culet.gateway.open_files import connection_limit
 from culet.gateway.settings import GatewaySettings
@@ -43,13 +43,13 @@ class Guard:
         """Connections that were ended for others or for owing too long."""
         self.turns = Turns()
         self._proxies = proxies
-        self._connections: dict[asyncio.BaseTransport, Connection] = {}
+        self._connections: dict[asyncio.BaseTransport, GuardedConnection] = {}
         self._of_address = Holdings()
 
     def __len__(self) -> int:
         return len(self._connections)
 
-    def admit(self, protocol: Guarded, host: str | None, now: float) -> Connection | None:
+    def admit(self, protocol: Guarded, host: str | None, now: float) -> GuardedConnection | None:
         """A new connection, or None if there is no room for it, not even by ending others."""
         address = None if self._is_proxy(host) else client_at(host)
         if address is not None and self._of_address.of(address) >= self.limit_of_address:
@@ -57,7 +57,7 @@ class Guard:
                 return None
         elif len(self) >= self.limit and not self._make_room():
             return None
-        connection = Connection(protocol, address, now, looked=now)
+        connection = GuardedConnection(protocol, address, now, looked=now)
         self._connections[protocol.transport] = connection
         self._of_address.take(address)
         return connection
@@ -77,7 +77,7 @@ class Guard:
             for connection in list(self._connections.values()):
                 self._look(connection, now)
 
-    def _look(self, connection: Connection, now: float) -> None:
+    def _look(self, connection: GuardedConnection, now: float) -> None:
         protocol, waited = connection.protocol, now - connection.since
         if connection.phase is Phase.ANSWER:  # nothing tells when the client has read it
             protocol.tell()
@@ -99,7 +99,7 @@ class Guard:
             case _:
                 assert_never(connection.phase)
 
-    def _look_at_body(self, connection: Connection, now: float) -> None:
+    def _look_at_body(self, connection: GuardedConnection, now: float) -> None:
         if not connection.protocol.may_read:
             connection.looked, connection.received = now, 0
         elif now - connection.looked > PROGRESS_SECONDS:
@@ -108,7 +108,7 @@ class Guard:
                 self._end(connection, f"expected at least {rate:g} bytes of the body a second")
             connection.looked, connection.received = now, 0
 
-    def _look_at_reading(self, connection: Connection, now: float) -> None:
+    def _look_at_reading(self, connection: GuardedConnection, now: float) -> None:
         unread = connection.protocol.transport.get_write_buffer_size()
         taken = connection.protocol.written() - unread
         if connection.unread and taken - connection.taken < min(self.min_bytes, connection.unread):
@@ -127,13 +127,13 @@ class Guard:
         self._end(min(waiting, key=lambda each: each.since))
         return True
 
-    def _largest_group(self, connections: Iterable[Connection]) -> list[Connection]:
-        groups: dict[str | None, list[Connection]] = {}
+    def _largest_group(self, connections: Iterable[GuardedConnection]) -> list[GuardedConnection]:
+        groups: dict[str | None, list[GuardedConnection]] = {}
         for connection in connections:
             groups.setdefault(connection.address, []).append(connection)
         return max(groups.values(), key=len, default=[])
 
-    def _end(self, connection: Connection, why: str | None = None) -> None:
+    def _end(self, connection: GuardedConnection, why: str | None = None) -> None:
         self.ended += 1
         log.debug("ended a connection of %s: %s", connection.address or "a proxy", why or "others need its place")
         self.forget(connection.protocol.transport)

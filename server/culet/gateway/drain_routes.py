@@ -11,7 +11,7 @@ from culet.errors import ForbiddenError
 from culet.gateway.parts import ThisGateway
 from culet.gateway.problems import answers
 from culet.gateway.settings import is_reached
-from culet.notify import Notice, notify
+from culet.notify import ServiceNotice, notify
 from culet.scene.fields import Model
 
 router = APIRouter(tags=["health"])
@@ -53,5 +53,5 @@ async def drain(gateway: ThisGateway, request: Annotated[DrainRequest | None, Bo
         raise ForbiddenError(OPEN_TO_ALL)
     seconds = request.seconds if request else None
     gateway.sessions.drain.begin(gateway.settings.drain_seconds if seconds is None else seconds)
-    notify(Notice.STOPPING)  # what a signal ends, to this process alone, is started again
+    notify(ServiceNotice.STOPPING)  # what a signal ends, to this process alone, is started again
     return DrainAnswer(seconds=gateway.sessions.drain.left, viewers=gateway.sessions.viewers)

@@ -18,7 +18,7 @@ BARRED_SECONDS = 10.0
 """For which a viewer that held up others is given pictures of their own."""
 
 
-class Waiting(NamedTuple):
+class WaitingFrame(NamedTuple):
     """A frame for a viewer."""
 
     sequence: int
@@ -38,7 +38,7 @@ class FrameFeed:
         """It was offered a packet that it cannot use: it needs a key frame."""
         self.lacks_picture = False
         """It was sent lesser pictures until now: the frame that it has may be at rest, and is to come anew."""
-        self._waiting: deque[Waiting] = deque()
+        self._waiting: deque[WaitingFrame] = deque()
         """Packets in the order of their numbers, and at the end, or alone, a picture of its own."""
         self._taken: int | None = None
         self._follows: int | None = None
@@ -59,7 +59,7 @@ class FrameFeed:
         return video if self.in_step else video | {Codec.JPEG}
 
     @property
-    def next(self) -> Waiting | None:
+    def next(self) -> WaitingFrame | None:
         """What goes out next."""
         return self._waiting[0] if self._waiting else None
 
@@ -83,13 +83,13 @@ class FrameFeed:
         if stream not in self.codecs:
             return
         if frame.codec not in VIDEO:
-            self._put(Waiting(frame.sequence, message, is_video=False))
+            self._put(WaitingFrame(frame.sequence, message, is_video=False))
         elif Flags.KEY in frame.flags and frame.sequence != self._taken and now >= self._barred_until:
             self._waiting.clear()
-            self._put(Waiting(frame.sequence, message, is_video=True))
+            self._put(WaitingFrame(frame.sequence, message, is_video=True))
             self._follows, self.lacks_key = frame.sequence, False
         elif self._follows == frame.depends_on and self.in_step:
-            self._put(Waiting(frame.sequence, message, is_video=True))
+            self._put(WaitingFrame(frame.sequence, message, is_video=True))
             self._follows = frame.sequence
             if len(self._waiting) > MOST_WAITING:
                 self.fall_out()
@@ -97,7 +97,7 @@ class FrameFeed:
             self.fall_out()
             self.lacks_key = now >= self._barred_until
 
-    def _put(self, waiting: Waiting) -> None:
+    def _put(self, waiting: WaitingFrame) -> None:
         """Behind the packets; a picture that nothing depends on makes room for what is newer."""
         if waiting.sequence == self._taken:
             return
@@ -105,7 +105,7 @@ class FrameFeed:
             self._waiting.pop()
         self._waiting.append(waiting)
 
-    def take(self) -> Waiting:
+    def take(self) -> WaitingFrame:
         """What goes out next, which does then."""
         taken = self._waiting.popleft()
         self._taken = taken.sequence

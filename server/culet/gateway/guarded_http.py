@@ -11,7 +11,7 @@ import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 from culet.gateway.bucket import Bucket
-from culet.gateway.connection import LINGER_SECONDS, Connection, Phase
+from culet.gateway.connection import LINGER_SECONDS, GuardedConnection, Phase
 from culet.gateway.connection_guard import Guard
 from culet.gateway.lingering_transport import LingeringTransport
 from culet.gateway.paced_stream import PacedStream
@@ -33,7 +33,7 @@ class GuardedHttp(H11Protocol):
     config: GuardedConfig
     conn: TurnedConnection
     cycle: RequestResponseCycle | None  # type: ignore[assignment]  # there is none before the first request
-    connection: Connection | None = None
+    connection: GuardedConnection | None = None
     _waits = False
     """For its next turn."""
 

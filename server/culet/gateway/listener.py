@@ -20,7 +20,7 @@ from culet.gateway.connection_guard import Guard
 from culet.gateway.guarded_http import GuardedConfig
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
-from culet.notify import Notice, notify
+from culet.notify import ServiceNotice, notify
 from culet.settings import MEBIBYTE
 
 log = logging.getLogger(__name__)
@@ -123,9 +123,9 @@ class Listener:
     async def _say_that_it_lives(self) -> None:
         """To the supervisor, if there is one: ready once the engine answers, and alive from then on."""
         await self.gateway.sessions.taken_over.wait()
-        notify(Notice.READY)
+        notify(ServiceNotice.READY)
         while True:
-            notify(Notice.ALIVE)
+            notify(ServiceNotice.ALIVE)
             await asyncio.sleep(ALIVE_SECONDS)
 
     def __enter__(self) -> Self:

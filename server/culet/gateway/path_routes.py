@@ -19,7 +19,7 @@ from culet_protocol.engine import TracePath
 
 router = APIRouter(tags=["rays"])
 
-Side = Annotated[int, Field(ge=1, le=8192)]
+PictureSide = Annotated[int, Field(ge=1, le=8192)]
 Place = Annotated[int, Field(ge=0, lt=8192)]
 Wavelength = Annotated[float, Field(ge=WAVELENGTHS[0], le=WAVELENGTHS[1])]
 Wavelengths = Annotated[
@@ -36,8 +36,8 @@ class PixelQuery(Model):
 
     x: Place
     y: Place
-    width: Side
-    height: Side
+    width: PictureSide
+    height: PictureSide
 
 
 class RayFields(Model):

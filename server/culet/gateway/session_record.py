@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from culet.gateway.client_address import UNKNOWN
-from culet.gateway.tiers import Tiers
+from culet.gateway.tiers import StreamTiers
 from culet.gateway.viewer import Viewer
 from culet_protocol.engine import SessionChange
 from culet_protocol.frame import Frame
@@ -64,7 +64,7 @@ class SessionRecord:
         """Its watch id, by which frames come."""
         self.topics: dict[Stream, bytes] = {stream: topic_of(self.topic, stream) for stream in STREAMS}
         """By which frames come that are pictures of their own (JPEG), video, and lesser pictures."""
-        self.tiers = Tiers()
+        self.tiers = StreamTiers()
         self.scene = scene
         self.revision: int | None = None
         """Of the scene, by the engine's count; None until the engine has said so."""

@@ -92,13 +92,13 @@ class SessionAnswer(Model):
     ]
 
 
-Step = Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")]
+StepNumber = Annotated[int, Field(ge=0, le=2**63 - 1, description="From a frame's header; the latest if none.")]
 
 
 class FrameQuery(Model):
     """Which state, and how large."""
 
-    step: Step | None = None
+    step: StepNumber | None = None
     width: Width | None = None
     height: Height | None = None
     samples: Samples | None = None
@@ -179,7 +179,7 @@ async def get_session(http: Request, session_id: str, gateway: ThisGateway) -> S
 
 @router.get("/api/sessions/{session_id}/scene", responses=answers(404, 422, 429, 503))
 async def get_scene(
-    session_id: str, gateway: ThisGateway, step: Annotated[Step | None, Query()] = None
+    session_id: str, gateway: ThisGateway, step: Annotated[StepNumber | None, Query()] = None
 ) -> dict[str, Any]:
     """The scene that a session shows, or showed at `step`: with the camera as it was, and every stone where it was.
 

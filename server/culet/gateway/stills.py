@@ -66,7 +66,7 @@ Legend = Annotated[
         "tilted, in the page's words: for scenes with such a sky or parallel rays, in formats for screens."
     ),
 ]
-Kind = Literal["none", "matte", "mirror"]
+SurfaceKind = Literal["none", "matte", "mirror"]
 
 
 def _with_hash(value: str) -> str:
@@ -84,8 +84,8 @@ class StillQuery(Model):
     error: Error | None = None
     legend: Legend = False
     material: NamedMaterial | None = None
-    floor: Kind | None = None
-    walls: Kind | None = None
+    floor: SurfaceKind | None = None
+    walls: SurfaceKind | None = None
     environment: Literal["dark", "light", "studio"] | None = None
     background: (
         Annotated[

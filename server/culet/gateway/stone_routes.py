@@ -16,7 +16,7 @@ from culet.gateway.session_record import SessionRecord
 from culet.gateway.state import Gateway
 from culet.geometry.designs.measures import Proportions
 from culet.geometry.tier_angles import Tiers
-from culet.grading.answer import Report
+from culet.grading.answer import GradeReport
 from culet.grading.rules import Convention
 from culet.scene import Scene
 from culet.scene.fields import Model
@@ -25,7 +25,7 @@ from culet_protocol.engine import DrawDiagram, Grade, ListTiers, Measure, TraceP
 router = APIRouter(tags=["stones"])
 
 SVG = "image/svg+xml"
-REPORT: TypeAdapter[Report] = TypeAdapter(Report)
+REPORT: TypeAdapter[GradeReport] = TypeAdapter(GradeReport)
 PROPORTIONS: TypeAdapter[Proportions] = TypeAdapter(Proportions)
 TIERS: TypeAdapter[Tiers] = TypeAdapter(Tiers)
 _EXAMPLES = ConfigDict(json_schema_extra={"examples": [{"scene": {"stones": [{"cut": "emerald"}]}}]})
@@ -78,7 +78,7 @@ class TierRequest(StoneRequest):
 
 
 @router.post("/api/grade", responses=answers(401, 413, 422, 429, 503))
-async def grade(http: Request, request: GradeRequest, gateway: ThisGateway) -> Report:
+async def grade(http: Request, request: GradeRequest, gateway: ThisGateway) -> GradeReport:
     """Grade a stone of a scene: brightness, leak, contrast, fire, each number with its error."""
     scene = request.scene.model_dump(mode="json")
     return await _graded(http, gateway, Grade(scene=scene, **request.model_dump(exclude={"scene"})))
@@ -87,7 +87,7 @@ async def grade(http: Request, request: GradeRequest, gateway: ThisGateway) -> R
 @router.get("/api/sessions/{session_id}/grade", responses=answers(404, 422, 429, 503))
 async def grade_session(
     http: Request, session_id: str, query: Annotated[GradeQuery, Query()], gateway: ThisGateway
-) -> Report:
+) -> GradeReport:
     """Grade a stone of what a session shows."""
     session = gateway.sessions.get(session_id)
     return await _graded(http, gateway, Grade(session=session.id, **query.model_dump()), session)
@@ -163,7 +163,7 @@ async def _measured(
     return PROPORTIONS.validate_python(result)
 
 
-async def _graded(http: Request, gateway: Gateway, message: Grade, session: SessionRecord | None = None) -> Report:
+async def _graded(http: Request, gateway: Gateway, message: Grade, session: SessionRecord | None = None) -> GradeReport:
     result, _ = await answered(http, gateway, message, session)
     return REPORT.validate_python(result)
 

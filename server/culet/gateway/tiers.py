@@ -29,7 +29,7 @@ FEW_FRAMES = 5
 """Of so many in COUNTED_SECONDS nobody is short: they are of a picture at rest."""
 
 
-class Tiers:
+class StreamTiers:
     """Of one session. Times are seconds of any one clock."""
 
     def __init__(self) -> None:

@@ -20,7 +20,7 @@ EVENTS_PER_SECOND = 10_000.0
 """Of one connection: a sixth of a processor. Chunks of 16 KiB, as programs send them, come at up to 160 MB/s so."""
 
 
-class Waiting(Protocol):
+class WaitingConnection(Protocol):
     """A connection that has more events than it was let have."""
 
     def go_on(self) -> None:
@@ -32,7 +32,7 @@ class Turns:
 
     def __init__(self) -> None:
         self.left = EVENTS_IN_A_TURN
-        self._waiting: deque[Waiting] = deque()
+        self._waiting: deque[WaitingConnection] = deque()
         self._next: asyncio.Handle | None = None
 
     def spend(self) -> None:
@@ -40,12 +40,12 @@ class Turns:
         self.left -= 1
         self._call_soon()
 
-    def wait(self, connection: Waiting) -> None:
+    def wait(self, connection: WaitingConnection) -> None:
         """Have a connection go on in a later turn, after those that wait already."""
         self._waiting.append(connection)
         self._call_soon()
 
-    def forget(self, connection: Waiting) -> None:
+    def forget(self, connection: WaitingConnection) -> None:
         """A connection is gone."""
         if connection in self._waiting:
             self._waiting.remove(connection)

@@ -67,7 +67,7 @@ class TurntableQuery(StillQuery):
         return frames
 
 
-class Kind(NamedTuple):
+class TurntableFormat(NamedTuple):
     """What a turntable is put into."""
 
     media_type: str
@@ -95,13 +95,13 @@ def _zipped(frames: Sequence[bytes | memoryview], _seconds: float) -> bytes:
     return file.getvalue()
 
 
-KINDS: Mapping[str, Kind] = MappingProxyType(
-    {"webp": Kind("image/webp", _animated), "zip": Kind("application/zip", _zipped)}
+KINDS: Mapping[str, TurntableFormat] = MappingProxyType(
+    {"webp": TurntableFormat("image/webp", _animated), "zip": TurntableFormat("application/zip", _zipped)}
 )
 """By the ending of the address."""
 
 
-def _offer(ending: str, kind: Kind) -> None:
+def _offer(ending: str, kind: TurntableFormat) -> None:
     """Make GET /api/turntable.ENDING a route."""
 
     async def turntable(http: Request, query: Annotated[TurntableQuery, Query()], gateway: ThisGateway) -> Response:
@@ -143,7 +143,7 @@ for _ending, _kind in KINDS.items():
 
 
 async def _made(
-    gateway: Gateway, scene: Scene, query: TurntableQuery, kind: Kind, client: str, place: ExitStack
+    gateway: Gateway, scene: Scene, query: TurntableQuery, kind: TurntableFormat, client: str, place: ExitStack
 ) -> tuple[bytes, dict[str, str]]:
     """Frame by frame, each a still like any other, so that those of others take their turns in between.
 

@@ -13,7 +13,7 @@ from culet.gateway.problems import answers
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
 from culet.gateway.upload_paths import MESHES_PATH, SESSION_MESHES_PATH, SESSION_SKIES_PATH, SKIES_PATH
-from culet.gateway.uploads import MESH, SKY, Kind
+from culet.gateway.uploads import MESH, SKY, UploadKind
 from culet.scene.fields import Model
 from culet_protocol.engine import DescribedMesh, DescribedSky
 
@@ -96,7 +96,7 @@ async def _take_for(session_id: str, gateway: Gateway) -> None:
     gateway.sessions.takes_files(session_id)
 
 
-async def _taken(kind: Kind, request: Request, gateway: ThisGateway) -> tuple[str, dict[str, Any]]:
+async def _taken(kind: UploadKind, request: Request, gateway: ThisGateway) -> tuple[str, dict[str, Any]]:
     content_type = request.headers.get("content-type")
     file = await read_form(request.stream(), content_type, gateway.settings.max_upload_bytes)
     return await gateway.uploads.put(kind, file)

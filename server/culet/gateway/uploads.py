@@ -23,7 +23,7 @@ from culet_protocol.messages import Message
 
 
 @dataclass(frozen=True)
-class Kind:
+class UploadKind:
     """What can be uploaded."""
 
     name: str
@@ -39,21 +39,21 @@ class Kind:
         return ending
 
 
-MESH = Kind("mesh", get_args(MeshType))
-SKY = Kind("sky", get_args(SkyType))
+MESH = UploadKind("mesh", get_args(MeshType))
+SKY = UploadKind("sky", get_args(SkyType))
 KIND_OF_FIELD = {"mesh": MESH, "image": SKY}
 """By the last part of the field that names an upload."""
 
 
 @dataclass(frozen=True)
 class _Upload:
-    kind: Kind
+    kind: UploadKind
     file_type: str
     data: bytes | bytearray
     id: str
 
     @classmethod
-    def of(cls, kind: Kind, file: UploadedFile) -> Self:
+    def of(cls, kind: UploadKind, file: UploadedFile) -> Self:
         """The upload of a file, named by what is in it and what it is taken for; InputError for another ending."""
         file_type = kind.file_type(file.name)
         return cls(kind, file_type, file.data, id_of(file_type, file.digest))
@@ -88,7 +88,7 @@ class Uploads:
         """Bytes of all kept uploads."""
         return sum(len(upload.data) for upload in self._kept.values())
 
-    async def put(self, kind: Kind, file: UploadedFile) -> tuple[str, dict[str, Any]]:
+    async def put(self, kind: UploadKind, file: UploadedFile) -> tuple[str, dict[str, Any]]:
         """Have the engine read a file; its id and what the engine says about it. The same file has the same id.
 
         BusyError if there is no room for it besides what sessions use.

@@ -15,8 +15,8 @@ from culet.geometry.seams import cut_at_corners, widest_gap
 from culet.geometry.shared_walls import without_shared_walls
 from culet.geometry.surface import (
     NEAR,
-    Bodies,
     Points,
+    SurfacePieces,
     Triangles,
     bodies_of,
     refuse_open,
@@ -41,7 +41,7 @@ class Closed:
     """A surface with a closed body, and what was done to it."""
 
     points: Points
-    bodies: Bodies
+    bodies: SurfacePieces
     notes: list[str]
 
     @property
@@ -135,7 +135,7 @@ def _without_walls(points: Points, solid: Triangles, notes: list[str]) -> Iterat
         yield Closed(points, bodies_of(points, hollow), [*notes, dropped])
 
 
-def _boxes(points: Points, bodies: Bodies) -> Points:
+def _boxes(points: Points, bodies: SurfacePieces) -> Points:
     """(K,) the longest side of each piece's box."""
     number = len(bodies.volume)
     low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)

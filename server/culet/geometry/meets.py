@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.linalg import null_space, qr
 
 from culet.errors import MeshError
-from culet.geometry.designs.measures import Outline, outline_of
+from culet.geometry.designs.measures import DesignOutline, outline_of
 from culet.geometry.half_spaces import Intersection, intersection
 
 Array = NDArray[np.float64]
@@ -129,7 +129,7 @@ class _Tiers:
         self.name = name
         cut = intersection(name, planes)
         self.planes, self.used = cut.planes, cut.used
-        self.outline: Outline = outline_of(cut)
+        self.outline: DesignOutline = outline_of(cut)
         self.extent = float(np.ptp(self.outline.corners, axis=0).max())
         level = np.hypot(cut.planes[:, 0], cut.planes[:, 1])
         self.facing = np.divide(
@@ -390,7 +390,7 @@ def _level(slope: float) -> float:
     return min(slope, math.pi - slope)
 
 
-def _facets_of_corners(outline: Outline) -> set[frozenset[int]]:
+def _facets_of_corners(outline: DesignOutline) -> set[frozenset[int]]:
     found: list[set[int]] = [set() for _ in outline.corners]
     for facet, face in enumerate(outline.faces):
         for corner in face:

@@ -21,7 +21,7 @@ from culet.geometry.flat_regions import retriangulated
 from culet.geometry.formats import Soup, read_triangles
 from culet.geometry.mass import surface_area
 from culet.geometry.shape import Shape
-from culet.geometry.surface import Bodies, Points, Triangles, weld
+from culet.geometry.surface import Points, SurfacePieces, Triangles, weld
 
 MAX_TRIANGLES = 200_000
 MAX_BYTES = 64 << 20
@@ -100,7 +100,7 @@ def _largest_body(vertices: Points, soup: Soup, findings: list[str]) -> tuple[_B
     return _cut_out(closed.points, closed.bodies, taken, findings), len(soup.triangles)
 
 
-def _tell_others(bodies: Bodies, taken: int, findings: list[str]) -> None:
+def _tell_others(bodies: SurfacePieces, taken: int, findings: list[str]) -> None:
     number = len(bodies.volume)
     if number == 1:
         return
@@ -119,7 +119,7 @@ def _tell_others(bodies: Bodies, taken: int, findings: list[str]) -> None:
     )
 
 
-def _cut_out(points: Points, bodies: Bodies, taken: int, findings: list[str]) -> _Body:
+def _cut_out(points: Points, bodies: SurfacePieces, taken: int, findings: list[str]) -> _Body:
     own = bodies.triangles[bodies.piece == taken]
     turned = int(bodies.reversed_triangles[taken])
     if turned == len(own):

@@ -88,7 +88,7 @@ def without_duplicates(triangles: Triangles, *, keep_one: bool) -> Triangles:
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class SurfacePieces:
     """The connected pieces of a surface, wound alike."""
 
     triangles: Triangles
@@ -113,7 +113,7 @@ class Bodies:
         return closed
 
 
-def bodies_of(vertices: Points, triangles: Triangles) -> Bodies:
+def bodies_of(vertices: Points, triangles: Triangles) -> SurfacePieces:
     """Split a surface into pieces and wind each of them alike."""
     count = len(triangles)
     edges = edges_of(triangles)
@@ -141,7 +141,7 @@ def bodies_of(vertices: Points, triangles: Triangles) -> Bodies:
     turn ^= inward[piece]
     wound = np.where(turn[:, None], triangles[:, ::-1], triangles)
     closed = (open_edges == 0) & (crowded == 0) & ~one_sided
-    return Bodies(
+    return SurfacePieces(
         triangles=wound,
         piece=piece.astype(np.int64),
         open_edges=open_edges,
@@ -152,7 +152,7 @@ def bodies_of(vertices: Points, triangles: Triangles) -> Bodies:
     )
 
 
-def refuse_open(bodies: Bodies, gap: float, joined: float) -> MeshError:
+def refuse_open(bodies: SurfacePieces, gap: float, joined: float) -> MeshError:
     """What keeps the largest piece, by triangles, from being closed.
 
     `gap` is the mesh's widest, and gaps of `joined` would have been closed, both in units of its extent.

@@ -39,7 +39,7 @@ class TiltPoint:
 
 
 @dataclass(frozen=True)
-class Report:
+class GradeReport:
     """What is known so far."""
 
     stone: str

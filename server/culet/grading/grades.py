@@ -14,7 +14,7 @@ from culet.grading.answer import Grades, TiltPoint
 from culet.grading.number import Number, ratio
 from culet.grading.optics import StoneOptics
 from culet.grading.rules import Rules
-from culet.grading.sums import KERNEL, NUMBERS, UP, LightSums, View, seen_areas
+from culet.grading.sums import KERNEL, NUMBERS, UP, DomeView, LightSums, seen_areas
 
 BATCHES = 16
 """That are drawn apart, to tell errors by."""
@@ -46,7 +46,7 @@ def grade(sums: LightSums, shape: Shape, optics: StoneOptics, rules: Rules, targ
     found, fiery = np.zeros((2, BATCHES, NUMBERS))
     rays, taken, fire = FIRST_RAYS, 0, True
     for seed in range(MOST_PIECES):
-        more = sums.of(shape, optics, rules, [View()], batches=BATCHES, rays=rays, seed=seed, fire=fire)[0]
+        more = sums.of(shape, optics, rules, [DomeView()], batches=BATCHES, rays=rays, seed=seed, fire=fire)[0]
         found, taken = found + more, taken + rays
         fiery = fiery + more if fire else fiery
         grades = grades_of(found, optics, fiery)
@@ -116,7 +116,7 @@ def tilt_curve(
     """ISO, COS and SC2 as the stone tilts so that the viewer sees it from that azimuth, degrees from +x towards +z.
     Dome and head stay where they are. Point by point, so that nobody waits for all; MeshError as of `grade`."""
     for number, degrees in enumerate(tilts):
-        view = View.tilted(degrees, azimuth)
+        view = DomeView.tilted(degrees, azimuth)
         (found,) = sums.of(shape, optics, rules, [view], batches=BATCHES, rays=rays, seed=1000 + number)
         hits, lost = found[:, KERNEL["HITS"]], found[:, KERNEL["LOST"]]
         iso, cos, sc2 = (_times(100, ratio(found[:, KERNEL[name]], hits, lost)) for name in ("ISO", "COS", "SC2"))
@@ -138,7 +138,7 @@ def weighted_light_return(
     cosine = (rings + random.random(shape_of_batches)) / WLR_RINGS
     azimuth = 360 * (around + random.random((WLR_BATCHES, WLR_RINGS, 1))) / WLR_AROUND
     views = [
-        replace(View.tilted(math.degrees(math.acos(c)), a), axis=UP)
+        replace(DomeView.tilted(math.degrees(math.acos(c)), a), axis=UP)
         for c, a in zip(cosine.ravel().tolist(), azimuth.ravel().tolist(), strict=True)
     ]
     weight = cosine.ravel() ** 2

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from culet.errors import SceneError
 from culet.geometry.shape import Shape
-from culet.grading.answer import Report
+from culet.grading.answer import GradeReport
 from culet.grading.grades import ASET, SIGMAS, TARGET, TILTS, grade, tilt_curve, weighted_light_return
 from culet.grading.number import Number
 from culet.grading.optics import StoneOptics, optics_of
@@ -32,12 +32,12 @@ def reports(
     target: float = TARGET,
     tilt: bool = False,
     light_return: bool = True,
-) -> Iterator[Report]:
+) -> Iterator[GradeReport]:
     """One after each piece of work, the last of which has all. MeshError for a stone that is not convex."""
     steps = 1 + light_return + 2 * tilt
     report = None
     for grades in grade(sums, shape, optics, rules, target):
-        report = Report(stone.id, optics.index, size, rules, grades)
+        report = GradeReport(stone.id, optics.index, size, rules, grades)
         error = SIGMAS * grades.iso.error
         yield replace(report, done=min(1.0, (target / error) ** 2 if error > 0 else 1.0) / steps)
     assert report is not None  # noqa: S101 - the first piece is always made
@@ -66,7 +66,7 @@ def reports_of(
     target: float = TARGET,
     tilt: bool = False,
     coloured: bool = False,
-) -> Iterator[Report]:
+) -> Iterator[GradeReport]:
     """Of a stone of a stage, by its id; without one, of the first. SceneError if there is none."""
     place = place_of(stage, stone)
     settings, shape, millimetres = stage.scene.stones[place], stage.shapes[place], stage.scene.millimetres
@@ -86,7 +86,7 @@ def place_of(stage: Stage, stone: str | None) -> int:
     return place
 
 
-def table_of(report: Report) -> list[tuple[str, Number, str]]:
+def table_of(report: GradeReport) -> list[tuple[str, Number, str]]:
     """What is printed: what it is called, the number, and its unit."""
     grades = report.grades
     rows = [

@@ -32,7 +32,7 @@ FIRE_DEGREES = 0.69
 
 
 @dataclass(frozen=True)
-class View:
+class DomeView:
     """Parallel rays from a viewer, under a dome."""
 
     toward: tuple[float, float, float] = UP
@@ -41,7 +41,7 @@ class View:
     """Of the dome; without one the viewer's direction, so that dome and head stay where they are if the stone tilts."""
 
     @classmethod
-    def tilted(cls, degrees: float, azimuth: float) -> View:
+    def tilted(cls, degrees: float, azimuth: float) -> DomeView:
         """Of a stone that is tilted so that the viewer sees it from that azimuth, degrees from +x towards +z."""
         tilt, around = math.radians(degrees), math.radians(azimuth)
         return cls((math.sin(tilt) * math.cos(around), math.cos(tilt), math.sin(tilt) * math.sin(around)))
@@ -61,7 +61,7 @@ class LightSums:
         shape: Shape,
         optics: StoneOptics,
         rules: Rules,
-        views: Sequence[View],
+        views: Sequence[DomeView],
         *,
         batches: int,
         rays: int,
@@ -104,7 +104,7 @@ class LightSums:
         return result.reshape(len(views), batches, NUMBERS)
 
 
-def _table(shape: Shape, views: Sequence[View], rules: Rules) -> Array:
+def _table(shape: Shape, views: Sequence[DomeView], rules: Rules) -> Array:
     """The kernel's five rows of each view, in the shape's axes."""
     right, up, toward = frames_of(views)
     axis = np.array([view.toward if view.axis is None else view.axis for view in views])
@@ -123,7 +123,7 @@ def _spans(shape: Shape, right: Array, up: Array) -> tuple[tuple[Array, Array], 
     return (across, high), (middle, height)
 
 
-def frames_of(views: Sequence[View]) -> tuple[Array, Array, Array]:
+def frames_of(views: Sequence[DomeView]) -> tuple[Array, Array, Array]:
     """Of each view unit vectors to the right, up, and toward the viewer: (V, 3)."""
     toward = np.array([view.toward for view in views])
     other = np.eye(3)[abs(toward).argmin(axis=1)]
@@ -132,7 +132,7 @@ def frames_of(views: Sequence[View]) -> tuple[Array, Array, Array]:
     return right, np.cross(toward, right), toward
 
 
-def seen_areas(shape: Shape, views: Sequence[View]) -> Array:
+def seen_areas(shape: Shape, views: Sequence[DomeView]) -> Array:
     """(V,) R^2, of the rectangles that the rays of views fill."""
     right, up, _ = frames_of(views)
     (across, high), _ = _spans(shape, right, up)

@@ -12,7 +12,7 @@ from culet.errors import SceneError
 from culet.paths.answer import Path
 from culet.paths.recorder import PathRecorder
 from culet.paths.telling import path_of
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.scene.camera import Camera
 from culet.stage import Stage
 
@@ -39,7 +39,7 @@ def answered(
     asked: Pixel | Ray,
     *,
     wavelengths: Sequence[float] = (),
-    effort: Effort = Effort.PATIENT,
+    effort: LightEffort = LightEffort.PATIENT,
     waited_for: Callable[[], bool] = lambda: True,
 ) -> Path:
     """SceneError for a pixel that is not in the picture, a ray that points nowhere, and what `PathRecorder` refuses."""

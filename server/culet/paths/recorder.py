@@ -20,7 +20,7 @@ from culet.rendering.device import Device, Real
 from culet.rendering.features import ESTIMATOR, Features, features_of
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import buffers, constants, struct
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.lighting import Lighting
 from culet.rendering.placed_stone import PlacedStone
 from culet.rendering.projection import Projection
@@ -45,7 +45,7 @@ class GivenUpError(CuletError):
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class PixelRecord:
     """What the kernel wrote down of a pixel, with what it takes to read it."""
 
     stage: Stage
@@ -95,9 +95,9 @@ class PathRecorder:
         row: int,
         *,
         wavelengths: Sequence[float] = (),
-        effort: Effort = Effort.PATIENT,
+        effort: LightEffort = LightEffort.PATIENT,
         waited_for: Callable[[], bool] = lambda: True,
-    ) -> Record:
+    ) -> PixelRecord:
         """The first sample of a pixel of a picture of that size, or of `wavelengths` (nm) in place of the scene's own.
 
         SceneError for the classic estimator, which follows no chains, for light that has no end, and for a light map
@@ -126,9 +126,9 @@ class PathRecorder:
         size: tuple[int, int],
         pixel: tuple[int, int],
         wavelengths: Sequence[float],
-        effort: Effort,
+        effort: LightEffort,
         waited_for: Callable[[], bool],
-    ) -> Record:
+    ) -> PixelRecord:
         light = self._lighting.of(stage) if features_of(stage).light_map != 0 else None
         if light is not None:
             until = time.monotonic() + self._light_seconds
@@ -170,7 +170,7 @@ class PathRecorder:
         found = np.zeros(min(count, EVENTS), happening)
         if len(found):
             cl.enqueue_copy(queue, found, events)
-        return Record(
+        return PixelRecord(
             stage=stage,
             events=found,
             value=head["radiance"].astype(float),

@@ -28,7 +28,7 @@ def smoothstep(share: float) -> float:
     return s * s * (3 - 2 * s)
 
 
-class Surroundings:
+class RaySurroundings:
     """Of one scene, from what its kernel was told."""
 
     def __init__(self, scene: Scene, parameters: NDArray[np.void]) -> None:

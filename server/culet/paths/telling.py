@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from culet.optics.observer import LUMINANCE, linear_srgb
 from culet.paths.answer import Chain, Channel, Kind, Met, Part, Pass, Path, Pose, Step, Vector
-from culet.paths.recorder import KINDS, Record
+from culet.paths.recorder import KINDS, PixelRecord
 from culet.paths.surface_optics import cosine_in_air, cosine_in_stone, critical_degrees, degrees, reflectance
-from culet.paths.surroundings import WALLS, Surroundings, side_of
+from culet.paths.surroundings import WALLS, RaySurroundings, side_of
 from culet.rendering.chains import GROUPS, chains_of_stones
 from culet.rendering.placed_stone import PlacedStone
 from culet.rendering.renderer import jitter
@@ -37,10 +37,10 @@ SHORT = 0.25
 ROUNDED = 4e-6
 """Part of a ray's light below which what sources leave over is single precision's rounding, and no light of the sky."""
 
-Source = tuple[Met, int | None]
+EndSource = tuple[Met, int | None]
 
 
-def path_of(record: Record, *, pixel: bool = True) -> Path:
+def path_of(record: PixelRecord, *, pixel: bool = True) -> Path:
     """All that happened, told; without `pixel` of a ray that was given as such."""
     return _Teller(record).path(pixel=pixel)
 
@@ -56,15 +56,15 @@ class _Draft:
     facet: int | None
     inside: bool
     passes: list[Pass] = field(default_factory=list)
-    light: dict[Source, Array] = field(default_factory=dict)
+    light: dict[EndSource, Array] = field(default_factory=dict)
 
 
 class _Teller:
-    def __init__(self, record: Record) -> None:
+    def __init__(self, record: PixelRecord) -> None:
         self._record = record
         self._scene = record.stage.scene
         self._origin = record.projection.origin
-        self._surroundings = Surroundings(self._scene, record.parameters)
+        self._surroundings = RaySurroundings(self._scene, record.parameters)
         self._camera_ray = _camera_ray(record)
         self._sets = chains_of_stones(self._scene)[0]
         self._rows = _rows(record)
@@ -75,7 +75,7 @@ class _Teller:
     def path(self, *, pixel: bool) -> Path:
         record = self._record
         steps = self._steps()
-        parts: dict[Source, Array] = {}
+        parts: dict[EndSource, Array] = {}
         for step in steps:
             for source, light in step.light.items():
                 parts[source] = parts.get(source, np.zeros(3)) + light
@@ -218,7 +218,7 @@ class _Teller:
             reflectance=reflectance(in_air, in_stone, index),
         )
 
-    def _sources(self, kind: Kind, event: np.void, chain: int) -> dict[Source, Array]:
+    def _sources(self, kind: Kind, event: np.void, chain: int) -> dict[EndSource, Array]:
         """What an event's light comes from: sums to it."""
         light = event["light"].astype(float)
         if not light.any():
@@ -235,11 +235,11 @@ class _Teller:
             case _:
                 assert_never(kind)
 
-    def _seen(self, event: np.void, chain: int, light: Array) -> dict[Source, Array]:
+    def _seen(self, event: np.void, chain: int, light: Array) -> dict[EndSource, Array]:
         if chain < 0 and self._scene.backdrop.kind != "none":
             return {("backdrop", None): light}
         weight = float(event["weight"][1]) * (np.ones(3) if chain < 0 else self._record.chains["share"][chain])
-        found: dict[Source, Array] = {}
+        found: dict[EndSource, Array] = {}
         for met, number, radiance in self._surroundings.radiance_by_source(
             event["direction"].astype(float), by_stone=chain >= 0
         ):
@@ -272,7 +272,7 @@ class _Teller:
             parts=tuple(sorted(self._parts(step.light), key=lambda part: -part.share)),
         )
 
-    def _parts(self, light: dict[Source, Array]) -> Iterable[Part]:
+    def _parts(self, light: dict[EndSource, Array]) -> Iterable[Part]:
         for (met, number), own in light.items():
             share = float(own @ LUMINANCE) / self._total if self._total > 0 else 0.0
             side = None
@@ -286,7 +286,7 @@ class _Teller:
             yield Part(met, number, side, _vector(own), share)
 
 
-def _camera_ray(record: Record) -> tuple[Array, Array]:
+def _camera_ray(record: PixelRecord) -> tuple[Array, Array]:
     """Of the world: the eye, or where parallel rays begin, and the unit direction of the pixel's ray."""
     column, row, _, _ = record.pixel
     projection = record.projection
@@ -297,7 +297,7 @@ def _camera_ray(record: Record) -> tuple[Array, Array]:
     return eye, direction / np.linalg.norm(direction)
 
 
-def _rows(record: Record) -> list[int]:
+def _rows(record: PixelRecord) -> list[int]:
     """Of the chains of this pixel, in a set of the table."""
     rows = int(record.parameters["chains"])
     if record.wavelengths is None:

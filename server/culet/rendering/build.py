@@ -13,7 +13,7 @@ import culet_kernels
 from culet.errors import DeviceError, KernelCacheError
 from culet.rendering import kernel_cache
 from culet.rendering.device import Device, Real
-from culet.rendering.features import Features, Stones
+from culet.rendering.features import Features, StoneCount
 from culet.rendering.layout import arguments, constants, in_order, struct
 from culet.rendering.making import alone
 
@@ -22,7 +22,7 @@ FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 
 def tile_of(features: Features) -> int:
     """Pixels on each side of what a core renders at a time."""
-    return constants("tile.cl")["TILE_OF_MANY" if features.stones == Stones.MANY else "TILE_OF_ONE"]
+    return constants("tile.cl")["TILE_OF_MANY" if features.stones == StoneCount.MANY else "TILE_OF_ONE"]
 
 
 TILES_DEALT, WORK_BYTES, OF_ITEMS, ITEM_NUMBERS = (

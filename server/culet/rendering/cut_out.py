@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from culet.optics.gamut import desaturate
 from culet.optics.tone import tone_map
 from culet.rendering.chains import is_spectral
-from culet.rendering.light.effort import Effort
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.light.effort import LightEffort
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.rendering.target import Target
 from culet.scene.backdrop import PlainBackdrop
 from culet.stage import Stage
@@ -29,15 +29,15 @@ DEVELOPED = 2**16
 """Pixels that are developed at a time: some 20 ms."""
 
 
-class CutOut(Picture):
+class CutOut(DevicePicture):
     """A picture of a scene in front of nothing: `linear()` and `rgb()` have a fourth channel, alpha. Where the film has
     a colour behind everything, `rgb()` is in front of that, and has three."""
 
     def __init__(self, renderer: Renderer, stage: Stage, width: int, height: int) -> None:
         """As a picture that `Renderer.picture` makes."""
-        super().__init__(renderer, _before(stage, 0), width, height, None, None, Effort.PATIENT)
+        super().__init__(renderer, _before(stage, 0), width, height, None, None, LightEffort.PATIENT)
         light_map = None if self._light is None else self._light.bound
-        self._lighter = Picture(renderer, _before(stage, 1), width, height, None, light_map, None)
+        self._lighter = DevicePicture(renderer, _before(stage, 1), width, height, None, light_map, None)
         self._behind = stage.scene.film.behind
         self._cut_out, self._cut_out_samples = np.zeros((height, width, 4 if self._behind is None else 3), np.uint8), 0
         """As developed last, and how many samples there were then."""

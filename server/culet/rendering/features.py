@@ -30,7 +30,7 @@ class Geometry(IntEnum):
     MESH = 2
 
 
-class Stones(IntEnum):
+class StoneCount(IntEnum):
     """As in features.cl."""
 
     ONE = 1
@@ -70,7 +70,7 @@ class Features:
     polarised: int = 0
     few_mirrors: int = 0
     camera_inside: int = RUNTIME
-    stones: int = Stones.ONE
+    stones: int = StoneCount.ONE
     estimator: int = ESTIMATOR["chain"]
 
     @property
@@ -111,9 +111,11 @@ def geometry_of(shapes: Sequence[Shape]) -> Geometry:
     return Geometry.HULL if all(map(by_half_spaces, dict.fromkeys(shapes))) else Geometry.MESH
 
 
-def stones_of(scene: Scene) -> Stones:
+def stones_of(scene: Scene) -> StoneCount:
     """Which program the stones need: one of scale 1 has the frame to itself."""
-    return Stones.MANY if len(scene.stones) > 1 or any(stone.scale != 1 for stone in scene.stones) else Stones.ONE
+    return (
+        StoneCount.MANY if len(scene.stones) > 1 or any(stone.scale != 1 for stone in scene.stones) else StoneCount.ONE
+    )
 
 
 def features_of(stage: Stage) -> Features:
@@ -123,7 +125,7 @@ def features_of(stage: Stage) -> Features:
     kinds: tuple[Floor, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds
     optics, stones = scene.optics, stones_of(scene)
-    if optics.estimator == "classic" and stones == Stones.MANY:
+    if optics.estimator == "classic" and stones == StoneCount.MANY:
         raise SceneError(
             f"optics.estimator: expected chain, which takes any stones, or one stone of scale 1 for classic, got "
             f"classic and {len(scene.stones)} stones",

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.rendering.features import Features, Stones
+from culet.rendering.features import Features, StoneCount
 from culet.rendering.placed_stone import PlacedStone, centres_of
 from culet.rendering.projection import Projection
 from culet.rendering.studio import shade_reach
@@ -44,7 +44,7 @@ def out_of_sight(
     seen there, so they are left out all together or not at all. Of one stone, which has a program of its own, and
     wherever mirrors or shadows may show stones: False."""
     mirrors = "mirror" in (scene.floor.kind, scene.walls.kind)
-    if features.stones != Stones.MANY or mirrors or features.lights != 0 or features.camera_inside != 0:
+    if features.stones != StoneCount.MANY or mirrors or features.lights != 0 or features.camera_inside != 0:
         return False
     centres, scales = centres_of(stones) - projection.origin, np.array([stone.scale for stone in stones])
     themselves, floor = reach_of(scales, centres), scene.floor

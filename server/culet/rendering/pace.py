@@ -18,7 +18,7 @@ MOST_STEPS = 2**31 - 1
 """That the kernel's argument can hold."""
 
 
-class Pace:
+class KernelPace:
     """Of one program and one size of stone; shared by pictures, since every moving frame is a picture of its own."""
 
     def __init__(self) -> None:

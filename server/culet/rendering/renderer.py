@@ -22,10 +22,10 @@ from culet.rendering.features import Features, by_half_spaces, features_of
 from culet.rendering.fireflies import Fireflies, FireflyKernels
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import constants
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.light_map import BoundMap
 from culet.rendering.light.lighting import Lighting, Maker
-from culet.rendering.pace import Pace
+from culet.rendering.pace import KernelPace
 from culet.rendering.program import Programs
 from culet.rendering.shown_difference import ShownDifference, film_arguments
 from culet.rendering.softening import Softening
@@ -83,7 +83,7 @@ class Renderer:
         """Bytes that pictures had at most at a time, since what was kept was given back last."""
         self.fold = Fold(self.device, self.variant)
         self.lighting = Lighting(self.device, self.pool)
-        self._paces: dict[tuple[Any, int], Pace] = {}
+        self._paces: dict[tuple[Any, int], KernelPace] = {}
         film = build(self.device, "film.cl", self.variant.options)
         self.develop = cl.Kernel(film, "develop")
         self.shown_difference = ShownDifference(self.device, film)
@@ -109,15 +109,15 @@ class Renderer:
         height: int,
         *,
         features: Features | None = None,
-        effort: Effort | None = Effort.PATIENT,
+        effort: LightEffort | None = LightEffort.PATIENT,
         light_map: BoundMap | None = None,
-    ) -> Picture:
+    ) -> DevicePicture:
         """An empty picture of the stage, to be refined. `features` asks for another program than the stage needs.
 
         `effort` on its light map; or a map that was made elsewhere. With neither only points throw shadows, and nothing
         throws caustics.
         """
-        return Picture(self, stage, width, height, features, light_map, effort)
+        return DevicePicture(self, stage, width, height, features, light_map, effort)
 
     def forget(self, panorama: Panorama) -> None:
         """A sky that no scene shows any more."""
@@ -159,9 +159,9 @@ class Renderer:
         self.softening.warm_up(scratch)
         self.device.queue.finish()
 
-    def pace_of(self, kernel: Kernel, triangles: int) -> Pace:
+    def pace_of(self, kernel: Kernel, triangles: int) -> KernelPace:
         """What is known of that program's steps, with stones of about so many triangles."""
-        return self._paces.setdefault((kernel, triangles.bit_length()), Pace())
+        return self._paces.setdefault((kernel, triangles.bit_length()), KernelPace())
 
     def is_ready(self, stage: Stage, samples: int = 0) -> bool:
         """Whether the next sample of a picture that has so many can be begun without waiting for a compiler, a mesh's
@@ -206,7 +206,7 @@ def _tent(u: float) -> float:
     return 0.5 + (math.sqrt(2 * u) - 1 if u < 0.5 else 1 - math.sqrt(2 - 2 * u))
 
 
-class Picture:
+class DevicePicture:
     """A scene seen at a size: sums of linear radiance on the device, one more sample of each pixel at a time."""
 
     def __init__(
@@ -217,7 +217,7 @@ class Picture:
         height: int,
         features: Features | None,
         light_map: BoundMap | None,
-        effort: Effort | None,
+        effort: LightEffort | None,
     ) -> None:
         self.stage, self.width, self.height = stage, width, height
         self.seconds = 0.0
@@ -244,7 +244,7 @@ class Picture:
             raise ValueError(f"features: expected estimator {needed.estimator}, the scene's, got {features.estimator}")
         if features.stones < needed.stones:
             raise ValueError(f"features: expected stones {needed.stones}, the scene's, got {features.stones}")
-        self._effort, self._light = effort or Effort.PATIENT, None
+        self._effort, self._light = effort or LightEffort.PATIENT, None
         if effort is not None and light_map is None and features.light_map != 0:
             self._light = renderer.lighting.of(stage)
         bound = self._light.bound if self._light else light_map
@@ -257,7 +257,9 @@ class Picture:
             return Tracing(kernel, renderer.pace_of(kernel, triangles), inputs)
 
         self._tracings = Tracings(stage, features, tracing)
-        if self._light is None or self._effort is not Effort.MOVING:  # or else beside the first launch of its light
+        if (
+            self._light is None or self._effort is not LightEffort.MOVING
+        ):  # or else beside the first launch of its light
             _ = self._tracings.of(0).inputs  # what cannot be drawn is refused at once
         self._lit_by = 0
         """Version of the map that its samples saw, or MIXED."""
@@ -402,7 +404,7 @@ class Picture:
         if light is None:
             return
         started, begun = time.perf_counter(), self.samples > 0 or self._sampling is not None
-        shares, final = self._effort is Effort.RESTING, True
+        shares, final = self._effort is LightEffort.RESTING, True
         if self._lighting is None:
             cutoff = self.scene.optics.caustics_cutoff
             meanwhile = partial(self._tracings.prepare, self.samples)  # which holds no picture that is given up
@@ -446,7 +448,7 @@ class Picture:
 
     def _put_aside(self) -> Iterator[None]:
         """Make all samples anew, which are shown until they are there."""
-        if self._effort is not Effort.RESTING or self._fireflies is not None:
+        if self._effort is not LightEffort.RESTING or self._fireflies is not None:
             self.begin_anew()
             return
         yield from self._sums.put_aside()
@@ -502,7 +504,7 @@ class Picture:
         buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * tracing.kernel.kept_bytes)
         start = time.perf_counter()
         self._under_way_seconds = self._part = 0.0
-        if self._effort is Effort.RESTING:
+        if self._effort is LightEffort.RESTING:
             self._mark_tiles()
         cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
         while True:

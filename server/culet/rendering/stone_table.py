@@ -14,7 +14,7 @@ from culet.geometry.shape import Shape
 from culet.rendering.chains import absorption, chains_of_stones
 from culet.rendering.device import Real
 from culet.rendering.facet_rows import facet_rows
-from culet.rendering.features import Features, Geometry, Stones, by_half_spaces
+from culet.rendering.features import Features, Geometry, StoneCount, by_half_spaces
 from culet.rendering.footprint import footprints, reach_of
 from culet.rendering.layout import struct
 from culet.rendering.mirrors import makes_finite_group
@@ -71,7 +71,7 @@ class StoneTable:
         by_symmetry = []
         for shape, numbers in by_shape(stones).items():
             by_triangles = features.geometry == Geometry.MESH and (
-                not by_half_spaces(shape) or features.stones == Stones.ONE
+                not by_half_spaces(shape) or features.stones == StoneCount.ONE
             )
             rows["by_triangles"][numbers] = by_triangles
             rows["facets"][numbers] = len(shape.planes)
@@ -90,7 +90,7 @@ class StoneTable:
             rotations = np.array([stones[number].rotation for number in numbers])
             rows["inner_axes"][numbers] = rotations @ symmetric.axes
             rows["first_facet"][numbers], rows["first_block"][numbers] = first_facet, first_block
-            if features.stones == Stones.MANY:
+            if features.stones == StoneCount.MANY:
                 rows["alike"][numbers] = numbers[0]
                 own = _turned(symmetric.planes, symmetric.axes.T)
                 blocks.append(_abreast(own))
@@ -106,11 +106,11 @@ class StoneTable:
                 rows["shadow_start"][number, : len(starts)] = starts
                 shadows += volumes
                 first_plane = int(starts[-1])
-        if features.stones == Stones.MANY and stones:
+        if features.stones == StoneCount.MANY and stones:
             centres, reach = rows["centre"].astype(float), rows["reach"].astype(float)
             rows["columns"], rows["rows"] = footprints(projection, centres, reach, width, height)
         # One stone has its facets from the first on: kernels need not ask where they begin.
-        one = features.stones == Stones.ONE and len(facets) > 1
+        one = features.stones == StoneCount.ONE and len(facets) > 1
         rows["first_facet"] -= one
         return cls(
             rows,

@@ -9,14 +9,14 @@ from culet.rendering.build import Kernel
 from culet.rendering.chains import first_sample
 from culet.rendering.features import Features, features_of
 from culet.rendering.inputs import Inputs
-from culet.rendering.pace import Pace
+from culet.rendering.pace import KernelPace
 from culet.stage import Stage
 
 
 class Tracing:
     """Of samples of one kind."""
 
-    def __init__(self, kernel: Kernel, pace: Pace, make: Callable[[], Inputs]) -> None:
+    def __init__(self, kernel: Kernel, pace: KernelPace, make: Callable[[], Inputs]) -> None:
         self.kernel, self.pace = kernel, pace
         self._make = make
         self._inputs: Inputs | None = None

@@ -41,7 +41,7 @@ def _degrees(description: str, least: float, most: float) -> Any:  # noqa: ANN40
     return _field(description, least, most, gt=0, lt=90)
 
 
-Table = Annotated[float, _percent("The top facet's width, from corner to corner", 45, 75)]
+TablePercent = Annotated[float, _percent("The top facet's width, from corner to corner", 45, 75)]
 NarrowTable = Annotated[float, _percent("The top facet's width, from corner to corner", 40, 62)]
 """Of outlines with sharp ends, where stars have less room."""
 Crown = Annotated[float, _degrees("Slope of the main facets above the girdle", 20, 45)]
@@ -54,14 +54,14 @@ LowerHalf = Annotated[float, _percent("How far the lower halves reach down, % of
 Girdle = Annotated[float, _field("Thickness at the main facets", 0.5, 10, gt=0, le=50)]
 LengthToWidth = Annotated[float, _field("Length over width", 1, 2, ge=1, le=10)]
 StepTable = Annotated[float, _percent("The top facet's width", 45, 75)]
-Steps = Annotated[int, _field("Rows of facets", 1, 5, ge=1, le=8)]
+StepRows = Annotated[int, _field("Rows of facets", 1, 5, ge=1, le=8)]
 CrownStep = Annotated[float, _degrees("Slope of the lowest step of the crown", 30, 60)]
 PavilionStep = Annotated[float, _degrees("Slope of the highest step of the pavilion", 45, 70)]
 Flattening = Annotated[
     float, _field("By how much each step is flatter than the one nearer to the girdle", 1, 15, ge=0, lt=90)
 ]
 Sides = Annotated[int, _field("Facets of a row", 8, 20, ge=3, le=64)]
-Rows = Annotated[int, _field("Rows of facets", 2, 6, ge=2, le=12)]
+FacetRows = Annotated[int, _field("Rows of facets", 2, 6, ge=2, le=12)]
 
 
 class BrilliantCut(Model):
@@ -72,7 +72,7 @@ class BrilliantCut(Model):
     """
 
     name: Literal["brilliant"] = "brilliant"
-    table_percent: Table = 53
+    table_percent: TablePercent = 53
     crown_degrees: Crown = 34.5
     pavilion_degrees: Pavilion = 40.75
     star_percent: Star = 55
@@ -97,7 +97,7 @@ class SingleCut(Model):
     """Eight facets above, eight below: what small stones have."""
 
     name: Literal["single"] = "single"
-    table_percent: Table = 60
+    table_percent: TablePercent = 60
     crown_degrees: Crown = 35
     pavilion_degrees: Pavilion = 41
     girdle_percent: Girdle = 3
@@ -119,10 +119,10 @@ class PortugueseCut(Model):
     name: Literal["portuguese"] = "portuguese"
     sides: Sides = 16
     table_percent: Annotated[float, _percent("The top facet's width, from side to side", 25, 60)] = 45
-    crown_rows: Rows = 4
+    crown_rows: FacetRows = 4
     crown_degrees: Annotated[float, _degrees("Slope of the lowest row of the crown", 35, 60)] = 48
     crown_top_degrees: Annotated[float, _degrees("Slope of the crown's row at the table", 10, 35)] = 20
-    pavilion_rows: Rows = 5
+    pavilion_rows: FacetRows = 5
     pavilion_degrees: Annotated[float, _degrees("Slope of the highest row of the pavilion", 50, 75)] = 66
     culet_degrees: Annotated[float, _degrees("Slope of the pavilion's last row", 35, 48)] = 40
     girdle_percent: Girdle = 3
@@ -133,10 +133,10 @@ class BrioletteCut(Model):
 
     name: Literal["briolette"] = "briolette"
     sides: Sides = 12
-    upper_rows: Rows = 4
+    upper_rows: FacetRows = 4
     upper_degrees: Annotated[float, _degrees("Slope of the lowest row of the upper part", 70, 85)] = 80
     tip_degrees: Annotated[float, _degrees("Slope of the row at the upper point", 50, 75)] = 68.5
-    lower_rows: Rows = 5
+    lower_rows: FacetRows = 5
     lower_degrees: Annotated[float, _degrees("Slope of the highest row of the lower part", 60, 80)] = 70
     base_degrees: Annotated[float, _degrees("Slope of the row at the lower point", 10, 40)] = 16
 
@@ -146,7 +146,7 @@ class OvalCut(Model):
 
     name: Literal["oval"] = "oval"
     length_to_width: LengthToWidth = 1.4
-    table_percent: Table = 56
+    table_percent: TablePercent = 56
     crown_degrees: Crown = 35
     pavilion_degrees: Pavilion = 41
     star_percent: Star = 55
@@ -160,7 +160,7 @@ class CushionCut(Model):
     name: Literal["cushion"] = "cushion"
     length_to_width: LengthToWidth = 1.1
     squareness: Annotated[float, _field("Its power p: 2 is an oval, more is squarer", 2.1, 4, ge=2, le=16)] = 2.6
-    table_percent: Table = 58
+    table_percent: TablePercent = 58
     crown_degrees: Crown = 35
     pavilion_degrees: Pavilion = 41.5
     star_percent: Star = 50
@@ -189,7 +189,7 @@ class MarquiseCut(Model):
     keel_percent: Annotated[
         float, _field("Length of the keel below, % of what the stone is longer than wide", 10, 90, ge=0, lt=100)
     ] = 50
-    table_percent: Table = 58
+    table_percent: TablePercent = 58
     crown_degrees: Crown = 35
     pavilion_degrees: Pavilion = 41
     star_percent: Star = 50
@@ -249,10 +249,10 @@ class EmeraldCut(Model):
     length_to_width: LengthToWidth = 1.4
     corner_percent: Annotated[float, _percent("What is cut off a corner, % of half the width", 15, 45)] = 30
     table_percent: StepTable = 60
-    crown_steps: Steps = 3
+    crown_steps: StepRows = 3
     crown_degrees: CrownStep = 50
     crown_step_degrees: Flattening = 10
-    pavilion_steps: Steps = 3
+    pavilion_steps: StepRows = 3
     pavilion_degrees: PavilionStep = 56
     pavilion_step_degrees: Flattening = 7
     girdle_percent: Girdle = 4
@@ -264,10 +264,10 @@ class AsscherCut(Model):
     name: Literal["asscher"] = "asscher"
     corner_percent: Annotated[float, _percent("What is cut off a corner, % of half the width", 35, 60)] = 52
     table_percent: StepTable = 56
-    crown_steps: Steps = 3
+    crown_steps: StepRows = 3
     crown_degrees: CrownStep = 49
     crown_step_degrees: Flattening = 8
-    pavilion_steps: Steps = 3
+    pavilion_steps: StepRows = 3
     pavilion_degrees: PavilionStep = 55
     pavilion_step_degrees: Flattening = 7
     girdle_percent: Girdle = 4
@@ -279,10 +279,10 @@ class BaguetteCut(Model):
     name: Literal["baguette"] = "baguette"
     length_to_width: Annotated[float, _field("Length over width", 1.5, 4, ge=1, le=10)] = 2
     table_percent: StepTable = 60
-    crown_steps: Steps = 2
+    crown_steps: StepRows = 2
     crown_degrees: CrownStep = 45
     crown_step_degrees: Flattening = 10
-    pavilion_steps: Steps = 3
+    pavilion_steps: StepRows = 3
     pavilion_degrees: PavilionStep = 54
     pavilion_step_degrees: Flattening = 7
     girdle_percent: Girdle = 4

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator
 
-from culet.scene.fields import Colour, Model, Part, Vector, said
+from culet.scene.fields import Colour, Fraction, Model, Vector, said
 
 MOST_LAMPS = 24
 """In the sky: round ones, boxes and suns together."""
@@ -50,7 +50,7 @@ class BoxLamp(_Lamp):
     half_width_degrees: Annotated[float, Field(ge=0.1, le=85)]
     half_height_degrees: Annotated[float, Field(ge=0.1, le=85)]
     turn_degrees: Annotated[float, Field(ge=-360, le=360)] = Field(0, description="About its own axis.")
-    fade: Part = Field(0, description="Part of the radiance that is lost from the upper edge to the lower.")
+    fade: Fraction = Field(0, description="Part of the radiance that is lost from the upper edge to the lower.")
 
 
 class Sun(_Lamp):

@@ -29,7 +29,7 @@ Orientation = Annotated[tuple[Coordinate, Coordinate, Coordinate, Coordinate], A
 """A unit quaternion w, x, y, z, from a stone's own axes to those of the world."""
 Pose = tuple[Vector, tuple[float, float, float, float]]
 """Where a stone's centre of mass is (R), and how the stone is turned: a unit quaternion w, x, y, z."""
-Part = Annotated[float, Field(ge=0, le=1)]
+Fraction = Annotated[float, Field(ge=0, le=1)]
 
 
 class Model(BaseModel):

@@ -19,7 +19,7 @@ from culet.scene.camera import Camera, Head
 from culet.scene.emitters import AnyEmitter, Emitter, PointLight, check_counts, lamps, points
 from culet.scene.fields import Model, Pose
 from culet.scene.film import Film, Sampling
-from culet.scene.motion import Simulation
+from culet.scene.motion import MotionLaws
 from culet.scene.optics import Optics
 from culet.scene.refusal import scene_error
 from culet.scene.room import Floor, Plane, StudioFloor
@@ -59,7 +59,7 @@ class Scene(Model):
     optics: Optics = Optics()
     sampling: Sampling = Sampling()
     film: Film = Film()
-    simulation: Simulation = Simulation()
+    simulation: MotionLaws = MotionLaws()
 
     @model_validator(mode="before")
     @classmethod

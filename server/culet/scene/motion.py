@@ -9,7 +9,7 @@ from pydantic import Field
 from culet.scene.fields import Model
 
 
-class Simulation(Model):
+class MotionLaws(Model):
     """The laws of motion, for all stones; restitution and friction of those that have none of their own."""
 
     model: Literal["rigid", "classic"] = Field(

@@ -17,7 +17,7 @@ def _form_of_bands(value: object) -> str | None:
     return "<number>" if not isinstance(value, str) or value.strip().isdigit() else None
 
 
-Bands = Annotated[
+BandCount = Annotated[
     Annotated[Literal["auto"], Tag("<auto>")] | Annotated[int, Field(ge=3, le=MOST_BANDS), Tag("<number>")],
     Discriminator(
         _form_of_bands,
@@ -32,7 +32,7 @@ class Optics(Model):
     """How light is followed."""
 
     fresnel: Literal["exact", "schlick"] = "exact"
-    bands: Bands = Field(
+    bands: BandCount = Field(
         3,
         description="3: an index for each channel. More: that many sampled wavelengths for each pixel and sample. "
         "auto: 3 while things move and for the first sample of a picture at rest, then wavelengths if a stone "

@@ -14,7 +14,7 @@ from culet.scene.backdrop import NoBackdrop
 from culet.scene.camera import Camera
 from culet.scene.emitters import PointLight
 from culet.scene.model import Scene
-from culet.scene.motion import Simulation
+from culet.scene.motion import MotionLaws
 from culet.scene.optics import SPECTRAL_AT_REST
 from culet.scene.room import Plane
 from culet.scene.stone import StoneSettings
@@ -38,5 +38,5 @@ HEAP = Scene(
     walls=Plane(kind="matte"),
     backdrop=NoBackdrop(),
     camera=Camera(position=(-1.2, 4.6, 1.5), target=(-3.75, -0.3, -6.1), fov_degrees=32),
-    simulation=Simulation(friction=0.5),
+    simulation=MotionLaws(friction=0.5),
 )

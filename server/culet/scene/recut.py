@@ -32,7 +32,7 @@ class TierAngles(dict[int, float]):
 
 
 Degrees = Annotated[float, Field(gt=0, lt=90)]
-Tier = Annotated[int, Field(ge=1)]
+RecutTier = Annotated[int, Field(ge=1)]
 
 
 class Recut(Model):
@@ -51,7 +51,7 @@ class Recut(Model):
         json_schema_extra={USUAL: [30, 80]},
     )
 
-    angles: Annotated[dict[Tier, Degrees], Field(max_length=MOST_ANGLES), AfterValidator(TierAngles)] = Field(
+    angles: Annotated[dict[RecutTier, Degrees], Field(max_length=MOST_ANGLES), AfterValidator(TierAngles)] = Field(
         default_factory=TierAngles,
         description="Degrees from the horizontal of a tier's facets, by the tier's number as `culet design show` has "
         "it, once ratios and girdle are changed. All points in which facets meet and the girdle are kept: distances "

@@ -7,7 +7,7 @@ from culet.scene.camera import Camera
 from culet.scene.film import Film
 from culet.scene.legacy import LEGACY_POINTS
 from culet.scene.model import SPIN, Scene
-from culet.scene.motion import Simulation
+from culet.scene.motion import MotionLaws
 from culet.scene.optics import Optics
 from culet.scene.room import Plane
 from culet.scene.sky import DarkEnvironment, LightEnvironment
@@ -34,7 +34,7 @@ CLASSIC = Scene(
     camera=Camera(position=(0, 2, 13), target=(0, 1.4, 0), fov_degrees=45),
     optics=Optics(fresnel="schlick", estimator="classic", max_bounces=12),
     film=Film(tone_map="classic"),
-    simulation=Simulation(model="classic", inertia="cone", time_step=1 / 30),
+    simulation=MotionLaws(model="classic", inertia="cone", time_step=1 / 30),
 )
 """The report's own scene, to its constants: material, estimator, tone map and simulation."""
 

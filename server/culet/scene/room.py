@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from culet.scene.fields import Colour, Model, Part, said
+from culet.scene.fields import Colour, Fraction, Model, said
 
 FLOOR_Y = -1.0
 """Height of the floor, R."""
@@ -22,7 +22,7 @@ MIRROR_SHARE = 0.2
 MIRROR_ALBEDOS = 0.05, 0.1
 """Of the odd and even cells of a mirror's checker, of which each is 1 R wide."""
 
-Albedo = tuple[Part, Part, Part]
+Albedo = tuple[Fraction, Fraction, Fraction]
 """By channel: the part of the light that a matte surface returns."""
 
 
@@ -77,12 +77,12 @@ class StudioFloor(Model):
         (0.05, 0.05, 0.05),
         description="Radiance that stones see; the camera too, unless there is a backdrop.",
     )
-    reflectance: Part = Field(0.16, description="Of a stone where it touches the floor.")
+    reflectance: Fraction = Field(0.16, description="Of a stone where it touches the floor.")
     fade: Annotated[float, Field(ge=0.01, le=1e6)] = Field(
         1.1, description="Height in R at which the reflection has faded to 1/e."
     )
-    roughness: Part = Field(0.008, description="Largest tilt of the reflecting floor, from sample to sample.")
-    shadow: Part = Field(0.9, description="Part of the floor's light that the contact shadow takes.")
+    roughness: Fraction = Field(0.008, description="Largest tilt of the reflecting floor, from sample to sample.")
+    shadow: Fraction = Field(0.9, description="Part of the floor's light that the contact shadow takes.")
 
 
 def _form_of_floor(value: object) -> str | None:

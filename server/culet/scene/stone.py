@@ -62,7 +62,7 @@ def material_named(value: object) -> object:
 
 NamedMaterial = Annotated[MaterialName, BeforeValidator(material_named)]
 
-Material = Annotated[
+StoneMaterial = Annotated[
     Annotated[NamedMaterial, Tag("<name>")]
     | Annotated[IndexMaterial, Tag("<ior>")]
     | Annotated[SellmeierMaterial, Tag("<sellmeier>")],
@@ -107,7 +107,7 @@ class StoneSettings(Model):
     scale: Annotated[float, Field(ge=0.01, le=100)] = Field(
         1, description="Its radius, from the centre of mass to the farthest corner, in R."
     )
-    material: Material = "diamond"
+    material: StoneMaterial = "diamond"
     absorption: tuple[Coefficient, Coefficient, Coefficient] = Field(
         (0, 0, 0),
         description="Absorption coefficient of each channel, per R (Beer-Lambert), besides the material's own.",

@@ -17,7 +17,7 @@ from culet.scene.cuts import Cut
 from culet.scene.emitters import MOST_LAMPS, MOST_POINTS, BoxLamp, PointLight, RoundLamp
 from culet.scene.fields import Colour, Model, Orientation, Vector, said
 from culet.scene.film import Film, Sampling
-from culet.scene.motion import Simulation
+from culet.scene.motion import MotionLaws
 from culet.scene.optics import Optics
 from culet.scene.room import Floor, Plane, StudioFloor
 from culet.scene.sky import (
@@ -29,9 +29,9 @@ from culet.scene.sky import (
     LightEnvironment,
     StudioEnvironment,
 )
-from culet.scene.stone import Material, StoneSettings, UploadId
+from culet.scene.stone import StoneMaterial, StoneSettings, UploadId
 
-Coefficient = Annotated[float, Field(ge=0, le=1e9)]
+Coefficient1 = Annotated[float, Field(ge=0, le=1e9)]
 ONLY_IN_1 = {"environment": {"lamps"}, "simulation": {"mass", "spin", "velocity"}}
 """Fields of the scene's parts that tell a document without a version; so do `lights`, and a stone's `size_mm`."""
 
@@ -41,8 +41,8 @@ class Stone1(Model):
 
     cut: Cut = "brilliant"
     mesh: UploadId | None = None
-    material: Material = "diamond"
-    absorption: tuple[Coefficient, Coefficient, Coefficient] = (0, 0, 0)
+    material: StoneMaterial = "diamond"
+    absorption: tuple[Coefficient1, Coefficient1, Coefficient1] = (0, 0, 0)
     size_mm: Annotated[float, Field(gt=0, le=1e9)] | None = None
     position: Vector = (0, -0.373345, 0)
     orientation: Orientation = Field((0.93670, 0.33047, 0, 0.11566), validate_default=True)
@@ -80,7 +80,7 @@ class Studio1(Model):
     lamps: Annotated[tuple[Lamp1, ...], Field(max_length=MOST_LAMPS)] = atelier.LAMPS
 
 
-class Simulation1(Simulation):
+class Simulation1(MotionLaws):
     """The laws of motion, and of the one stone what moves."""
 
     mass: Annotated[float, Field(ge=1e-9, le=1e9)] = 2
@@ -129,7 +129,7 @@ def brought_up(data: Any) -> Any:  # noqa: ANN401 - whatever JSON held
     if sizes:
         new["millimetres"] = sizes[0]
     laws = old.simulation
-    new["simulation"] = Simulation.model_validate(laws.model_dump(exclude={"mass", "spin", "velocity"}))
+    new["simulation"] = MotionLaws.model_validate(laws.model_dump(exclude={"mass", "spin", "velocity"}))
     new["stones"] = tuple(_stone(stone, laws) for stone in old.stones)
     studio = old.environment if isinstance(old.environment, Studio1) else None
     new["environment"] = StudioEnvironment(ambient=studio.ambient) if studio else old.environment

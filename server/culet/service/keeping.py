@@ -7,12 +7,12 @@ import signal
 import threading
 from pathlib import Path
 
-from culet.notify import Notice, notify
+from culet.notify import ServiceNotice, notify
 from culet.service.browser import show
-from culet.service.supervisor import Part, Supervisor
+from culet.service.supervisor import ServerPart, Supervisor
 
 
-async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | None = None) -> None:
+async def keep(folder: Path, *parts: ServerPart, ready_line: str = "", page: str | None = None) -> None:
     """Keep all of them running until SIGINT or SIGTERM, or until one of them ends as it was asked to; the first one is
     stopped first. `folder` is for their sockets, and for what leads a browser to the page.
 
@@ -45,7 +45,7 @@ async def keep(folder: Path, *parts: Part, ready_line: str = "", page: str | Non
     finally:
         for task in (announcement, stop):
             task.cancel()
-        notify(Notice.STOPPING)
+        notify(ServiceNotice.STOPPING)
         for supervisor in supervisors:
             await supervisor.stop(at_once)
         results = await asyncio.gather(*running, return_exceptions=True)
@@ -59,6 +59,6 @@ async def _announce(ready: asyncio.Event, line: str, page: str | None, folder: P
     await ready.wait()
     if line:
         print(line, flush=True)
-    notify(Notice.READY)
+    notify(ServiceNotice.READY)
     if page is not None:  # in a thread of its own that nobody waits for: a browser may run in the terminal
         threading.Thread(target=show, args=(page, folder), daemon=True).start()

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from culet.gateway.settings import GatewaySettings
 from culet.service.command_lines import engine_command, gateway_command
-from culet.service.supervisor import START_SECONDS, Part
+from culet.service.supervisor import START_SECONDS, ServerPart
 from culet.settings import variable
 
 ENGINE_SILENCE_SECONDS = 22.0
@@ -18,19 +18,19 @@ GATEWAY_SILENCE_SECONDS = 35.0
 """The gateway's loop may be held up for up to 30 s, and goes on."""
 
 
-def engine_part(control: str, *frames: str, options: Sequence[str] = (), spare: bool = True) -> Part:
+def engine_part(control: str, *frames: str, options: Sequence[str] = (), spare: bool = True) -> ServerPart:
     """An engine that binds these endpoints."""
     command = engine_command(control, *frames, options=options)
-    return Part("engine", [*command, "--stand-by"], ENGINE_SILENCE_SECONDS, has_spare=spare)
+    return ServerPart("engine", [*command, "--stand-by"], ENGINE_SILENCE_SECONDS, has_spare=spare)
 
 
 def gateway_part(
     listening: socket.socket, settings: GatewaySettings, *, spare: bool = True, alone: bool = False
-) -> Part:
+) -> ServerPart:
     """A gateway on a listening socket, which outlives it. One that is `alone` is ready when somebody else has started
     the engine, whenever that is."""
     number = listening.fileno()
-    return Part(
+    return ServerPart(
         "gateway",
         gateway_command(number, settings.model_dump_json(exclude={"token"})),
         GATEWAY_SILENCE_SECONDS,

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from culet.errors import EngineUnavailableError
-from culet.notify import ADDRESS, PATIENCE, Notice
+from culet.notify import ADDRESS, PATIENCE, ServiceNotice
 from culet.parent import ending_with
 
 log = logging.getLogger(__name__)
@@ -37,7 +37,7 @@ SPARE_PAUSE_SECONDS = 3.0
 
 
 @dataclass(frozen=True)
-class Part:
+class ServerPart:
     """A process that is to be there always. It begins its work with a line on its standard input."""
 
     name: str
@@ -59,7 +59,7 @@ class Part:
 class Supervisor:
     """Keeps one process of a part running until told to stop."""
 
-    def __init__(self, part: Part, folder: Path, on_ready: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, part: ServerPart, folder: Path, on_ready: Callable[[], None] = lambda: None) -> None:
         """`folder` is for the sockets by which processes say that they live; `on_ready` is told whenever one is
         ready."""
         self.part = part
@@ -196,7 +196,7 @@ class _Process:
     def returncode(self) -> int | None:
         return self._process.returncode
 
-    async def start(self, part: Part) -> None:
+    async def start(self, part: ServerPart) -> None:
         """Start it. The socket is made anew for each, so that none is taken for another."""
         self._notices = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self._notices.setblocking(False)
@@ -257,9 +257,9 @@ class _Process:
             while True:
                 said = self._notices.recv(256).decode(errors="replace").split("\n")
                 self.heard_at = time.monotonic()
-                if Notice.READY in said:
+                if ServiceNotice.READY in said:
                     self.ready.set()
-                self.leaving = self.leaving or Notice.STOPPING in said
+                self.leaving = self.leaving or ServiceNotice.STOPPING in said
                 for text in said:
                     name, _, value = text.partition("=")
                     if name == PATIENCE and value.isdecimal():

@@ -1,7 +1,7 @@
 """Rigid bodies: state, integrators, contact."""
 
 from culet.simulation.clock import Allowance, FixedStepClock, Pace
-from culet.simulation.paths import Path, record, write
+from culet.simulation.paths import StonePath, record, write
 from culet.simulation.simulation import Simulation
 from culet.simulation.state import RigidState
 from culet.simulation.surfaces import Surface, surfaces_of
@@ -10,9 +10,9 @@ __all__ = [
     "Allowance",
     "FixedStepClock",
     "Pace",
-    "Path",
     "RigidState",
     "Simulation",
+    "StonePath",
     "Surface",
     "record",
     "surfaces_of",

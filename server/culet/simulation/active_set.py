@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact
 from culet.simulation.linear import factorised, solution
-from culet.simulation.motion import Motion
+from culet.simulation.motion import BodyMotion
 from culet.simulation.state import Triple
 
 STIFFNESS = 1e3
@@ -32,7 +32,7 @@ AXES: tuple[Triple, Triple, Triple] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0
 
 
 def refine(
-    motion: Motion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float], friction: float
+    motion: BodyMotion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float], friction: float
 ) -> None:
     """Replace the impulses by those that the states which they show ask for.
 
@@ -114,7 +114,7 @@ def _lever(arm: Triple, force: Triple) -> list[float]:
     return [a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]
 
 
-def _mass_matrix(motion: Motion, body: RigidBody) -> NDArray[np.float64]:
+def _mass_matrix(motion: BodyMotion, body: RigidBody) -> NDArray[np.float64]:
     """(6, 6): velocities to momenta."""
     matrix = np.diag(np.full(6, body.mass, np.float64))
     matrix[3:, 3:] = [body.angular_momentum(motion.orientation, axis) for axis in AXES]

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from culet.scene.motion import Simulation as Law
+from culet.scene.motion import MotionLaws
 from culet.simulation.bodies import REST, Body, BodyState
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.simulation import Simulation
@@ -22,7 +22,7 @@ from culet.simulation.surfaces import FLOOR, Surface
 class Alone:
     """Mutable: a `Simulation`, and whether its stone is held."""
 
-    def __init__(self, law: Law, body: Body, surfaces: Sequence[Surface]) -> None:
+    def __init__(self, law: MotionLaws, body: Body, surfaces: Sequence[Surface]) -> None:
         """At the start. InputError for an inertia that cannot be used."""
         self._law, self._body, self._held = law, body, False
         start = self._from_world(body.position)
@@ -62,7 +62,7 @@ class Alone:
             self._held,
         )
 
-    def set_law(self, law: Law) -> None:
+    def set_law(self, law: MotionLaws) -> None:
         """Another law, which may be another model; asleep, it wakes just if it would move. InputError, and nothing
         changed, if it cannot be used."""
         self._one.adjust(_settings(law, self._body))
@@ -131,9 +131,9 @@ class Alone:
         return point if self._body.scale == 1 else _about_floor(point, self._body.scale)
 
 
-def _settings(law: Law, body: Body) -> SimulationSettings:
+def _settings(law: MotionLaws, body: Body) -> SimulationSettings:
     return SimulationSettings.model_construct(
-        **{name: getattr(law, name) for name in Law.model_fields}
+        **{name: getattr(law, name) for name in MotionLaws.model_fields}
         | {
             "mass": body.mass,
             "velocity": _times(body.velocity, 1 / body.scale),

@@ -8,7 +8,7 @@ from typing import Self
 
 from culet.errors import InputError
 from culet.geometry.shape import Shape
-from culet.scene.motion import Simulation as Law
+from culet.scene.motion import MotionLaws
 from culet.simulation.rotation import normalised
 from culet.simulation.state import Quaternion, Triple
 
@@ -51,11 +51,11 @@ class Body:
         if abs(sum(c * c for c in self.orientation) - 1) > 1e-12:  # normalising again would change the last bit
             object.__setattr__(self, "orientation", normalised(self.orientation))
 
-    def restitution_by(self, law: Law) -> float:
+    def restitution_by(self, law: MotionLaws) -> float:
         """Its own, or the law's."""
         return law.restitution if self.restitution is None else self.restitution
 
-    def friction_by(self, law: Law) -> float:
+    def friction_by(self, law: MotionLaws) -> float:
         """Its own, or the law's."""
         return law.friction if self.friction is None else self.friction
 

@@ -21,7 +21,7 @@ from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import Quaternion, RigidState, Triple
 from culet.simulation.surfaces import FLOOR, Surface
 
-Rows = tuple[Triple, Triple, Triple]
+MatrixRows = tuple[Triple, Triple, Triple]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +30,9 @@ class RigidBody:
 
     shape: Shape
     mass: float
-    inertia: Rows
+    inertia: MatrixRows
     """About the centre of mass in the stone's axes, mass R^2."""
-    inverse_inertia: Rows
+    inverse_inertia: MatrixRows
     """1 / (mass R^2)."""
     surfaces: tuple[Surface, ...] = (FLOOR,)
     """What stops it."""
@@ -101,7 +101,7 @@ class RigidBody:
         return linear + rotational + self.mass * gravity * sphere_gap(state.position)
 
 
-def inertia_of(kind: InertiaKind, shape: Shape, factor: float) -> tuple[Rows, Rows]:
+def inertia_of(kind: InertiaKind, shape: Shape, factor: float) -> tuple[MatrixRows, MatrixRows]:
     """The tensor that a scene names, and its inverse, of a shape of R = 1 and a mass of 1, times a factor.
 
     The factor of a placed stone is its mass times its scale squared. InputError if the tensor is none.
@@ -110,18 +110,18 @@ def inertia_of(kind: InertiaKind, shape: Shape, factor: float) -> tuple[Rows, Ro
     return _scaled(per_mass, factor), _scaled(_inverse(per_mass), 1 / factor)
 
 
-def angular_momentum_of(inertia: Rows, orientation: Quaternion, omega: Triple) -> Triple:
+def angular_momentum_of(inertia: MatrixRows, orientation: Quaternion, omega: Triple) -> Triple:
     """Of a body with that tensor in its own axes, in world axes."""
     return rotate(orientation, _apply(inertia, rotate_back(orientation, omega)))
 
 
-def _apply(rows: Rows, v: Triple) -> Triple:
+def _apply(rows: MatrixRows, v: Triple) -> Triple:
     (a, b, c), (d, e, f), (g, h, i) = rows
     x, y, z = v
     return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
 
 
-def _scaled(rows: Rows, factor: float) -> Rows:
+def _scaled(rows: MatrixRows, factor: float) -> MatrixRows:
     (a, b, c), (d, e, f), (g, h, i) = rows
     return (
         (a * factor, b * factor, c * factor),
@@ -130,7 +130,7 @@ def _scaled(rows: Rows, factor: float) -> Rows:
     )
 
 
-def _rows(tensor: NDArray[np.float64]) -> Rows:
+def _rows(tensor: NDArray[np.float64]) -> MatrixRows:
     if tensor.shape != (3, 3):
         raise InputError(f"an inertia tensor is 3 by 3; got shape {tensor.shape}")
     if not np.isfinite(tensor).all():
@@ -142,7 +142,7 @@ def _rows(tensor: NDArray[np.float64]) -> Rows:
     return ((a, b, c), (b, e, f), (c, f, i))
 
 
-def _inverse(rows: Rows) -> Rows:
+def _inverse(rows: MatrixRows) -> MatrixRows:
     """Of a symmetric positive definite tensor, by cofactors in plain floats: the same bits on every processor.
 
     Moments of inertia obey I1 + I2 >= I3, so at most one of them is small and the determinant keeps its digits as well

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from culet.simulation.body import RigidBody, Rows
-from culet.simulation.motion import Motion, centre_gap, gaps
+from culet.simulation.body import MatrixRows, RigidBody
+from culet.simulation.motion import BodyMotion, centre_gap, gaps
 from culet.simulation.rotation import rotate
 from culet.simulation.state import Triple
 
@@ -39,7 +39,7 @@ class Contact:
     """mass R/s."""
 
 
-def contacts(motion: Motion, body: RigidBody, reach: float = TOUCH) -> list[Contact]:
+def contacts(motion: BodyMotion, body: RigidBody, reach: float = TOUCH) -> list[Contact]:
     """The vertices nearer to a surface than `reach`, in canonical order: by surface, then as in the hull."""
     near = [
         (number, vertex, float(distances[vertex]))
@@ -51,7 +51,7 @@ def contacts(motion: Motion, body: RigidBody, reach: float = TOUCH) -> list[Cont
     return contacts_of(motion, body, near) if near else []
 
 
-def contacts_of(motion: Motion, body: RigidBody, vertices: Iterable[tuple[int, int, float]]) -> list[Contact]:
+def contacts_of(motion: BodyMotion, body: RigidBody, vertices: Iterable[tuple[int, int, float]]) -> list[Contact]:
     """Of those (surface, vertex, gap)."""
     turning = world_inverse_inertia(motion, body)
     return [_contact(motion, body, turning, surface, vertex, gap) for surface, vertex, gap in vertices]
@@ -63,7 +63,7 @@ def closing_speed(point: Contact, velocity: Triple, omega: Triple) -> float:
     return -((vx + wy * z - wz * y) * a + (vy + wz * x - wx * z) * b + (vz + wx * y - wy * x) * c)
 
 
-def world_inverse_inertia(motion: Motion, body: RigidBody) -> Rows:
+def world_inverse_inertia(motion: BodyMotion, body: RigidBody) -> MatrixRows:
     """R I^-1 R^T, 1 / (mass R^2)."""
     q = motion.orientation
     return (
@@ -73,7 +73,9 @@ def world_inverse_inertia(motion: Motion, body: RigidBody) -> Rows:
     )
 
 
-def _contact(motion: Motion, body: RigidBody, turning: Rows, surface: int, vertex: int, gap: float) -> Contact:
+def _contact(
+    motion: BodyMotion, body: RigidBody, turning: MatrixRows, surface: int, vertex: int, gap: float
+) -> Contact:
     normal = body.surfaces[surface].normal
     arm = rotate(motion.orientation, body.hull.points[vertex])
     k = _inverse_mass(1 / body.mass, turning, arm)
@@ -82,7 +84,7 @@ def _contact(motion: Motion, body: RigidBody, turning: Rows, surface: int, verte
     return Contact(surface, vertex, gap, normal, arm, _inverse(k), along, 1 / (xx + yy + zz - along))
 
 
-def _inverse_mass(light: float, turning: Rows, arm: Triple) -> Symmetric:
+def _inverse_mass(light: float, turning: MatrixRows, arm: Triple) -> Symmetric:
     """K = 1/m - [r] J [r], where [r] p = r x p: column j is e_j / m + (J (r x e_j)) x r."""
     x, y, z = arm
     (jxx, jxy, jxz), (_, jyy, jyz), (_, _, jzz) = turning

@@ -29,7 +29,7 @@ from culet.simulation.free_rotation import Integrator, turned
 from culet.simulation.impact import limited
 from culet.simulation.impulses import solve
 from culet.simulation.motion import (
-    Motion,
+    BodyMotion,
     centre_gap,
     gaps,
     kinetic_energy,
@@ -52,7 +52,7 @@ Vertex = tuple[int, int]
 
 
 def contact_step(
-    motion: Motion,
+    motion: BodyMotion,
     body: RigidBody,
     touching: list[Contact],
     *,
@@ -62,7 +62,7 @@ def contact_step(
     bounce_speed: float,
     time: float,
     integrator: Integrator,
-) -> tuple[Motion, float]:
+) -> tuple[BodyMotion, float]:
     """At most `time` seconds in contact: up to where a vertex arrives faster than `bounce_speed`, R/s.
 
     The motion then, and the time that it took.
@@ -95,7 +95,7 @@ def contact_step(
     return limited(end, body, highest - body.mass * gravity * end.position[1]), length
 
 
-def slid(motion: Motion, body: RigidBody, braking: float, time: float) -> Motion:
+def slid(motion: BodyMotion, body: RigidBody, braking: float, time: float) -> BodyMotion:
     """Level, without turning, slower by `braking` R/s^2: what is left of a step too long to follow how it rocks."""
     (px, _, pz), speed_now = motion.momentum, math.hypot(motion.momentum[0], motion.momentum[2]) / body.mass
     part = max(1 - braking * time / speed_now, 0.0) if speed_now > 0 else 0.0
@@ -106,8 +106,8 @@ def slid(motion: Motion, body: RigidBody, braking: float, time: float) -> Motion
 
 
 def _kicked_and_stopped(
-    motion: Motion, body: RigidBody, points: list[Contact], gravity: float, friction: float, length: float
-) -> Motion:
+    motion: BodyMotion, body: RigidBody, points: list[Contact], gravity: float, friction: float, length: float
+) -> BodyMotion:
     px, py, pz = motion.momentum
     kicked = motion._replace(momentum=(px, py - body.mass * gravity * length, pz))
     targets = [-point.gap / length if point.gap > TOUCH else 0.0 for point in points]
@@ -117,7 +117,7 @@ def _kicked_and_stopped(
     return stopped(solved) if held else solved
 
 
-def _resisted(motion: Motion, body: RigidBody, moment: float) -> Motion:
+def _resisted(motion: BodyMotion, body: RigidBody, moment: float) -> BodyMotion:
     """Rolling resistance: an angular impulse (mass R^2/s) against the turning, too small to turn it round."""
     if moment == 0:
         return motion
@@ -131,8 +131,8 @@ def _resisted(motion: Motion, body: RigidBody, moment: float) -> Motion:
 
 
 def _moved(
-    begun: Motion, moving: Motion, body: RigidBody, points: list[Contact], length: float, integrator: Integrator
-) -> Motion:
+    begun: BodyMotion, moving: BodyMotion, body: RigidBody, points: list[Contact], length: float, integrator: Integrator
+) -> BodyMotion:
     """Moved on by the mean of both velocities where that keeps to the surfaces, else by the one at the end."""
     velocity, omega = velocities(begun, body)
     pressed = [point for point in points if any(point.impulse)]
@@ -144,7 +144,9 @@ def _moved(
     return _moved_by(mean, moving, body, length, integrator)
 
 
-def _moved_by(mean: Motion, moving: Motion, body: RigidBody, length: float, integrator: Integrator) -> Motion:
+def _moved_by(
+    mean: BodyMotion, moving: BodyMotion, body: RigidBody, length: float, integrator: Integrator
+) -> BodyMotion:
     (x, y, z), (px, py, pz), mass = mean.position, mean.momentum, body.mass
     return moving._replace(
         position=(x + px / mass * length, y + py / mass * length, z + pz / mass * length),
@@ -157,7 +159,7 @@ def _mean(one: Triple, other: Triple) -> Triple:
     return ((a + x) / 2, (b + y) / 2, (c + z) / 2)
 
 
-def _inside(motion: Motion, body: RigidBody) -> dict[Vertex, float]:
+def _inside(motion: BodyMotion, body: RigidBody) -> dict[Vertex, float]:
     """Vertices deeper than TOUCH inside a surface, with their gaps."""
     found: dict[Vertex, float] = {}
     for number, surface in enumerate(body.surfaces):
@@ -168,7 +170,7 @@ def _inside(motion: Motion, body: RigidBody) -> dict[Vertex, float]:
     return found
 
 
-def _fast(motion: Motion, body: RigidBody, vertices: dict[Vertex, float], bounce_speed: float) -> list[Vertex]:
+def _fast(motion: BodyMotion, body: RigidBody, vertices: dict[Vertex, float], bounce_speed: float) -> list[Vertex]:
     """Those of the vertices that close in faster than `bounce_speed`."""
     velocity, omega = velocities(motion, body)
     points = contacts_of(motion, body, [(*vertex, gap) for vertex, gap in vertices.items()])

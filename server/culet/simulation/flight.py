@@ -14,7 +14,7 @@ import math
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import TOUCH
 from culet.simulation.free_rotation import Integrator
-from culet.simulation.motion import AT_SURFACE, Motion, centre_gap, flown, gaps
+from culet.simulation.motion import AT_SURFACE, BodyMotion, centre_gap, flown, gaps
 from culet.simulation.state import Triple
 
 SAGITTA = 1e-5
@@ -23,8 +23,8 @@ MAX_REFINEMENTS = 80
 
 
 def fly(
-    motion: Motion, body: RigidBody, gravity: float, time: float, integrator: Integrator, shortest: float = 0.0
-) -> tuple[Motion, float]:
+    motion: BodyMotion, body: RigidBody, gravity: float, time: float, integrator: Integrator, shortest: float = 0.0
+) -> tuple[BodyMotion, float]:
     """Fly for at most `time` seconds, until a vertex touches; the motion then, and the time that it took.
 
     The stone must be outside the surfaces (`pushed_out`); it is outside at the end, at a touch by less than TOUCH. A
@@ -55,14 +55,14 @@ def fly(
     return _touch(motion, body, gravity, turning, part, inside, integrator)
 
 
-def _approach(motion: Motion, body: RigidBody, normal: Triple, gravity: float, time: float) -> float:
+def _approach(motion: BodyMotion, body: RigidBody, normal: Triple, gravity: float, time: float) -> float:
     """Upper bound of the centre's speed towards a surface within `time`, R/s, at least 0."""
     (px, py, pz), (a, b, c) = motion.momentum, normal
     speed_now = -(px * a + py * b + pz * c) / body.mass
     return max(speed_now + max(gravity * b, 0.0) * time, speed_now, 0.0)
 
 
-def _depth(motion: Motion, body: RigidBody) -> float:
+def _depth(motion: BodyMotion, body: RigidBody) -> float:
     """How far the deepest vertex is inside a surface, R; negative: how far the nearest is outside, if near at all."""
     deepest = -math.inf
     for surface in body.surfaces:
@@ -72,8 +72,14 @@ def _depth(motion: Motion, body: RigidBody) -> float:
 
 
 def _touch(
-    motion: Motion, body: RigidBody, gravity: float, turning: float, late: float, inside: float, integrator: Integrator
-) -> tuple[Motion, float]:
+    motion: BodyMotion,
+    body: RigidBody,
+    gravity: float,
+    turning: float,
+    late: float,
+    inside: float,
+    integrator: Integrator,
+) -> tuple[BodyMotion, float]:
     """The last instant found before `late`, when a vertex is `inside`, at which all are outside.
 
     `turning` bounds the speed of any point about the centre, R/s.

@@ -12,14 +12,16 @@ from collections.abc import Sequence
 from culet.simulation.body import RigidBody
 from culet.simulation.contact import Contact, closing_speed
 from culet.simulation.impulses import solve
-from culet.simulation.motion import Motion, kinetic_energy, velocities
+from culet.simulation.motion import BodyMotion, kinetic_energy, velocities
 
 ROUNDING = 1e-12
 """Of the kinetic energy: a gain below this is rounding."""
 HALVINGS = 4
 
 
-def impact(motion: Motion, body: RigidBody, points: Sequence[Contact], restitution: float, friction: float) -> Motion:
+def impact(
+    motion: BodyMotion, body: RigidBody, points: Sequence[Contact], restitution: float, friction: float
+) -> BodyMotion:
     """The motion just after: never with more kinetic energy, never with a touching vertex on its way in."""
     velocity, omega = velocities(motion, body)
     closing = [max(closing_speed(point, velocity, omega), 0.0) for point in points]
@@ -38,7 +40,7 @@ def impact(motion: Motion, body: RigidBody, points: Sequence[Contact], restituti
     return limited(after, body, before)
 
 
-def limited(motion: Motion, body: RigidBody, energy: float) -> Motion:
+def limited(motion: BodyMotion, body: RigidBody, energy: float) -> BodyMotion:
     """The same motion, slower if its kinetic energy is above `energy` (mass R^2/s^2)."""
     kinetic = kinetic_energy(motion, body)
     if kinetic <= max(energy, 0.0):

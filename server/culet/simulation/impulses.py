@@ -18,9 +18,9 @@ import math
 from collections.abc import Sequence
 
 from culet.simulation.active_set import refine
-from culet.simulation.body import RigidBody, Rows
+from culet.simulation.body import MatrixRows, RigidBody
 from culet.simulation.contact import Contact, world_inverse_inertia
-from culet.simulation.motion import Motion
+from culet.simulation.motion import BodyMotion
 from culet.simulation.state import Triple
 
 PASSES = 8
@@ -40,8 +40,8 @@ TOLERANCE = 1e-10
 
 
 def solve(
-    motion: Motion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float], friction: float
-) -> Motion:
+    motion: BodyMotion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float], friction: float
+) -> BodyMotion:
     """The motion after the impulses, which are left in the contacts. Targets are velocities along the normals, R/s."""
     turning = world_inverse_inertia(motion, body)
     stalled = CLOSING if min(targets, default=0.0) < 0 else STALLED
@@ -60,8 +60,8 @@ def solve(
 
 
 def _finished_without_friction(
-    motion: Motion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float]
-) -> Motion:
+    motion: BodyMotion, body: RigidBody, points: Sequence[Contact], targets: Sequence[float]
+) -> BodyMotion:
     """Where friction far above 1 keeps the contacts from agreeing (Painlevé): a further push along the normals.
 
     Without friction the problem is convex and has an answer, and more pressure leaves the impulses within the disc.
@@ -75,9 +75,9 @@ def _finished_without_friction(
 
 
 def _converged(
-    motion: Motion,
+    motion: BodyMotion,
     body: RigidBody,
-    turning: Rows,
+    turning: MatrixRows,
     points: Sequence[Contact],
     targets: Sequence[float],
     friction: float,
@@ -140,7 +140,7 @@ def _converged(
     return False
 
 
-def with_impulses(motion: Motion, points: Sequence[Contact]) -> Motion:
+def with_impulses(motion: BodyMotion, points: Sequence[Contact]) -> BodyMotion:
     """The momenta after the contacts' impulses: P += p, L += r x p."""
     (px, py, pz), (lx, ly, lz) = motion.momentum, motion.angular_momentum
     for point in points:
@@ -150,7 +150,7 @@ def with_impulses(motion: Motion, points: Sequence[Contact]) -> Motion:
     return motion._replace(momentum=(px, py, pz), angular_momentum=(lx, ly, lz))
 
 
-def impulse_at(motion: Motion, arm: Triple, impulse: Triple) -> Motion:
+def impulse_at(motion: BodyMotion, arm: Triple, impulse: Triple) -> BodyMotion:
     """The momenta after one impulse (mass R/s) at an arm from the centre of mass."""
     (px, py, pz), (lx, ly, lz), (x, y, z), (ix, iy, iz) = motion.momentum, motion.angular_momentum, arm, impulse
     return motion._replace(

@@ -18,7 +18,7 @@ AT_SURFACE = 1e-12
 """R. A vertex that is no deeper inside a surface is at it: several surfaces cannot all be left by less."""
 
 
-class Motion(NamedTuple):
+class BodyMotion(NamedTuple):
     """As in RigidState, without what only whole steps have."""
 
     position: Triple
@@ -27,40 +27,40 @@ class Motion(NamedTuple):
     angular_momentum: Triple
 
 
-def flown(motion: Motion, body: RigidBody, gravity: float, time: float, integrator: Integrator) -> Motion:
+def flown(motion: BodyMotion, body: RigidBody, gravity: float, time: float, integrator: Integrator) -> BodyMotion:
     """Free flight: the centre of mass on its parabola, exactly; the rotation by the integrator."""
     (x, y, z), (px, py, pz), mass = motion.position, motion.momentum, body.mass
     position = (x + px / mass * time, y + py / mass * time - 0.5 * gravity * time * time, z + pz / mass * time)
     orientation = turned(body, motion.orientation, motion.angular_momentum, time, integrator)
-    return Motion(position, orientation, (px, py - mass * gravity * time, pz), motion.angular_momentum)
+    return BodyMotion(position, orientation, (px, py - mass * gravity * time, pz), motion.angular_momentum)
 
 
-def gaps(motion: Motion, body: RigidBody, surface: Surface) -> NDArray[np.float64]:
+def gaps(motion: BodyMotion, body: RigidBody, surface: Surface) -> NDArray[np.float64]:
     """(V,) distances of the hull's vertices from a surface, R; negative behind it."""
     return body.hull.heights(rotate_back(motion.orientation, surface.normal)) + centre_gap(motion, surface)
 
 
-def centre_gap(motion: Motion, surface: Surface) -> float:
+def centre_gap(motion: BodyMotion, surface: Surface) -> float:
     """Distance of the centre of mass from a surface, R."""
     (a, b, c), (x, y, z) = surface.normal, motion.position
     return a * x + b * y + c * z - surface.offset
 
 
-def velocities(motion: Motion, body: RigidBody) -> tuple[Triple, Triple]:
+def velocities(motion: BodyMotion, body: RigidBody) -> tuple[Triple, Triple]:
     """Of the centre of mass, R/s, and of the rotation, rad/s; world axes."""
     px, py, pz = motion.momentum
     velocity = (px / body.mass, py / body.mass, pz / body.mass)
     return velocity, body.angular_velocity_at(motion.orientation, motion.angular_momentum)
 
 
-def kinetic_energy(motion: Motion, body: RigidBody) -> float:
+def kinetic_energy(motion: BodyMotion, body: RigidBody) -> float:
     """mass R^2/s^2."""
     (px, py, pz), (lx, ly, lz) = motion.momentum, motion.angular_momentum
     wx, wy, wz = body.angular_velocity_at(motion.orientation, motion.angular_momentum)
     return (px * px + py * py + pz * pz) / (2 * body.mass) + 0.5 * (lx * wx + ly * wy + lz * wz)
 
 
-def speed(motion: Motion, body: RigidBody) -> float:
+def speed(motion: BodyMotion, body: RigidBody) -> float:
     """Upper bound of how fast any point of the stone moves, R/s."""
     px, py, pz = motion.momentum
     return math.sqrt(px * px + py * py + pz * pz) / body.mass + body.hull.radius * body.fastest_turn(
@@ -68,12 +68,12 @@ def speed(motion: Motion, body: RigidBody) -> float:
     )
 
 
-def stopped(motion: Motion) -> Motion:
+def stopped(motion: BodyMotion) -> BodyMotion:
     """At rest in the same place."""
     return motion._replace(momentum=(0.0, 0.0, 0.0), angular_momentum=(0.0, 0.0, 0.0))
 
 
-def pushed_out(motion: Motion, body: RigidBody) -> Motion:
+def pushed_out(motion: BodyMotion, body: RigidBody) -> BodyMotion:
     """Moved straight out of whatever surface it reaches into; its velocity knows nothing of it.
 
     Several surfaces are served one after the other, again and again: a corner takes a few rounds, as each moves the

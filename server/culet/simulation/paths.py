@@ -28,7 +28,7 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
+class StonePath:
     """N states, the start first; the arrays' first axis is the step."""
 
     settings: dict[str, Any]
@@ -103,7 +103,7 @@ def by_axis(poses: Poses) -> dict[str, Floats]:
     }
 
 
-def record(stage: Stage, seconds: float, progress: Progress | None = None) -> Path:
+def record(stage: Stage, seconds: float, progress: Progress | None = None) -> StonePath:
     """Let the stage's stone move for `seconds`, in whole steps.
 
     SceneError if the scene has no stone, InputError for a time that is none, TooLargeError beyond MAX_STEPS.
@@ -133,14 +133,14 @@ def whole_steps(seconds: float, time_step: float) -> int:
     return math.floor(steps * (1 + 1e-12))  # 0.3 / 0.1 is just below 3
 
 
-def _empty_path(settings: dict[str, Any], length: int) -> Path:
+def _empty_path(settings: dict[str, Any], length: int) -> StonePath:
     def floats(*width: int) -> Floats:
         return np.empty((length, *width))
 
     def counts() -> NDArray[np.int64]:
         return np.empty(length, np.int64)
 
-    return Path(
+    return StonePath(
         settings=settings,
         step=counts(),
         time=floats(),
@@ -158,7 +158,7 @@ def _empty_path(settings: dict[str, Any], length: int) -> Path:
     )
 
 
-def _record_state(path: Path, index: int, simulation: Simulation) -> None:
+def _record_state(path: StonePath, index: int, simulation: Simulation) -> None:
     state, body = simulation.state, simulation.body
     touch = simulation.touch()
     path.step[index] = state.step
@@ -176,7 +176,7 @@ def _record_state(path: Path, index: int, simulation: Simulation) -> None:
     path.clearance[index] = touch.clearance
 
 
-class Table(Protocol):
+class RecordedTable(Protocol):
     """What is recorded: arrays, and the same as columns."""
 
     @property
@@ -187,7 +187,7 @@ class Table(Protocol):
         """One-dimensional arrays by name."""
 
 
-def write(path: Table, file: pathlib.Path) -> None:
+def write(path: RecordedTable, file: pathlib.Path) -> None:
     """Write a path as its file's ending says, .csv, .json or .npz: all of it or nothing.
 
     Numbers in text read back as the same doubles. InputError for another ending, or a place that cannot be written to.
@@ -198,7 +198,7 @@ def write(path: Table, file: pathlib.Path) -> None:
     write_whole(file, encode(path), "out")
 
 
-def _csv(path: Table) -> bytes:
+def _csv(path: RecordedTable) -> bytes:
     columns = path.columns()
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
@@ -208,20 +208,20 @@ def _csv(path: Table) -> bytes:
     return text.getvalue().encode()
 
 
-def _json(path: Table) -> bytes:
+def _json(path: RecordedTable) -> bytes:
     columns = {name: column.tolist() for name, column in path.columns().items()}
     document = {"version": 1, "simulation": path.settings, "columns": columns}
     return json.dumps(document, allow_nan=False).encode()
 
 
-def _npz(path: Table) -> bytes:
+def _npz(path: RecordedTable) -> bytes:
     arrays = {name: value for name, value in vars(path).items() if name != "settings"}
     packed = io.BytesIO()
     np.savez_compressed(packed, allow_pickle=False, simulation=np.array(json.dumps(path.settings)), **arrays)
     return packed.getvalue()
 
 
-_ENCODERS: dict[str, Callable[[Table], bytes]] = {".csv": _csv, ".json": _json, ".npz": _npz}
+_ENCODERS: dict[str, Callable[[RecordedTable], bytes]] = {".csv": _csv, ".json": _json, ".npz": _npz}
 
 ENDINGS = tuple(ending.lstrip(".") for ending in _ENCODERS)
 """Of the files that `write` makes, without the dot."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from culet.errors import InputError
-from culet.simulation.paths import Path
+from culet.simulation.paths import StonePath
 from culet.simulation.several_paths import SeveralPaths
 
 WIDTH, PANEL = 960, 200
@@ -20,7 +20,7 @@ INK, FAINT, CURVE = (32, 32, 36), (214, 214, 220), (36, 98, 178)
 TICKS = 4
 
 
-def plot(path: Path | SeveralPaths, file: pathlib.Path) -> None:
+def plot(path: StonePath | SeveralPaths, file: pathlib.Path) -> None:
     """Write height, energy and angular speed over time as a .png; InputError for another ending or a bad place."""
     if file.suffix.lower() != ".png":
         raise InputError(f"plot: expected a name that ends in .png; got {file.name!r}", "plot")
@@ -65,7 +65,7 @@ def _panel(
 
 
 def _rest(
-    draw: ImageDraw.ImageDraw, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, path: Path | SeveralPaths
+    draw: ImageDraw.ImageDraw, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, path: StonePath | SeveralPaths
 ) -> None:
     """The axis of time, and where all stones have fallen asleep."""
     bottom = draw.im.size[1] - BOTTOM + 4

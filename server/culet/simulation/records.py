@@ -15,12 +15,12 @@ from culet.scene.refusal import scene_error
 from culet.simulation.bodies import BodyState
 from culet.simulation.state import RigidState
 
-Number = Annotated[float, Field(strict=True, ge=-1e30, le=1e30)]
+BoundedNumber = Annotated[float, Field(strict=True, ge=-1e30, le=1e30)]
 """No scene reaches 1e30, and the square of what 1e30 leads to is still a double."""
 Count = Annotated[int, Field(strict=True, ge=0, le=2**53)]
 Time = Annotated[float, Field(strict=True, ge=0, le=1e30)]
 """s."""
-Numbers = tuple[Number, Number, Number]
+Numbers = tuple[BoundedNumber, BoundedNumber, BoundedNumber]
 
 
 def _unit(q: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
@@ -29,17 +29,17 @@ def _unit(q: tuple[float, float, float, float]) -> tuple[float, float, float, fl
     return q
 
 
-Rotation = Annotated[tuple[Number, Number, Number, Number], AfterValidator(_unit)]
+Rotation = Annotated[tuple[BoundedNumber, BoundedNumber, BoundedNumber, BoundedNumber], AfterValidator(_unit)]
 """A unit quaternion w, x, y, z, as it came: normalising it would change the last bit."""
 
 
-class Record(BaseModel):
+class SnapshotRecord(BaseModel):
     """Immutable; unknown keys, NaN and infinity are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-AnyRecord = TypeVar("AnyRecord", bound=Record)
+AnyRecord = TypeVar("AnyRecord", bound=SnapshotRecord)
 
 
 def read_record(kind: type[AnyRecord], data: Any) -> AnyRecord:  # noqa: ANN401 - whatever JSON held

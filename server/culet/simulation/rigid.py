@@ -21,7 +21,7 @@ from culet.simulation.contact_step import contact_step, slid
 from culet.simulation.flight import fly
 from culet.simulation.free_rotation import INTEGRATORS, Integrator
 from culet.simulation.impact import impact
-from culet.simulation.motion import Motion, centre_gap, gaps, kinetic_energy, pushed_out, stopped, velocities
+from culet.simulation.motion import BodyMotion, centre_gap, gaps, kinetic_energy, pushed_out, stopped, velocities
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.state import RigidState, Touch
 from culet.simulation.support import is_supported
@@ -61,7 +61,7 @@ class _Law(NamedTuple):
 class _Course(NamedTuple):
     """How far a fixed step has come."""
 
-    motion: Motion
+    motion: BodyMotion
     left: float
     """s."""
     shortest: float = 0.0
@@ -75,7 +75,7 @@ class _Course(NamedTuple):
 def step(state: RigidState, settings: SimulationSettings, body: RigidBody) -> RigidState:
     """The state one fixed step later."""
     law = _law(settings)
-    motion = Motion(state.position, state.orientation, state.momentum, state.angular_momentum)
+    motion = BodyMotion(state.position, state.orientation, state.momentum, state.angular_momentum)
     if _is_inside(motion, body):
         motion = pushed_out(motion, body)
     course = _Course(motion, settings.time_step)
@@ -171,14 +171,14 @@ def _law(settings: SimulationSettings) -> _Law:
 
 def touch(state: RigidState, body: RigidBody) -> Touch:
     """How the hull's vertices meet the surfaces."""
-    motion = Motion(state.position, state.orientation, state.momentum, state.angular_momentum)
+    motion = BodyMotion(state.position, state.orientation, state.momentum, state.angular_momentum)
     distances = [gaps(motion, body, surface) for surface in body.surfaces]
     deepest = min(float(each.min()) for each in distances)
     touching = sum(int((each <= TOUCH).sum()) for each in distances)
     return Touch(touching, max(-deepest, 0.0), float(distances[0].min()))
 
 
-def _is_inside(motion: Motion, body: RigidBody) -> bool:
+def _is_inside(motion: BodyMotion, body: RigidBody) -> bool:
     return any(
         centre_gap(motion, surface) < body.hull.radius and float(gaps(motion, body, surface).min()) < 0
         for surface in body.surfaces

@@ -10,14 +10,14 @@ from culet.geometry.shape import Shape
 from culet.optics.densities import density_of
 from culet.scene.fields import Vector
 from culet.scene.model import SPIN, Scene
-from culet.scene.motion import Simulation
+from culet.scene.motion import MotionLaws
 from culet.scene.stone import CARATS_PER_GRAM, StoneSettings
 
 GRAMS = 1e-6
 """In a cubic millimetre of 1 kg/m^3."""
 
 
-class SimulationSettings(Simulation):
+class SimulationSettings(MotionLaws):
     """Laws of motion with one stone's restitution and friction, its mass, and how it starts."""
 
     mass: Annotated[float, Field(gt=0)] = 2
@@ -31,7 +31,7 @@ class SimulationSettings(Simulation):
     def of(cls, scene: Scene, settings: StoneSettings, shape: Shape) -> Self:
         """Those of a stone of the scene; `shape` has radius 1."""
         own = {name: value for name in ("restitution", "friction") if (value := getattr(settings, name)) is not None}
-        laws = {name: getattr(scene.simulation, name) for name in Simulation.model_fields}
+        laws = {name: getattr(scene.simulation, name) for name in MotionLaws.model_fields}
         mass = mass_of(settings, shape, scene.millimetres)
         return cls(**laws | own, mass=mass, spin=settings.spin, velocity=settings.velocity)
 

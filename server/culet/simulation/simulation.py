@@ -12,7 +12,7 @@ from culet.simulation.body import RigidBody
 from culet.simulation.drop import drop_position
 from culet.simulation.impulses import impulse_at
 from culet.simulation.models import MODELS
-from culet.simulation.motion import Motion, speed
+from culet.simulation.motion import BodyMotion, speed
 from culet.simulation.rotation import normalised, slerp
 from culet.simulation.settings import SimulationSettings
 from culet.simulation.snapshot import read_snapshot, write_snapshot
@@ -102,7 +102,7 @@ class Simulation:
         if not all(math.isfinite(c) for c in (*impulse, *point)):
             raise InputError(f"a push is finite; got {impulse} at {point}", "impulse")
         state = self.state
-        motion = Motion(state.position, state.orientation, state.momentum, state.angular_momentum)
+        motion = BodyMotion(state.position, state.orientation, state.momentum, state.angular_momentum)
         x, y, z = (a - b for a, b in zip(point, state.position, strict=True))
         pushed = impulse_at(motion, (x, y, z), impulse)
         if speed(pushed, self.body) > MAX_SPEED:

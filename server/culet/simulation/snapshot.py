@@ -6,11 +6,11 @@ from typing import Any, Literal, Self
 
 from pydantic import StrictBool, model_validator
 
-from culet.simulation.records import Count, Numbers, Record, Rotation, Time, plain, read_record
+from culet.simulation.records import Count, Numbers, Rotation, SnapshotRecord, Time, plain, read_record
 from culet.simulation.state import RigidState
 
 
-class _StateRecord(Record):
+class _StateRecord(SnapshotRecord):
     """A RigidState, field by field."""
 
     step: Count
@@ -24,7 +24,7 @@ class _StateRecord(Record):
     coarse: Count = 0
 
 
-class _SnapshotRecord(Record):
+class _SnapshotRecord(SnapshotRecord):
     version: Literal[1]
     state: _StateRecord
     previous: _StateRecord

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from culet.errors import InputError, TooLargeError
-from culet.scene.motion import Simulation as Law
+from culet.scene.motion import MotionLaws
 from culet.simulation.bodies import Body, BodyState
 from culet.simulation.body import angular_momentum_of, inertia_of
 from culet.simulation.principal_axes import principal_axes
@@ -29,7 +29,7 @@ MAX_BODIES = 64
 
 
 @dataclass(frozen=True)
-class Effort:
+class SolverEffort:
     """How finely the solver works: what is not a scene's to choose."""
 
     substeps: int = 8
@@ -42,13 +42,13 @@ class Together:
     """Mutable, and safe to be used by several threads: one waits for the other."""
 
     def __init__(
-        self, law: Law, bodies: Sequence[Body], surfaces: Sequence[Surface], effort: Effort | None = None
+        self, law: MotionLaws, bodies: Sequence[Body], surfaces: Sequence[Surface], effort: SolverEffort | None = None
     ) -> None:
         """At the start. TooLargeError for too many bodies, InputError for a model or an inertia that cannot be used,
         SolverUnavailableError if there is no solver."""
         self._library = library()
         self._lock = threading.RLock()
-        self._effort = effort or Effort()
+        self._effort = effort or SolverEffort()
         self._law = _checked(law)
         self._bodies: list[Body] = []
         world = self._library.culet_world_new(MAX_BODIES)
@@ -71,7 +71,7 @@ class Together:
     def states(self) -> tuple[BodyState, ...]:
         """Of all bodies, in their order."""
         with self._lock:
-            found = (interface.State * len(self._bodies))()
+            found = (interface.CuletState * len(self._bodies))()
             self._library.culet_world_states(self._world, found)
         numbers = np.frombuffer(memoryview(found).cast("B"), np.float64).reshape(len(found), -1)[:, :16].tolist()
         marks = (
@@ -82,10 +82,10 @@ class Together:
             for (x, y, z, a, b, c, d, u, v, w, _, _, _, p, q, r), (asleep, held) in zip(numbers, marks, strict=True)
         )
 
-    def set_law(self, law: Law) -> None:
+    def set_law(self, law: MotionLaws) -> None:
         """Another gravity, or whatever else of the law; wakes all. InputError, and nothing changed, if it cannot be."""
         _checked(law)
-        given = interface.Law(
+        given = interface.CuletLaw(
             gravity=law.gravity,
             bounce_speed=law.bounce_speed,
             contact_step=law.contact_step,
@@ -166,7 +166,7 @@ class Together:
     def touches(self) -> tuple[Touch, ...]:
         """How each body met surfaces and others in the last substep; the clearance is not known here: 0."""
         with self._lock:
-            found = (interface.Touch * len(self._bodies))()
+            found = (interface.CuletTouch * len(self._bodies))()
             self._library.culet_world_touches(self._world, found)
         return tuple(Touch(each.contacts, each.penetration, 0.0) for each in found)
 
@@ -209,7 +209,7 @@ class Together:
             raise MemoryError("the contacts of a snapshot")
 
 
-def _checked(law: Law) -> Law:
+def _checked(law: MotionLaws) -> MotionLaws:
     if law.model == "classic":
         raise InputError(
             "the model classic moves one stone; got several: choose simulation.model rigid", "simulation.model"
@@ -228,7 +228,7 @@ class _Shape:
         found = self._polyhedron = polyhedron_of(body.shape)
         self._vertices = np.ascontiguousarray(found.vertices * body.scale)
         self._planes = found.planes * (1.0, 1.0, 1.0, body.scale)
-        self.hull = interface.Hull(
+        self.hull = interface.CuletHull(
             len(found.vertices),
             len(found.planes),
             len(found.edges),
@@ -240,7 +240,7 @@ class _Shape:
         )
 
 
-def _properties(body: Body, law: Law) -> interface.Properties:
+def _properties(body: Body, law: MotionLaws) -> interface.Properties:
     inertia, inverse = inertia_of(law.inertia, body.shape, body.mass * body.scale**2)
     axes = principal_axes(inertia)
     return interface.Properties(
@@ -254,14 +254,14 @@ def _properties(body: Body, law: Law) -> interface.Properties:
     )
 
 
-def angular_momentum_by(body: Body, law: Law, state: BodyState) -> Triple:
+def angular_momentum_by(body: Body, law: MotionLaws, state: BodyState) -> Triple:
     """World axes, mass R^2/s."""
     inertia, _ = inertia_of(law.inertia, body.shape, body.mass * body.scale**2)
     return angular_momentum_of(inertia, state.orientation, state.spin)
 
 
-def _given(body: Body, law: Law, state: BodyState) -> interface.State:
+def _given(body: Body, law: MotionLaws, state: BodyState) -> interface.CuletState:
     momentum = angular_momentum_by(body, law, state)
-    return interface.State(
+    return interface.CuletState(
         state.position, state.orientation, state.velocity, momentum, state.spin, state.asleep, state.held
     )

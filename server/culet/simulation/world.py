@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any, TypeVar, assert_never
 
 from culet.errors import InputError
-from culet.scene.motion import Simulation as Law
+from culet.scene.motion import MotionLaws
 from culet.simulation.alone import Alone
 from culet.simulation.bodies import Body, BodyState, Pose, WorldState
 from culet.simulation.drop import DROP_HEIGHT, STANDING
@@ -20,7 +20,7 @@ from culet.simulation.rotation import normalised, rotate_back, slerp
 from culet.simulation.solver.polyhedron import polyhedron_of
 from culet.simulation.state import Quaternion, Touch, Triple
 from culet.simulation.surfaces import FLOOR, Surface
-from culet.simulation.together import Effort, Together, angular_momentum_by
+from culet.simulation.together import SolverEffort, Together, angular_momentum_by
 from culet.simulation.world_snapshot import read_world_snapshot, write_world_snapshot
 
 T = TypeVar("T")
@@ -37,12 +37,12 @@ class World:
         self,
         bodies: Sequence[Body],
         surfaces: Sequence[Surface] = (FLOOR,),
-        law: Law | None = None,
-        effort: Effort | None = None,
+        law: MotionLaws | None = None,
+        effort: SolverEffort | None = None,
     ) -> None:
         """At the start. InputError for names that are not different, a law or an inertia that cannot be used;
         TooLargeError for too many bodies; SolverUnavailableError where several have no solver."""
-        self.law = law or Law()
+        self.law = law or MotionLaws()
         self.surfaces = tuple(surfaces)
         self.bodies = tuple(bodies)
         """In their order."""
@@ -135,7 +135,7 @@ class World:
                 assert_never(self._mover)
         self._changed()
 
-    def adjust(self, law: Law) -> None:
+    def adjust(self, law: MotionLaws) -> None:
         """Go on from the current state by another law. InputError, and nothing changed, if it cannot be used."""
         if law == self.law:
             return

@@ -9,10 +9,10 @@ from pydantic import StrictBool, StrictStr, model_validator
 
 from culet.errors import InputError
 from culet.simulation.bodies import BodyState, WorldState
-from culet.simulation.records import Count, Numbers, Record, Rotation, Time, plain, read_record
+from culet.simulation.records import Count, Numbers, Rotation, SnapshotRecord, Time, plain, read_record
 
 
-class _BodyRecord(Record):
+class _BodyRecord(SnapshotRecord):
     """A BodyState, field by field."""
 
     position: Numbers
@@ -23,7 +23,7 @@ class _BodyRecord(Record):
     held: StrictBool
 
 
-class _WorldRecord(Record):
+class _WorldRecord(SnapshotRecord):
     version: Literal[2]
     stones: tuple[StrictStr, ...]
     step: Count

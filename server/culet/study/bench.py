@@ -17,7 +17,7 @@ import pyopencl as cl
 
 from culet.rendering.build import FLAGS
 from culet.rendering.features import Features, features_of
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene.model import Scene
 from culet.study.cases import CASES, FEATURE_CASES, stage_of
 from culet.study.provenance import commit, processor
@@ -142,7 +142,9 @@ def record(renderer: Renderer, width: int, height: int, timings: list[Timing]) -
     )
 
 
-def _picture(renderer: Renderer, scene: Scene, width: int, height: int, features: Features | None = None) -> Picture:
+def _picture(
+    renderer: Renderer, scene: Scene, width: int, height: int, features: Features | None = None
+) -> DevicePicture:
     picture = renderer.picture(stage_of(scene), width, height, features=features)
     picture.refine()  # the first launch pays for pages and caches
     return picture
@@ -154,7 +156,7 @@ class _Turn(NamedTuple):
     """s of all cores together."""
 
 
-def _take_turns(pictures: list[Picture], repeats: int) -> list[list[_Turn]]:
+def _take_turns(pictures: list[DevicePicture], repeats: int) -> list[list[_Turn]]:
     turns: list[list[_Turn]] = [[] for _ in pictures]
     for _ in range(repeats):
         for picture, own in zip(pictures, turns, strict=True):
@@ -181,5 +183,5 @@ def _median(turns: list[_Turn]) -> float:
     return statistics.median(turn.seconds for turn in turns)
 
 
-def _program_size(picture: Picture) -> int:
+def _program_size(picture: DevicePicture) -> int:
     return int(picture.program.get_info(cl.program_info.BINARY_SIZES)[0])

@@ -22,11 +22,11 @@ from scipy.spatial.transform import Rotation
 
 from culet.errors import SceneError
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.light_map import Figures, frame_of
 from culet.rendering.light.lighting import takes_only_beams
 from culet.rendering.light.photons import Photons
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.light.solids import MANY
 from culet.rendering.light.sources import rays_of
 from culet.rendering.renderer import Renderer
@@ -35,7 +35,7 @@ from culet.scene.room import Plane
 from culet.scene.sky import ConstantEnvironment
 from culet.stage import Stage
 from culet.study.convergence import resting_error, time_to
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.report import Figure, Point, Race
 
 Array = NDArray[np.float64]
@@ -75,7 +75,7 @@ TARGETS = (0.02, 0.01, 0.005, 0.003, 0.002)
 """RMSE to which times are compared. That of a moving frame is about 0.01."""
 
 
-class Extent(NamedTuple):
+class CausticsEffort(NamedTuple):
     """How much a study of caustics takes."""
 
     cutoffs: tuple[float, ...]
@@ -91,8 +91,8 @@ class Extent(NamedTuple):
     repeats: int
 
 
-FULL = Extent(CUTOFFS, PASSES, 10, 1e-7, 2e-6, 384, 12, (1e-3, 1e-4, 1e-5), 9)
-QUICK = Extent(CUTOFFS[:7:2], PASSES[:3], 7, 1e-7, 1e-5, 96, 4, (1e-3, 1e-4), 3)
+FULL = CausticsEffort(CUTOFFS, PASSES, 10, 1e-7, 2e-6, 384, 12, (1e-3, 1e-4, 1e-5), 9)
+QUICK = CausticsEffort(CUTOFFS[:7:2], PASSES[:3], 7, 1e-7, 1e-5, 96, 4, (1e-3, 1e-4), 3)
 
 Progress = Callable[[str, int], None]
 
@@ -131,7 +131,7 @@ class Bench:
             cutoff=cutoff, number=number, keep=1 - 1 / part, gain=1 / part,
         )  # fmt: skip
 
-    def converged(self, extent: Extent, directions: int) -> Converged:
+    def converged(self, extent: CausticsEffort, directions: int) -> Converged:
         """By beams: what photons make of the same comes nearer and nearer to it."""
         if self.lamp == "point":
             self.thrown(extent.reference_cutoff, 0, 1)
@@ -172,7 +172,9 @@ def turned(stage: Stage, number: int) -> Stage:
     return replace(stage, scene=stage.scene.model_copy(update={"stones": stones}))
 
 
-def measure_all(renderer: Renderer, stage: Stage, extent: Extent, journal: Journal, progress: Progress) -> None:
+def measure_all(
+    renderer: Renderer, stage: Stage, extent: CausticsEffort, journal: PointJournal, progress: Progress
+) -> None:
     """Every point that the journal lacks; `progress` is told what comes next and how much is done."""
     done = 0
     for lamp in LAMPS:
@@ -191,12 +193,12 @@ def measure_all(renderer: Renderer, stage: Stage, extent: Extent, journal: Journ
                 journal.add(*_poses(Bench(renderer, turned(stage, number), lamp), extent, number))
 
 
-def steps(extent: Extent) -> int:
+def steps(extent: CausticsEffort) -> int:
     """That `measure_all` tells of."""
     return len(LAMPS) * (3 + extent.poses)
 
 
-def notes(extent: Extent) -> list[str]:
+def notes(extent: CausticsEffort) -> list[str]:
     """What there is to say about the references."""
     words = (
         f"Converged maps are beams at a cut-off of {extent.reference_cutoff:g}; of the sun, the mean of "
@@ -207,7 +209,7 @@ def notes(extent: Extent) -> list[str]:
     return [words]
 
 
-def _sweeps(bench: Bench, extent: Extent) -> Iterator[tuple[str, Callable[[Converged], list[Point]]]]:
+def _sweeps(bench: Bench, extent: CausticsEffort) -> Iterator[tuple[str, Callable[[Converged], list[Point]]]]:
     yield "beams", partial(_by_beams, bench, extent)
     yield "photons", partial(_by_photons, bench, extent)
     yield "at rest", partial(_at_rest, bench)
@@ -227,7 +229,7 @@ class _Clock:
         self.processor += time.process_time() - self._begun[1]
 
 
-def _by_beams(bench: Bench, extent: Extent, judge: Converged) -> list[Point]:
+def _by_beams(bench: Bench, extent: CausticsEffort, judge: Converged) -> list[Point]:
     """Cut-offs, of a sun with several passes each."""
     points = []
     for cutoff in extent.cutoffs:
@@ -256,7 +258,7 @@ def _by_beams(bench: Bench, extent: Extent, judge: Converged) -> list[Point]:
     return points
 
 
-def _by_photons(bench: Bench, extent: Extent, judge: Converged) -> list[Point]:
+def _by_photons(bench: Bench, extent: CausticsEffort, judge: Converged) -> list[Point]:
     """Passes whose photons double from one to the next, each weighed by its number: as a resting picture has them."""
     maps = Photons(bench.device).maps(bench.stage, bench.frame)
     for _ in maps.pieces(bench.made, _spread(bench.stage, 0), number=0, photons=1):  # compiled, and warm
@@ -278,7 +280,7 @@ def _by_photons(bench: Bench, extent: Extent, judge: Converged) -> list[Point]:
     return points
 
 
-def _spread(stage: Stage, number: int) -> list[Ray]:
+def _spread(stage: Stage, number: int) -> list[LightRay]:
     """The rays of several passes at once, of equal shares."""
     if all(ray.position is not None for ray in rays_of(stage, 0)):
         return rays_of(stage, number)
@@ -298,7 +300,7 @@ def _at_rest(bench: Bench, judge: Converged) -> list[Point]:
     found = lighting.of(bench.stage)
     assert found is not None  # noqa: S101 - the floor is matte
     optics = bench.stage.scene.optics
-    pieces = found.pieces(optics.caustics_cutoff, Effort.PATIENT, 0.02)
+    pieces = found.pieces(optics.caustics_cutoff, LightEffort.PATIENT, 0.02)
     clock, points, passes = _Clock(), list[Point](), 0
     while True:
         with clock:
@@ -317,7 +319,7 @@ def _at_rest(bench: Bench, judge: Converged) -> list[Point]:
             return points
 
 
-def _poses(bench: Bench, extent: Extent, number: int) -> list[Point]:
+def _poses(bench: Bench, extent: CausticsEffort, number: int) -> list[Point]:
     """The estimate beside the truth: of one direction, which is all that a pass estimates."""
     bench.thrown(extent.reference_cutoff, 0, 1)
     judge, points = Converged(bench.map(), 0.0), []

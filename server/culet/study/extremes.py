@@ -25,9 +25,9 @@ from culet.stage import Library, Stage
 from culet.study.solids import ball, box, brilliant, scaled, tetrahedron
 
 Array = NDArray[np.float64]
-Settings = Mapping[str, Any]
+SceneSettings = Mapping[str, Any]
 
-MODES: Mapping[str, Settings] = {
+MODES: Mapping[str, SceneSettings] = {
     "scalar": {},
     "spectral": {"bands": 8},
     "polarised": {"polarised": True},
@@ -46,23 +46,23 @@ MESH = "extreme"
 
 
 @dataclass(frozen=True)
-class Extreme:
+class SceneExtreme:
     """One case: a shape, a scene without it, and where to look from."""
 
     name: str
     shape: Callable[[], Shape]
-    settings: Settings = field(default_factory=dict)
+    settings: SceneSettings = field(default_factory=dict)
     """Of the stone of this shape."""
-    scene: Settings = field(default_factory=dict)
+    scene: SceneSettings = field(default_factory=dict)
     """What else is not as usual."""
-    cameras: Callable[[Shape], Iterator[Settings]] | None = None
+    cameras: Callable[[Shape], Iterator[SceneSettings]] | None = None
     """Several small pictures instead of one from the side."""
     brightest: float | None = None
     """Where a pixel may be darker than 1: the most that it may be."""
 
 
 @dataclass(frozen=True)
-class Count:
+class PixelCount:
     """Pixels of one case in one mode."""
 
     pixels: int = 0
@@ -72,9 +72,9 @@ class Count:
     farthest: float = 0
     """Radiance by which a pixel goes beyond its bounds, at most; below ROUNDING it is no speck."""
 
-    def plus(self, other: Count) -> Count:
+    def plus(self, other: PixelCount) -> PixelCount:
         """Both together."""
-        return Count(
+        return PixelCount(
             self.pixels + other.pixels,
             self.not_finite + other.not_finite,
             self.negative + other.negative,
@@ -88,14 +88,14 @@ class Count:
         return self.not_finite + self.negative + self.specks
 
 
-def at_vertices(shape: Shape) -> Iterator[Settings]:
+def at_vertices(shape: Shape) -> Iterator[SceneSettings]:
     """From outside and from the centre at every vertex; the middle of the picture meets it."""
     for vertex in shape.vertices:
         yield _camera(3 * vertex / np.linalg.norm(vertex) + 0.3, vertex)
         yield _camera(np.zeros(3), vertex)
 
 
-def along_edges(shape: Shape) -> Iterator[Settings]:
+def along_edges(shape: Shape) -> Iterator[SceneSettings]:
     """At the middle of every edge, from outside and from the centre, and along it."""
     for a, b in shape.vertices[edges_of_facets(shape)[:, :2]]:
         middle = (a + b) / 2
@@ -104,7 +104,7 @@ def along_edges(shape: Shape) -> Iterator[Settings]:
         yield _camera(a + 2 * (a - b) / np.linalg.norm(a - b), b)
 
 
-def on_facets(shape: Shape) -> Iterator[Settings]:
+def on_facets(shape: Shape) -> Iterator[SceneSettings]:
     """The eye on each facet's plane, above the stone's centre: looking out, in, and along."""
     for *normal, offset in shape.planes:
         eye, out = offset * np.array(normal), np.array(normal)
@@ -113,7 +113,7 @@ def on_facets(shape: Shape) -> Iterator[Settings]:
             yield _camera(eye, eye + direction, fov_degrees=100)
 
 
-def grazing(shape: Shape) -> Iterator[Settings]:
+def grazing(shape: Shape) -> Iterator[SceneSettings]:
     """At 89.9999 degrees from each facet's normal, on the point abreast of the stone's centre."""
     for *normal, offset in shape.planes:
         out = np.array(normal)
@@ -124,20 +124,20 @@ def grazing(shape: Shape) -> Iterator[Settings]:
         yield _camera(point + 3 * (np.cos(angle) * out + np.sin(angle) * across), point)
 
 
-def inside(_: Shape) -> Iterator[Settings]:
+def inside(_: Shape) -> Iterator[SceneSettings]:
     """Nearly all directions from the centre and from beside it."""
     for eye in ((0, 0, 0), (0.2, 0.05, -0.1)):
         for direction in (*np.eye(3), *-np.eye(3)):
             yield _camera(np.array(eye), np.array(eye) + direction, fov_degrees=110)
 
 
-def far(_: Shape) -> Iterator[Settings]:
+def far(_: Shape) -> Iterator[SceneSettings]:
     """From a million radii: the stone fills a tenth of the narrowest picture."""
     for direction in ((0.3, 0.8, 0.5196), (0, 1, 0), (1, 0, 0)):
         yield _camera(1e6 * np.array(direction), np.zeros(3))
 
 
-def _camera(position: Array, target: Array, fov_degrees: float = 1e-3) -> Settings:
+def _camera(position: Array, target: Array, fov_degrees: float = 1e-3) -> SceneSettings:
     forward = target - position
     up = np.eye(3)[np.abs(forward).argmin()]
     return {
@@ -148,30 +148,30 @@ def _camera(position: Array, target: Array, fov_degrees: float = 1e-3) -> Settin
     }
 
 
-def _index(n: float) -> Settings:
+def _index(n: float) -> SceneSettings:
     return {"material": {"ior": [n, n, n]}}
 
 
 EXTREMES = (
-    Extreme("index 1", brilliant, _index(1)),
-    Extreme("index 1 + 1e-6", brilliant, _index(1 + 1e-6)),
-    Extreme("index 4", brilliant, _index(4)),
-    Extreme("index 10", brilliant, _index(10)),
-    Extreme("absorption 0", brilliant),
-    Extreme("absorption 1e6 per R", brilliant, {"absorption": [1e6] * 3}, brightest=1),
-    Extreme("1e-6 in size", scaled(1e-6)),
-    Extreme("1e6 in size", scaled(1e6)),
-    Extreme("needle, 1000 : 1", box(1, 1e-3, 1e-3)),
-    Extreme("wafer, 1000 : 1", box(1, 1e-3, 1)),
-    Extreme("4 facets", tetrahedron),
-    Extreme("5000 facets", ball(5000)),
-    Extreme("rays at every vertex", brilliant, cameras=at_vertices),
-    Extreme("rays at and along every edge", brilliant, cameras=along_edges),
-    Extreme("camera inside", brilliant, cameras=inside),
-    Extreme("camera on every facet", brilliant, cameras=on_facets),
-    Extreme("camera at 1e6 radii", brilliant, cameras=far),
-    Extreme("grazing every facet, 89.9999 degrees", brilliant, cameras=grazing),
-    Extreme(
+    SceneExtreme("index 1", brilliant, _index(1)),
+    SceneExtreme("index 1 + 1e-6", brilliant, _index(1 + 1e-6)),
+    SceneExtreme("index 4", brilliant, _index(4)),
+    SceneExtreme("index 10", brilliant, _index(10)),
+    SceneExtreme("absorption 0", brilliant),
+    SceneExtreme("absorption 1e6 per R", brilliant, {"absorption": [1e6] * 3}, brightest=1),
+    SceneExtreme("1e-6 in size", scaled(1e-6)),
+    SceneExtreme("1e6 in size", scaled(1e6)),
+    SceneExtreme("needle, 1000 : 1", box(1, 1e-3, 1e-3)),
+    SceneExtreme("wafer, 1000 : 1", box(1, 1e-3, 1)),
+    SceneExtreme("4 facets", tetrahedron),
+    SceneExtreme("5000 facets", ball(5000)),
+    SceneExtreme("rays at every vertex", brilliant, cameras=at_vertices),
+    SceneExtreme("rays at and along every edge", brilliant, cameras=along_edges),
+    SceneExtreme("camera inside", brilliant, cameras=inside),
+    SceneExtreme("camera on every facet", brilliant, cameras=on_facets),
+    SceneExtreme("camera at 1e6 radii", brilliant, cameras=far),
+    SceneExtreme("grazing every facet, 89.9999 degrees", brilliant, cameras=grazing),
+    SceneExtreme(
         "light inside the stone",
         brilliant,
         scene={
@@ -180,28 +180,28 @@ EXTREMES = (
         },
         brightest=0.9 * 2,  # the lighter albedo in all the light that there is: the sky's and the point's
     ),
-    Extreme("light at the stone's vertex", brilliant,
+    SceneExtreme("light at the stone's vertex", brilliant,
             scene={"floor": {"kind": "matte"}, "emitters": [{"shape": "point", "colour": [1, 1, 1],
                                                              "position": brilliant().vertices[0].tolist()}]},
             brightest=0.9 * 2),
 )  # fmt: skip
 
-_FROM_THE_SIDE: Settings = {"position": [0.7, 1.6, 2.4], "target": [0, 0, 0], "fov_degrees": 40}
+_FROM_THE_SIDE: SceneSettings = {"position": [0.7, 1.6, 2.4], "target": [0, 0, 0], "fov_degrees": 40}
 
 
 def count(
     renderer: Renderer,
-    extreme: Extreme,
+    extreme: SceneExtreme,
     mode: str,
     cutoff: float = 1e-3,
     program: Callable[[Features], Features] = lambda needed: needed,
-) -> Count:
+) -> PixelCount:
     """Render a case in a mode of MODES, by the `program` for what it needs, and judge every pixel."""
     shape = extreme.shape()
     library = Library({MESH: shape})
     cameras = extreme.cameras(shape) if extreme.cameras else iter([_FROM_THE_SIDE])
     size = (5, 5) if extreme.cameras else (96, 54)
-    total = Count()
+    total = PixelCount()
     for camera in cameras:
         scene = legacy(
             {
@@ -226,7 +226,7 @@ def count(
     return total
 
 
-def _judged(scene: Scene, brightest: float | None, pixels: Array, cut: Array) -> Count:
+def _judged(scene: Scene, brightest: float | None, pixels: Array, cut: Array) -> PixelCount:
     """(height, width, 3) radiance and (height, width) cut weight, the mean over the channels.
 
     A pixel of sampled wavelengths is a sum of radiances by weights of both signs, those of each channel 1 together. So
@@ -252,7 +252,7 @@ def _judged(scene: Scene, brightest: float | None, pixels: Array, cut: Array) ->
         lost = cut > LOST * scene.optics.cutoff
         beyond = np.where(lost, np.maximum(beyond, cut), beyond)
     beyond = np.where(finite, np.maximum(beyond, 0), 0)
-    return Count(
+    return PixelCount(
         pixels=finite.size,
         not_finite=int((~finite).sum()),
         negative=int(((pixels < (lowest - ROUNDING if is_spectral(scene) else 0)).any(axis=-1) | (cut < 0)).sum()),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from culet.rendering.chains import is_spectral
 from culet.rendering.features import Features
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene.presets import PRESETS, Preset
 from culet.scene.thumbnails import SIZE
 from culet.simulation.paths import record
@@ -59,7 +59,7 @@ WANTED: Mapping[str, Mapping[str, Band]] = {
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownPreset:
     """A preset's picture and what it measures."""
 
     preset: Preset
@@ -80,7 +80,7 @@ def size_of(preset: Preset) -> tuple[int, int]:
 
 def picture_of(
     renderer: Renderer, preset: Preset, size: tuple[int, int], samples: int, features: Features | None = None
-) -> Picture:
+) -> DevicePicture:
     """A preset's finished picture; `features` asks for another program than its own."""
     picture = renderer.picture(Stage.of(preset.scene), *size, features=features)
     picture.refine(samples)
@@ -93,7 +93,7 @@ def shown(
     size: tuple[int, int] | None = None,
     samples: int | None = None,
     features: Features | None = None,
-) -> Shown:
+) -> ShownPreset:
     """At full size, unless another is asked for."""
     size = size or size_of(preset)
     samples = samples or (SPECTRAL_SAMPLES if is_spectral(preset.scene) else SAMPLES)
@@ -102,7 +102,7 @@ def shown(
     if len(picture.stage.shapes) == 1 and picture.stage.shapes[0].convex:
         mask = stone_mask(picture.stage, *size)
         measures = {**vars(appearance(picture.rgb(), mask)), **vars(colour_parts(picture.linear(), mask))}
-    return Shown(preset, picture.rgb(), measures)
+    return ShownPreset(preset, picture.rgb(), measures)
 
 
 def in_flight(
@@ -121,11 +121,11 @@ def in_flight(
     return {name: float(np.mean([measures[name] for measures in found])) for name in found[0]}
 
 
-def gallery(renderer: Renderer) -> Iterator[Shown]:
+def gallery(renderer: Renderer) -> Iterator[ShownPreset]:
     """All presets at full size; one that falls is measured in flight."""
     for preset in PRESETS.values():
         seen = shown(renderer, preset)
-        yield seen if preset.name != "falling" else Shown(preset, seen.picture, in_flight(renderer, preset))
+        yield seen if preset.name != "falling" else ShownPreset(preset, seen.picture, in_flight(renderer, preset))
 
 
 def make_thumbnails(renderer: Renderer, folder: Path) -> Iterator[Path]:

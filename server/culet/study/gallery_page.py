@@ -7,7 +7,7 @@ from pathlib import Path
 
 import PIL.Image
 
-from culet.study.gallery import QUALITY, SHOWN_WIDTH, WANTED, Shown
+from culet.study.gallery import QUALITY, SHOWN_WIDTH, WANTED, ShownPreset
 
 HEAD = """# Gallery
 
@@ -33,7 +33,7 @@ COLOUR_CODED = ("aset", "ideal-scope")
 INSTRUMENTS = {"red": "red", "pure_red": "pure red", "green": "green", "blue": "blue"}
 
 
-def write_gallery(folder: Path, seen: Sequence[Shown]) -> Path:
+def write_gallery(folder: Path, seen: Sequence[ShownPreset]) -> Path:
     """gallery.md and gallery/NAME.jpg in that folder, and the default's picture as default.png; returns the page."""
     pictures = folder / "gallery"
     pictures.mkdir(parents=True, exist_ok=True)
@@ -53,7 +53,7 @@ def smaller(image: PIL.Image.Image) -> PIL.Image.Image:
     return image if image.width <= SHOWN_WIDTH else image.resize((SHOWN_WIDTH, height), PIL.Image.Resampling.LANCZOS)
 
 
-def page_of(seen: Sequence[Shown]) -> str:
+def page_of(seen: Sequence[ShownPreset]) -> str:
     """The page's text."""
     parts, group = [HEAD], ""
     for each in seen:
@@ -66,7 +66,7 @@ def page_of(seen: Sequence[Shown]) -> str:
     return "\n".join([*parts, EXPLAINED, _table(seen), _instruments(seen)])
 
 
-def _table(seen: Sequence[Shown]) -> str:
+def _table(seen: Sequence[ShownPreset]) -> str:
     rows = [["preset", *(title for title, _ in COLUMNS.values())], ["---"] * (len(COLUMNS) + 1)]
     rows += [
         [f"`{each.preset.name}`", *(_cell(each, name, form) for name, (_, form) in COLUMNS.items())]
@@ -76,7 +76,7 @@ def _table(seen: Sequence[Shown]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
 
 
-def _instruments(seen: Sequence[Shown]) -> str:
+def _instruments(seen: Sequence[ShownPreset]) -> str:
     rows = [["preset", *INSTRUMENTS.values()], ["---"] * (len(INSTRUMENTS) + 1)]
     rows += [
         [f"`{each.preset.name}`", *(_cell(each, name, "{:.1%}") for name in INSTRUMENTS)]
@@ -86,6 +86,6 @@ def _instruments(seen: Sequence[Shown]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
 
 
-def _cell(each: Shown, name: str, form: str) -> str:
+def _cell(each: ShownPreset, name: str, form: str) -> str:
     text = form.format(each.measures[name])
     return f"**{text}**" if name in WANTED.get(each.preset.name, {}) else text

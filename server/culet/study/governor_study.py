@@ -26,7 +26,16 @@ from culet.engine.governing.governor import ERRORS, asked_rate, read_ladder
 from culet.gateway.link import EngineEvents, EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet.scene import Scene
-from culet.study.motion_record import LATE_MS, Change, Seen, Settled, Summary, setting_shares, settle, summarise
+from culet.study.motion_record import (
+    LATE_MS,
+    SceneChange,
+    SeenFrame,
+    Settled,
+    Summary,
+    setting_shares,
+    settle,
+    summarise,
+)
 from culet.study.provenance import commit, processor
 from culet_protocol.engine import CloseSession, Control, Demand, OpenSession
 from culet_protocol.frame import Flags, Frame
@@ -74,14 +83,14 @@ class Recorder(EngineEvents):
     That is a state of the last frame, not an event: whoever asks later is told the same, and `seen` may be emptied.
     """
 
-    seen: list[Seen] = field(default_factory=list)
+    seen: list[SeenFrame] = field(default_factory=list)
     came: asyncio.Event = field(default_factory=asyncio.Event)
     """A frame has; cleared by whoever waits for the next one."""
     _last: Frame | None = None
 
     def frame_came(self, frame: Frame, message: bytes) -> None:
         """A frame has come."""
-        self.seen.append(Seen.of(frame, time.monotonic()))
+        self.seen.append(SeenFrame.of(frame, time.monotonic()))
         self._last = frame
         self.came.set()
 
@@ -97,12 +106,12 @@ class Recorder(EngineEvents):
 
 
 @dataclass(frozen=True)
-class Measured:
+class GovernorRecord:
     """All that was recorded, of the steady scene and of the changes."""
 
-    steady: tuple[Seen, ...]
-    changing: tuple[Seen, ...]
-    changes: tuple[Change, ...]
+    steady: tuple[SeenFrame, ...]
+    changing: tuple[SeenFrame, ...]
+    changes: tuple[SceneChange, ...]
     processor_seconds: float
     """Of the engine, with the steady scene."""
 
@@ -155,7 +164,7 @@ class Play:
 
 async def measure(
     scene: Scene, seconds: float, size: tuple[int, int], exactness: float, *, changes: bool = True
-) -> Measured:
+) -> GovernorRecord:
     """Run an engine and play to it; takes the seconds and some ten more, and with `changes` half a minute more."""
     async with running_engine() as (link, process):
         recorder = Recorder()
@@ -173,11 +182,11 @@ async def measure(
         recorder.seen.clear()
         made = []
         for name, event in CHANGES if changes else ():
-            made.append(Change(name, time.monotonic()))
+            made.append(SceneChange(name, time.monotonic()))
             await play.control(event)
             await play.fall(CHANGE_SECONDS)
         await play.close()
-        return Measured(steady, tuple(recorder.seen), tuple(made), spent)
+        return GovernorRecord(steady, tuple(recorder.seen), tuple(made), spent)
 
 
 def rate_of(exactness: float) -> float:
@@ -210,7 +219,7 @@ def processor_seconds(process: int) -> float:
     return sum(int(ticks) for ticks in fields[11:13]) / os.sysconf("SC_CLK_TCK")
 
 
-def described(measured: Measured, size: tuple[int, int], rate: float) -> str:
+def described(measured: GovernorRecord, size: tuple[int, int], rate: float) -> str:
     """A page of text."""
     milliseconds = 1e3 * measured.processor_seconds / max(1, len(measured.steady))
     rows = [
@@ -260,7 +269,7 @@ def goal_error() -> float:
     return ERRORS.shown(scale, cutoff, max(rung.max_bounces for rung in read_ladder()))
 
 
-def _share_rows(seen: Sequence[Seen], size: tuple[int, int]) -> Iterator[str]:
+def _share_rows(seen: Sequence[SeenFrame], size: tuple[int, int]) -> Iterator[str]:
     """How long each setting was seen, and what it misses."""
     shares, mean = setting_shares(seen, size, ERRORS)
     if not shares:
@@ -288,7 +297,7 @@ def _change_row(settled: Settled) -> str:
     return f"{settled.name:<20} {when:<15} {settled.setting_changes + 1}"
 
 
-def document(measured: Measured, size: tuple[int, int], rate: float) -> str:
+def document(measured: GovernorRecord, size: tuple[int, int], rate: float) -> str:
     """JSON: the summary (null if nothing moved), and every frame's header."""
     summary = summarise(measured.steady, rate)
     shares, mean = setting_shares(measured.steady, size, ERRORS)

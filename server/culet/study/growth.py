@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from culet.geometry.shape import Shape
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import Renderer
 from culet.scene.emitters import Emitter, PointLight, RoundLamp
 from culet.scene.legacy import LEGACY_DEFAULT
@@ -26,7 +26,7 @@ from culet.stage import Stage
 from culet.study.contacts.heaps import dearest_quarter, heap
 from culet.study.convergence import fit_order
 from culet.study.crowd import running_service
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.report import Figure, Fit, Point
 from culet.study.solids import ball
 
@@ -43,7 +43,7 @@ SHAPE = 16, 9
 """Of a picture, its width over its height."""
 
 
-class Sweep(NamedTuple):
+class GrowthSweep(NamedTuple):
     """What a number is of, and the numbers."""
 
     numbers: tuple[int, ...]
@@ -51,10 +51,10 @@ class Sweep(NamedTuple):
     """Exponent up to which its growth is as it should be."""
 
 
-class Extent(NamedTuple):
+class GrowthEffort(NamedTuple):
     """How much a study of growth takes."""
 
-    sweeps: dict[str, Sweep]
+    sweeps: dict[str, GrowthSweep]
     height: int
     """Pixels of frames whose pixels are not swept."""
     repeats: int
@@ -67,24 +67,24 @@ class Extent(NamedTuple):
 LINEAR = 1.05
 """What is linear, with what a fit of a noisy machine's times may miss."""
 
-FULL = Extent(
+FULL = GrowthEffort(
     {
-        "pixels": Sweep((14_400, 57_600, 230_400, 921_600, 3_686_400), LINEAR),
-        "facets": Sweep((16, 32, 64, 128, 256, 512, 1024), LINEAR),
-        "bounces": Sweep((8, 16, 32, 64, 128, 256), LINEAR),
-        "bands": Sweep((3, 6, 12, 24, 48), LINEAR),
-        "stones": Sweep((1, 2, 4, 8, 16, 32, 64), LINEAR),
-        "lamps": Sweep((1, 2, 4, 8, 16, 24), LINEAR),
-        "points": Sweep((1, 2, 4, 8), LINEAR),
-        "touching stones": Sweep((4, 8, 16, 32, 64), 1.8),
-        "sessions": Sweep((1, 2, 4, 8, 16), LINEAR),
-        "viewers": Sweep((1, 2, 4, 8, 16, 32), LINEAR),
+        "pixels": GrowthSweep((14_400, 57_600, 230_400, 921_600, 3_686_400), LINEAR),
+        "facets": GrowthSweep((16, 32, 64, 128, 256, 512, 1024), LINEAR),
+        "bounces": GrowthSweep((8, 16, 32, 64, 128, 256), LINEAR),
+        "bands": GrowthSweep((3, 6, 12, 24, 48), LINEAR),
+        "stones": GrowthSweep((1, 2, 4, 8, 16, 32, 64), LINEAR),
+        "lamps": GrowthSweep((1, 2, 4, 8, 16, 24), LINEAR),
+        "points": GrowthSweep((1, 2, 4, 8), LINEAR),
+        "touching stones": GrowthSweep((4, 8, 16, 32, 64), 1.8),
+        "sessions": GrowthSweep((1, 2, 4, 8, 16), LINEAR),
+        "viewers": GrowthSweep((1, 2, 4, 8, 16, 32), LINEAR),
     },
     360, 9, 14.0, 6.0,
 )  # fmt: skip
-QUICK = Extent(
+QUICK = GrowthEffort(
     {
-        name: Sweep(sweep.numbers[: -1 if len(sweep.numbers) > 4 else None], sweep.most)
+        name: GrowthSweep(sweep.numbers[: -1 if len(sweep.numbers) > 4 else None], sweep.most)
         for name, sweep in FULL.sweeps.items()
     },
     180, 5, 8.0, 3.0,
@@ -102,7 +102,7 @@ class _Shot:
     height: int
 
 
-def measure_all(renderer: Renderer, extent: Extent, journal: Journal, progress: Progress) -> None:
+def measure_all(renderer: Renderer, extent: GrowthEffort, journal: PointJournal, progress: Progress) -> None:
     """Every sweep that the journal lacks."""
     for done, (name, sweep) in enumerate(extent.sweeps.items()):
         progress(name, done)
@@ -118,7 +118,7 @@ def measure_all(renderer: Renderer, extent: Extent, journal: Journal, progress: 
         journal.add(*found)
 
 
-def fits_of(points: Sequence[Point], extent: Extent) -> list[Fit]:
+def fits_of(points: Sequence[Point], extent: GrowthEffort) -> list[Fit]:
     """The power with which each sweep's cost grows, of its larger half."""
     fits = []
     for name in extent.sweeps:
@@ -143,20 +143,20 @@ def _point(name: str, number: int, **figures: float) -> Point:
     )  # fmt: skip
 
 
-def _frames(renderer: Renderer, name: str, numbers: Sequence[int], extent: Extent) -> list[Point]:
+def _frames(renderer: Renderer, name: str, numbers: Sequence[int], extent: GrowthEffort) -> list[Point]:
     shots = [_shot(name, number, extent.height) for number in numbers]
     walls: list[list[float]] = [[] for _ in numbers]
     processors: list[list[float]] = [[] for _ in numbers]
     segments = []
     for shot in shots:  # compiled, and warm
-        picture = renderer.picture(shot.stage, shot.width, shot.height, effort=Effort.MOVING)
+        picture = renderer.picture(shot.stage, shot.width, shot.height, effort=LightEffort.MOVING)
         picture.refine(1)
         segments.append(picture.segments())
     for _ in range(extent.repeats):
         for place, shot in enumerate(shots):
             renderer.lighting.forget()  # as of stones that have moved
             wall, processor = time.perf_counter(), time.process_time()
-            renderer.picture(shot.stage, shot.width, shot.height, effort=Effort.MOVING).refine(1)
+            renderer.picture(shot.stage, shot.width, shot.height, effort=LightEffort.MOVING).refine(1)
             walls[place].append(time.perf_counter() - wall)
             processors[place].append(time.process_time() - processor)
     return [
@@ -248,7 +248,7 @@ async def _crowds(name: str, numbers: Sequence[int], seconds: float) -> list[Poi
     return found
 
 
-def steeper_than_they_should_be(fits: Sequence[Fit], extent: Extent) -> Iterator[str]:
+def steeper_than_they_should_be(fits: Sequence[Fit], extent: GrowthEffort) -> Iterator[str]:
     """The sweeps whose cost grows with a larger power than it should, in words."""
     for fit in fits:
         most = extent.sweeps[fit.label].most

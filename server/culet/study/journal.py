@@ -15,7 +15,7 @@ from culet.study.report import Point
 _POINTS = TypeAdapter(list[Point])
 
 
-class Journal:
+class PointJournal:
     """A journal whose records are lists of points: those that belong together are kept together or not at all."""
 
     def __init__(self, path: Path, identity: dict[str, object], *, fresh: bool = False) -> None:

@@ -57,7 +57,7 @@ class Knobs:
         return ", ".join(f"{_name(n)} {_text(v)}" for n, v in own.items() if v != others[n]) or "base"
 
 
-class Setting(NamedTuple):
+class KnobSetting(NamedTuple):
     """Something to measure."""
 
     group: str
@@ -91,15 +91,15 @@ SAMPLES = (2, 4, 8, 16, 32, 64)
 PICTURED = frozenset({"cutoff 0.1", "max bounces 8", "estimator classic", "scale 0.5", "bands 16", "samples 16"})
 
 
-def settings_of(base: Knobs, *, quick: bool) -> list[Setting]:
+def settings_of(base: Knobs, *, quick: bool) -> list[KnobSetting]:
     """One knob at a time, then combinations of those that trade most; each setting once, the base first.
 
     `quick` leaves out the finest steps and most combinations.
     """
-    found: dict[str, Setting] = {}
+    found: dict[str, KnobSetting] = {}
     for group, knobs in _sweeps(base, quick=quick):
         pictured = knobs == base or knobs.differences(base) in PICTURED
-        found.setdefault(knobs.key, Setting(group, knobs, pictured))
+        found.setdefault(knobs.key, KnobSetting(group, knobs, pictured))
     return list(found.values())
 
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from culet.engine.governing.governor import Setting
 from culet.optics.tone import tone_map
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
 from culet.scene.model import Scene
 from culet.stage import Stage
@@ -44,7 +44,7 @@ CLOSEST = 0.95
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredSetting:
     """One setting of the grid."""
 
     setting: Setting
@@ -52,7 +52,7 @@ class Measured:
     """Root mean square error of the linear radiance, as `Setting.error` is of what is shown."""
 
 
-def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> list[Measured]:
+def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> list[MeasuredSetting]:
     """All settings, by scale, cut-off and bounces."""
     stage = Stage.of(scene)
     reference = renderer.picture(_with_optics(stage, REFERENCE_CUTOFF, BOUNCES[0]), *size)
@@ -60,7 +60,7 @@ def measure(renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> l
     return _measured(renderer, stage, reference)
 
 
-def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
+def ladder_of(measured: list[MeasuredSetting]) -> tuple[Setting, ...]:
     """The best setting first, then the frontier of those that are cheaper: each has the least error for its cost.
 
     The first is the scene's own, whatever its error.
@@ -69,7 +69,7 @@ def ladder_of(measured: list[Measured]) -> tuple[Setting, ...]:
     return tuple(replace(r, cost=round(r.cost, 3), error=round(r.error, 4)) for r in _rungs(best, others))
 
 
-def errors_of(measured: list[Measured]) -> dict[str, Any]:
+def errors_of(measured: list[MeasuredSetting]) -> dict[str, Any]:
     """As `measured_errors` reads them: axes ascending, errors by scale, then cut-off, then bounces."""
     shape = len(SCALES), len(CUTOFFS), len(BOUNCES)
     shown = np.array([round(each.setting.error, 4) for each in measured]).reshape(shape)
@@ -99,7 +99,7 @@ def _frontier(settings: list[Setting], cost: float) -> list[Setting]:
     return rungs
 
 
-def _measured(renderer: Renderer, stage: Stage, reference: Picture) -> list[Measured]:
+def _measured(renderer: Renderer, stage: Stage, reference: DevicePicture) -> list[MeasuredSetting]:
     size = reference.width, reference.height
     settings = list(product(SCALES, CUTOFFS, BOUNCES))
     ratios: list[list[float]] = [[] for _ in settings]
@@ -112,7 +112,7 @@ def _measured(renderer: Renderer, stage: Stage, reference: Picture) -> list[Meas
     measured = []
     for setting, costs, picture in zip(settings, ratios, pictures, strict=True):
         radiance, shown = (_error(p, t) for p, t in zip(picture, truth, strict=True))
-        measured.append(Measured(Setting(*setting, statistics.median(costs), shown), radiance))
+        measured.append(MeasuredSetting(Setting(*setting, statistics.median(costs), shown), radiance))
     return measured
 
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import pyopencl as cl
 
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.light_map import frame_of
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.light.sources import rays_of
 from culet.rendering.renderer import Renderer
 from culet.scene.emitters import PointLight, Sun
@@ -75,7 +75,7 @@ def _map(renderer: Renderer, scene: Scene, beams: Beams, levels: int = 2) -> Cal
     if levels == 1:
         frame = replace(frame, halves=(frame.halves[0], OUT_OF_REACH))
     target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
-    rays: list[Ray] = rays_of(stage, 0)
+    rays: list[LightRay] = rays_of(stage, 0)
 
     def run(number: int) -> None:
         del number
@@ -94,7 +94,7 @@ def _frame(renderer: Renderer, scene: Scene, width: int, height: int) -> Callabl
         x, y, z = stone.position
         moved = scene.model_copy(update={"stones": (stone.model_copy(update={"position": (x, y + 1e-3 * number, z)}),)})
         renderer.lighting.forget()
-        renderer.picture(first.showing(moved), width, height, effort=Effort.MOVING).refine(1)
+        renderer.picture(first.showing(moved), width, height, effort=LightEffort.MOVING).refine(1)
 
     run(0)
     run(0)

@@ -21,7 +21,7 @@ from rich import box
 from rich.table import Table
 
 from culet.errors import SceneError
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.light_map import Figures, frame_of
 from culet.rendering.light.lighting import takes_only_beams
 from culet.rendering.light.solids import MANY
@@ -63,7 +63,7 @@ class LiveLight:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class CutOffSweep:
     """Of one scene."""
 
     width: int
@@ -86,7 +86,7 @@ def measure(
     poses: int,
     repeats: int,
     progress: Callable[[float], None],
-) -> Sweep:
+) -> CutOffSweep:
     """Each frame is traced and developed `repeats` times a pose; SceneError where there is no light of beams.
 
     Maps of lamps are judged in the lamp's middle direction, which is all that a moving frame has of them.
@@ -102,7 +102,7 @@ def measure(
             times[key].append(taken)
         progress((number + 1) / poses)
     means = {key: np.mean(taken, axis=0) for key, taken in times.items()}
-    return Sweep(*size, poses, float(means[None][1]), tuple(
+    return CutOffSweep(*size, poses, float(means[None][1]), tuple(
         LiveLight(
             cutoff,
             error=statistics.fmean(each.error for each in judged),
@@ -169,7 +169,7 @@ def _timed(
             shown = _with(stage, key)
             renderer.lighting.forget()
             wall, processor = time.perf_counter(), time.process_time()
-            picture = renderer.picture(shown, *size, effort=Effort.MOVING)
+            picture = renderer.picture(shown, *size, effort=LightEffort.MOVING)
             picture.refine(1)
             picture.rgb()
             if number > 0:  # the first ones are compiled, and warm
@@ -185,7 +185,7 @@ def _with(stage: Stage, cutoff: float | None) -> Stage:
     return stage.showing(scene.model_copy(update={"optics": scene.optics.model_copy(update=changes)}))
 
 
-def table(found: Sweep) -> Table:
+def table(found: CutOffSweep) -> Table:
     """A row for each cut-off."""
     rows = Table("cut-off", box=box.SIMPLE_HEAD)
     for name in (

@@ -18,7 +18,7 @@ from culet.errors import CuletError
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.scene.legacy import legacy
-from culet.simulation.motion import Motion, kinetic_energy, pushed_out
+from culet.simulation.motion import BodyMotion, kinetic_energy, pushed_out
 from culet.simulation.rotation import rotate
 from culet.simulation.settings import SimulationSettings as Settings
 from culet.simulation.simulation import Simulation
@@ -42,7 +42,7 @@ def leaning(angle: float) -> Quaternion:
 
 
 @dataclass(frozen=True)
-class Extreme:
+class DropExtreme:
     """One case: settings that are not the scene's default, a stone and where it starts."""
 
     name: str
@@ -65,7 +65,7 @@ class Extreme:
 
 
 @dataclass(frozen=True)
-class Record:
+class DropRecord:
     """What the steps of one case came to."""
 
     finite: bool = True
@@ -91,65 +91,67 @@ class Record:
 
 
 EXTREMES = (
-    Extreme("gravity 0, thrown down", {"gravity": 0, "velocity": (0, -3, 0)}),
-    Extreme("gravity 1e6 R/s^2", {"gravity": 1e6}),
-    Extreme("gravity 1e6 R/s^2, steps of 0.25 s", {"gravity": 1e6, "time_step": 0.25}),
-    Extreme("gravity 1e6 R/s^2, no friction, no sleep", {"gravity": 1e6, "friction": 0, "sleeping": False}, steps=5),
-    Extreme("mass 1e-9", {"mass": 1e-9}),
-    Extreme("mass 1e9", {"mass": 1e9}),
-    Extreme("restitution 0", {"restitution": 0}),
-    Extreme("restitution 1", {"restitution": 1}),
-    Extreme("friction 0", {"friction": 0}),
-    Extreme("friction 1e3", {"friction": 1e3}),
-    Extreme("friction 1e3, restitution 1", {"friction": 1e3, "restitution": 1}),
-    Extreme("steps of 1e-4 s", {"time_step": 1e-4}, position=(0.0, -0.1, 0.0)),
-    Extreme("steps of 0.25 s", {"time_step": 0.25}),
-    Extreme("spin of 1 rad a step", {"spin": (60, 90, 40)}),
-    Extreme("spin of 100 rad a step", {"spin": (6000, 9000, 4000)}),
-    Extreme("spin 1e9 rad/s", {"spin": (1e9, 1e9, -1e9)}),
-    Extreme("thrown at a wall, 1e4 R/s", {"velocity": (0, 0, -1e4)}),
-    Extreme("thrown, 1e9 R/s", {"velocity": (1e9, -1e9, -1e9)}),
-    Extreme("needle, 1000 : 1", shape=box(1, 1e-3, 1e-3)),
-    Extreme("needle, 1000 : 1, restitution 1", {"restitution": 1}, box(1, 1e-3, 1e-3)),
-    Extreme("wafer, 1000 : 1", shape=box(1, 1e-3, 1)),
-    Extreme("wafer, 1000 : 1, restitution 1", {"restitution": 1}, box(1, 1e-3, 1)),
-    Extreme("tetrahedron", shape=tetrahedron),
-    Extreme("tetrahedron, restitution 1", {"restitution": 1}, tetrahedron),
-    Extreme("near-sphere, 2000 vertices", shape=ball(1002)),
-    Extreme("near-sphere, 2000 vertices, restitution 1", {"restitution": 1}, ball(1002)),
-    Extreme("start 1 R below the floor, at rest", {"spin": (0, 0, 0)}, position=(0.0, -2.0, 0.0)),
-    Extreme(
+    DropExtreme("gravity 0, thrown down", {"gravity": 0, "velocity": (0, -3, 0)}),
+    DropExtreme("gravity 1e6 R/s^2", {"gravity": 1e6}),
+    DropExtreme("gravity 1e6 R/s^2, steps of 0.25 s", {"gravity": 1e6, "time_step": 0.25}),
+    DropExtreme(
+        "gravity 1e6 R/s^2, no friction, no sleep", {"gravity": 1e6, "friction": 0, "sleeping": False}, steps=5
+    ),
+    DropExtreme("mass 1e-9", {"mass": 1e-9}),
+    DropExtreme("mass 1e9", {"mass": 1e9}),
+    DropExtreme("restitution 0", {"restitution": 0}),
+    DropExtreme("restitution 1", {"restitution": 1}),
+    DropExtreme("friction 0", {"friction": 0}),
+    DropExtreme("friction 1e3", {"friction": 1e3}),
+    DropExtreme("friction 1e3, restitution 1", {"friction": 1e3, "restitution": 1}),
+    DropExtreme("steps of 1e-4 s", {"time_step": 1e-4}, position=(0.0, -0.1, 0.0)),
+    DropExtreme("steps of 0.25 s", {"time_step": 0.25}),
+    DropExtreme("spin of 1 rad a step", {"spin": (60, 90, 40)}),
+    DropExtreme("spin of 100 rad a step", {"spin": (6000, 9000, 4000)}),
+    DropExtreme("spin 1e9 rad/s", {"spin": (1e9, 1e9, -1e9)}),
+    DropExtreme("thrown at a wall, 1e4 R/s", {"velocity": (0, 0, -1e4)}),
+    DropExtreme("thrown, 1e9 R/s", {"velocity": (1e9, -1e9, -1e9)}),
+    DropExtreme("needle, 1000 : 1", shape=box(1, 1e-3, 1e-3)),
+    DropExtreme("needle, 1000 : 1, restitution 1", {"restitution": 1}, box(1, 1e-3, 1e-3)),
+    DropExtreme("wafer, 1000 : 1", shape=box(1, 1e-3, 1)),
+    DropExtreme("wafer, 1000 : 1, restitution 1", {"restitution": 1}, box(1, 1e-3, 1)),
+    DropExtreme("tetrahedron", shape=tetrahedron),
+    DropExtreme("tetrahedron, restitution 1", {"restitution": 1}, tetrahedron),
+    DropExtreme("near-sphere, 2000 vertices", shape=ball(1002)),
+    DropExtreme("near-sphere, 2000 vertices, restitution 1", {"restitution": 1}, ball(1002)),
+    DropExtreme("start 1 R below the floor, at rest", {"spin": (0, 0, 0)}, position=(0.0, -2.0, 0.0)),
+    DropExtreme(
         "start 1 R below the floor, at rest, gravity 1e6 R/s^2",
         {"spin": (0, 0, 0), "gravity": 1e6},
         position=(0.0, -2.0, 0.0),
     ),
-    Extreme(
+    DropExtreme(
         "start 0.5 R behind each of three planes, at rest",
         {"spin": (0, 0, 0)},
         position=(-1.5, -1.5, -1.5),
         surfaces=CORNER,
     ),
-    Extreme(
+    DropExtreme(
         "start 2 R below the floor, thrown out, no spin, gravity 0",
         {"gravity": 0, "velocity": (0, 1, 0), "spin": (0, 0, 0)},
         position=(0.0, -3.0, 0.0),
     ),
-    Extreme(
+    DropExtreme(
         "start 2 R below the floor, thrown along it, no spin, gravity 0",
         {"gravity": 0, "velocity": (1, 0, 0), "spin": (0, 0, 0)},
         position=(0.0, -3.0, 0.0),
     ),
-    Extreme(
+    DropExtreme(
         "start inside a wall, thrown out, no spin",
         {"velocity": (0, 0, 1), "spin": (0, 0, 0)},
         position=(0.0, 1.5, -8.5),
     ),
-    Extreme(
+    DropExtreme(
         "on the floor, thrown up, no spin", {"velocity": (0, 3, 0), "spin": (0, 0, 0)}, surfaces=(FLOOR,), on_floor=True
     ),
-    Extreme("dropped into a corner of three planes", {"velocity": (-3, 0, -3)}, surfaces=CORNER),
+    DropExtreme("dropped into a corner of three planes", {"velocity": (-3, 0, -3)}, surfaces=CORNER),
     *(
-        Extreme(
+        DropExtreme(
             f"Painlevé's rod, 100 : 1, friction {friction:g}, {speed:+g} R/s",
             {"friction": friction, "velocity": (speed, 0, 0), "spin": (0, 0, 0), "restitution": 0},
             box(1, 1e-2, 1e-2),
@@ -162,12 +164,12 @@ EXTREMES = (
 )
 
 
-def recorded(extreme: Extreme) -> Record:
+def recorded(extreme: DropExtreme) -> DropRecord:
     """Let a case run."""
     moving = extreme.begun()
     body, settings, start = moving.body, moving.settings, moving.state
     weight = body.mass * settings.gravity
-    begun = Motion(start.position, start.orientation, start.momentum, start.angular_momentum)
+    begun = BodyMotion(start.position, start.orientation, start.momentum, start.angular_momentum)
     lifted = pushed_out(begun, body)
     inside = lifted != begun
     lowest = kinetic_energy(lifted, body) + weight * (lifted.position[1] - FLOOR.offset - 1)
@@ -187,7 +189,7 @@ def recorded(extreme: Extreme) -> Record:
             exit_speed = speed
     exit_bound = math.hypot(*settings.velocity) + settings.gravity * settings.time_step
     coarse, asleep = moving.state.coarse, moving.state.asleep
-    return Record(finite, gain, depth, fastest, bound, exit_speed, exit_bound, coarse, asleep)
+    return DropRecord(finite, gain, depth, fastest, bound, exit_speed, exit_bound, coarse, asleep)
 
 
 def flat_mesh() -> object:

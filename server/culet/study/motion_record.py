@@ -21,7 +21,7 @@ SETTLED_FRAMES = 15
 
 
 @dataclass(frozen=True)
-class Seen:
+class SeenFrame:
     """A frame's header, and when it came."""
 
     arrived: float
@@ -42,7 +42,7 @@ class Seen:
     error: float
 
     @classmethod
-    def of(cls, frame: Frame, arrived: float) -> Seen:
+    def of(cls, frame: Frame, arrived: float) -> SeenFrame:
         """From the frame itself."""
         return cls(
             arrived, frame.sequence, Flags.MOVING in frame.flags, frame.simulation_time, frame.width, frame.height,
@@ -76,7 +76,7 @@ class SettingShare:
 
 
 @dataclass(frozen=True)
-class Change:
+class SceneChange:
     """Of what is shown, after which the governor has to find its setting anew."""
 
     name: str
@@ -132,7 +132,7 @@ class Summary:
         return asdict(self)
 
 
-def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
+def summarise(seen: Sequence[SeenFrame], rate: float) -> Summary | None:
     """Of frames in order; None if no two of them are of the same fall."""
     moving = [frame for frame in seen if frame.moving]
     pairs = moving_pairs(seen)
@@ -166,7 +166,7 @@ def summarise(seen: Sequence[Seen], rate: float) -> Summary | None:
 
 
 def setting_shares(
-    seen: Sequence[Seen], wanted: tuple[int, int], errors: SettingErrors
+    seen: Sequence[SeenFrame], wanted: tuple[int, int], errors: SettingErrors
 ) -> tuple[list[SettingShare], float]:
     """How long each setting was seen, the longest first, and the mean error of all, by time: NaN if that of one of them
     is not known. `wanted` are the pixels that the viewer asked for."""
@@ -181,7 +181,7 @@ def setting_shares(
     return shares, sum(share.share * share.error for share in shares) if shares else math.nan
 
 
-def settle(seen: Sequence[Seen], changes: Sequence[Change], rate: float) -> list[Settled]:
+def settle(seen: Sequence[SeenFrame], changes: Sequence[SceneChange], rate: float) -> list[Settled]:
     """For each change: how long until SETTLED_FRAMES moving frames in a row came at HELD of the rate."""
     ends = chain((change.made_at for change in changes[1:]), (math.inf,))
     found = []
@@ -198,7 +198,7 @@ def settle(seen: Sequence[Seen], changes: Sequence[Change], rate: float) -> list
     return found
 
 
-def moving_pairs(seen: Sequence[Seen]) -> list[tuple[Seen, Seen]]:
+def moving_pairs(seen: Sequence[SeenFrame]) -> list[tuple[SeenFrame, SeenFrame]]:
     """Neighbours of the same fall."""
     return [
         (before, after)
@@ -207,7 +207,7 @@ def moving_pairs(seen: Sequence[Seen]) -> list[tuple[Seen, Seen]]:
     ]
 
 
-def setting_changes(seen: Sequence[Seen]) -> int:
+def setting_changes(seen: Sequence[SeenFrame]) -> int:
     """How often the setting of a moving frame differs from that of the one before."""
     return sum(before.setting != after.setting for before, after in pairwise(f for f in seen if f.moving))
 

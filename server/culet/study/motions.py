@@ -30,7 +30,7 @@ REFERENCE_STEP: dict[str, Knob] = {"time_step": 1 / 960, "contact_step": 0.001, 
 
 
 @dataclass(frozen=True)
-class Motion:
+class KnownMotion:
     """A start, how long it lasts, and which numbers of the settings it fixes."""
 
     name: str
@@ -52,13 +52,13 @@ class End(NamedTuple):
     momentum_scale: tuple[float, float]
 
 
-def motions_of(shape: Shape) -> Iterator[tuple[Motion, Callable[[str], End]]]:
+def motions_of(shape: Shape) -> Iterator[tuple[KnownMotion, Callable[[str], End]]]:
     """Each motion, and where it ends by the name of the model."""
-    flight = Motion("flight", 2.0, (0.0, 100.0, 0.0), IDENTITY, {"spin": (0.5, 3, 1), "velocity": (1, 2, -0.5)})
+    flight = KnownMotion("flight", 2.0, (0.0, 100.0, 0.0), IDENTITY, {"spin": (0.5, 3, 1), "velocity": (1, 2, -0.5)})
     yield flight, lambda _: _flight_end(flight, shape)
     lying = flat_orientation(shape)
     half_height = float(-_heights(shape, lying).min())
-    bounce = Motion(
+    bounce = KnownMotion(
         "bounce",
         23 / 15,
         (0.0, FLOOR_Y + 2.5, 0.0),
@@ -66,12 +66,12 @@ def motions_of(shape: Shape) -> Iterator[tuple[Motion, Callable[[str], End]]]:
         {"spin": (0, 0, 0), "friction": 0, "restitution": 0.6, "random_torque": 0},
     )
     yield bounce, lambda model: bounce_truth(bounce, 1.0 if model == "classic" else half_height)
-    slide = Motion(
+    slide = KnownMotion(
         "slide", 1.0, (0.0, FLOOR_Y + half_height, 0.0), lying,
         {"spin": (0, 0, 0), "velocity": (1, 0, 0), "friction": 0.3, "rolling_resistance": 0, "sleeping": False},
     )  # fmt: skip
     yield slide, lambda _: _slide_end(slide)
-    drop = Motion(
+    drop = KnownMotion(
         "drop", 1.0, (0.0, 0.5, 0.0), (0.93670, 0.33047, 0.0, 0.11566), {"spin": (0.5, 3, 0), "random_torque": 0}
     )
     yield drop, lambda _: _drop_end(drop, shape)
@@ -96,17 +96,17 @@ def _heights(shape: Shape, orientation: Quaternion) -> NDArray[np.float64]:
     return np.array([rotate(orientation, tuple(vertex))[1] for vertex in shape.vertices.tolist()])
 
 
-def settings_of(motion: Motion, knobs: dict[str, Knob]) -> Settings:
+def settings_of(motion: KnownMotion, knobs: dict[str, Knob]) -> Settings:
     """The motion's own settings, with the knobs turned."""
     return Settings.model_validate({**motion.fixed, **{k: v for k, v in knobs.items() if v is not None}})
 
 
-def started(motion: Motion, shape: Shape, knobs: dict[str, Knob]) -> Simulation:
+def started(motion: KnownMotion, shape: Shape, knobs: dict[str, Knob]) -> Simulation:
     """The stone at the motion's start."""
     return Simulation(settings_of(motion, knobs), shape, motion.position, motion.orientation)
 
 
-def _flight_end(motion: Motion, shape: Shape) -> End:
+def _flight_end(motion: KnownMotion, shape: Shape) -> End:
     simulation = started(motion, shape, {"model": "rigid"})
     body, state, g = simulation.body, simulation.state, simulation.settings.gravity
     t = motion.seconds
@@ -123,7 +123,7 @@ def _flight_end(motion: Motion, shape: Shape) -> End:
     )
 
 
-def bounce_truth(motion: Motion, radius: float) -> End:
+def bounce_truth(motion: KnownMotion, radius: float) -> End:
     """Where a body of that radius is that lands flat and without friction, each bounce e times as fast as the last."""
     settings = settings_of(motion, {})
     g, e, mass = settings.gravity, settings.restitution, settings.mass
@@ -147,7 +147,7 @@ def bounce_truth(motion: Motion, radius: float) -> End:
     )
 
 
-def _slide_end(motion: Motion) -> End:
+def _slide_end(motion: KnownMotion) -> End:
     settings = settings_of(motion, {})
     speed, decay = settings.velocity[0], settings.friction * settings.gravity
     x, y, z = motion.position
@@ -163,7 +163,7 @@ def _slide_end(motion: Motion) -> End:
     )
 
 
-def _drop_end(motion: Motion, shape: Shape) -> End:
+def _drop_end(motion: KnownMotion, shape: Shape) -> End:
     simulation = started(motion, shape, {"model": "rigid", **REFERENCE_STEP})
     start = simulation.energy()
     while simulation.state.time < motion.seconds - 1e-9:

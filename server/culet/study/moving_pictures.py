@@ -28,7 +28,7 @@ from culet.engine.governing.governor import Governor, Plan
 from culet.engine.painting import jpeg
 from culet.engine.painting.quality import LADDER
 from culet.falls import simulate_stage
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import Renderer
 from culet.stage import Stage
 from culet.study.image_error import mean_ciede2000
@@ -45,12 +45,12 @@ TURNS = 3
 """Times that a frame is drawn; the quickest counts."""
 
 _flip: Any = flip_evaluator.evaluate  # has no types
-Shown = NDArray[np.uint8]
+ScreenPixels = NDArray[np.uint8]
 """(height, width, 3), sRGB."""
 
 
 @dataclass(frozen=True)
-class Way:
+class DrawingWay:
     """Of drawing the frames of a fall."""
 
     rate: float
@@ -65,7 +65,7 @@ class Way:
 class Judged:
     """Means over the moments of a fall."""
 
-    way: Way
+    way: DrawingWay
     width: int
     """Pixels of the frames, on average."""
     height: int
@@ -80,7 +80,7 @@ class Judged:
 
 
 @dataclass(frozen=True)
-class Fall:
+class FallStudy:
     """A study."""
 
     width: int
@@ -96,9 +96,9 @@ class Fall:
         return json.dumps(asdict(self), indent=1)
 
 
-def ways_of(dearer: Sequence[float]) -> list[Way]:
+def ways_of(dearer: Sequence[float]) -> list[DrawingWay]:
     """Each rate, each dearness, filtered and not."""
-    return [Way(rate, times, softened) for rate in RATES for times in dearer for softened in (False, True)]
+    return [DrawingWay(rate, times, softened) for rate in RATES for times in dearer for softened in (False, True)]
 
 
 def measure(
@@ -110,12 +110,12 @@ def measure(
     samples: int,
     dearer: Sequence[float],
     progress: Callable[[float], None],
-) -> Fall:
+) -> FallStudy:
     """Let the stage's stones fall for `seconds`, and judge so many `moments` of it; the first one is the start."""
     renderer, ways = Renderer(), ways_of(dearer)
     stages = moments_of(stage, seconds, moments)
     unit = _first_sample(renderer, stages[0], size)
-    found: dict[Way, list[tuple[Plan, float, tuple[float, float, float]]]] = {way: [] for way in ways}
+    found: dict[DrawingWay, list[tuple[Plan, float, tuple[float, float, float]]]] = {way: [] for way in ways}
     for number, moment in enumerate(stages):
         converged = _converged(renderer, moment, size, samples)
         for way in ways:
@@ -123,7 +123,7 @@ def measure(
             shown, spent = as_seen(renderer, moment, plan, softened=way.softened)
             found[way].append((plan, spent, differences(shown, converged)))
         progress((number + 1) / len(stages))
-    return Fall(*size, moments, samples, [_mean(way, judged) for way, judged in found.items()])
+    return FallStudy(*size, moments, samples, [_mean(way, judged) for way, judged in found.items()])
 
 
 def moments_of(stage: Stage, seconds: float, moments: int) -> list[Stage]:
@@ -137,19 +137,19 @@ def moments_of(stage: Stage, seconds: float, moments: int) -> list[Stage]:
     ]
 
 
-def planned(stage: Stage, size: tuple[int, int], way: Way, unit: float) -> Plan:
+def planned(stage: Stage, size: tuple[int, int], way: DrawingWay, unit: float) -> Plan:
     """What the governor would draw of it, if a first sample in full takes `unit` seconds."""
     governor = Governor(LADDER)
     governor.rested(stage.scene, size, unit * way.dearer, way.rate)
     return governor.plan(stage.scene, size, GOVERNED)
 
 
-def as_seen(renderer: Renderer, stage: Stage, plan: Plan, *, softened: bool) -> tuple[Shown, float]:
+def as_seen(renderer: Renderer, stage: Stage, plan: Plan, *, softened: bool) -> tuple[ScreenPixels, float]:
     """What the page shows of a moving frame, and the s of processor time that the engine drew it in."""
     best = np.inf
     for _ in range(TURNS):
         before = time.process_time()
-        picture = renderer.picture(stage.showing(plan.scene), *plan.size, effort=Effort.MOVING)
+        picture = renderer.picture(stage.showing(plan.scene), *plan.size, effort=LightEffort.MOVING)
         picture.refine(1)
         rgb = picture.softened() if softened and plan.size == plan.wanted else picture.rgb()
         best = min(best, time.process_time() - before)
@@ -158,24 +158,24 @@ def as_seen(renderer: Renderer, stage: Stage, plan: Plan, *, softened: bool) -> 
     return np.asarray(enlarged, np.uint8), float(best)
 
 
-def differences(shown: Shown, converged: Shown) -> tuple[float, float, float]:
+def differences(shown: ScreenPixels, converged: ScreenPixels) -> tuple[float, float, float]:
     """FLIP, CIEDE2000 and RMSE, means over the picture."""
     return flip(shown, converged), mean_ciede2000(shown, converged), rmse(shown, converged)
 
 
-def flip(shown: Shown, converged: Shown) -> float:
+def flip(shown: ScreenPixels, converged: ScreenPixels) -> float:
     """Mean over the picture."""
     pair = [np.ascontiguousarray(each, np.float32) / 255 for each in (converged, shown)]
     _, mean, _ = _flip(*pair, "LDR", applyMagma=False, parameters={"ppd": PIXELS_PER_DEGREE})
     return float(mean)
 
 
-def rmse(shown: Shown, converged: Shown) -> float:
+def rmse(shown: ScreenPixels, converged: ScreenPixels) -> float:
     """0 to 255."""
     return float(np.sqrt(np.mean(np.square(shown.astype(float) - converged))))
 
 
-def _converged(renderer: Renderer, stage: Stage, size: tuple[int, int], samples: int) -> Shown:
+def _converged(renderer: Renderer, stage: Stage, size: tuple[int, int], samples: int) -> ScreenPixels:
     optics = stage.scene.optics.model_copy(update={"cutoff": min(stage.scene.optics.cutoff, CONVERGED_CUTOFF)})
     picture = renderer.picture(stage.showing(stage.scene.model_copy(update={"optics": optics})), *size)
     picture.refine(samples)
@@ -195,7 +195,7 @@ def _first_sample(renderer: Renderer, stage: Stage, size: tuple[int, int]) -> fl
     return min(drawn() for _ in range(TURNS)) / renderer.device.units
 
 
-def _mean(way: Way, judged: Sequence[tuple[Plan, float, tuple[float, float, float]]]) -> Judged:
+def _mean(way: DrawingWay, judged: Sequence[tuple[Plan, float, tuple[float, float, float]]]) -> Judged:
     plans = [plan for plan, _, _ in judged]
     seen, ciede2000, error = np.mean([differences for _, _, differences in judged], axis=0)
     width, height = np.mean([plan.size for plan in plans], axis=0).round()
@@ -204,7 +204,7 @@ def _mean(way: Way, judged: Sequence[tuple[Plan, float, tuple[float, float, floa
     return Judged(way, int(width), int(height), cutoff, seconds, float(seen), float(ciede2000), float(error))
 
 
-def table(fall: Fall) -> Table:
+def table(fall: FallStudy) -> Table:
     """A row for each way."""
     heads = "frames/s", "dearer", "filtered", "drawn", "cut-off", "ms", "FLIP", "CIEDE2000", "RMSE"
     rows = Table(*heads, box=box.SIMPLE)

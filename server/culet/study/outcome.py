@@ -222,7 +222,7 @@ def _caustics_headlines(points: Sequence[Point], races: Sequence[Race]) -> Itera
 
 
 def growth_report(
-    settings: dict[str, Knob], facts: dict[str, str | int], points: Sequence[Point], extent: growth.Extent
+    settings: dict[str, Knob], facts: dict[str, str | int], points: Sequence[Point], extent: growth.GrowthEffort
 ) -> Report:
     """Of `culet study growth`."""
     fits = growth.fits_of(points, extent)

@@ -29,7 +29,7 @@ from culet.scene.sky import GradientEnvironment
 from culet.stage import Stage
 
 Array = NDArray[np.float64]
-Settings = Mapping[str, Any]
+SceneSettings = Mapping[str, Any]
 
 DECIDED = 1e-4
 """Radiance."""
@@ -48,8 +48,8 @@ SIZE = 640, 360
 FARTHER: Mapping[str, float] = {"mirrors all around, absorption": 5e-6}
 """PERTURBATION of scenes where light takes a way several times as long, from mirror to mirror."""
 
-_BARE: Settings = {"floor": {"kind": "none"}, "emitters": []}
-SCENES: Mapping[str, Settings] = {
+_BARE: SceneSettings = {"floor": {"kind": "none"}, "emitters": []}
+SCENES: Mapping[str, SceneSettings] = {
     "legacy default": {},
     "matte floor, lights": {"floor": {"kind": "matte"}},
     "matte floor, no lights": {"floor": {"kind": "matte"}, "emitters": [lamp.model_dump() for lamp in LEGACY_LAMPS]},
@@ -145,7 +145,7 @@ def _radiance(renderer: Renderer, scene: Scene, size: tuple[int, int]) -> Array:
     return picture.linear().astype(np.float64)
 
 
-def _perturbed(scene: Scene, random: np.random.Generator, most: float) -> Settings:
+def _perturbed(scene: Scene, random: np.random.Generator, most: float) -> SceneSettings:
     """Stone and camera, each moved along and turned about each axis by up to `most`."""
     shift, turn, step, glance = random.uniform(-most, most, (4, 3))
     stone, camera = scene.stones[0], scene.camera

@@ -15,8 +15,8 @@ from typing import TypeVar
 
 from culet.engine.painting import jpeg
 from culet.rendering.facet_rows import facet_rows, search_cost
-from culet.rendering.light.effort import Effort
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.light.effort import LightEffort
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene.model import Scene
 from culet.study.cases import stage_of
 from culet.study.roofline import Roofline, measure_roofline
@@ -103,10 +103,10 @@ def measure_profile(
 def stages(renderer: Renderer, scene: Scene, width: int, height: int, repeats: int) -> Iterator[StageCost]:
     """Those of a frame, in their order; medians of `repeats`."""
     stage, spent = stage_of(scene), _Spent()
-    picture = renderer.picture(stage, width, height, effort=Effort.MOVING)
+    picture = renderer.picture(stage, width, height, effort=LightEffort.MOVING)
     for count in range(repeats + 1):
         frames = _Spent() if count == 0 else spent  # the first frame pays for programs, pages and caches
-        picture = renderer.picture(replace(stage), width, height, effort=Effort.MOVING)
+        picture = renderer.picture(replace(stage), width, height, effort=LightEffort.MOVING)
         frames.on("prepare", picture.prepare)
         whole = _Spent()
         whole.on("refine", picture.refine)
@@ -129,7 +129,7 @@ def stages(renderer: Renderer, scene: Scene, width: int, height: int, repeats: i
     )  # fmt: skip
 
 
-def _tracing(picture: Picture, scene: Scene, seconds: float) -> StageCost:
+def _tracing(picture: DevicePicture, scene: Scene, seconds: float) -> StageCost:
     """The kernel. What it takes to find the facet ahead is known where all stones have the same cut."""
     segments = picture.segments()
     name, counted = "tracing", f"{segments} segments inside stones"

@@ -10,7 +10,7 @@ import numpy as np
 
 from culet.rendering import build
 from culet.rendering.device import Device
-from culet.rendering.renderer import Picture, Renderer
+from culet.rendering.renderer import DevicePicture, Renderer
 from culet.study.knobs import Knobs
 from culet.study.shot import Shot
 
@@ -36,7 +36,7 @@ class Renderers:
         self.device = device
         self._made: dict[tuple[str, int, bool], Renderer] = {}
 
-    def picture(self, knobs: Knobs, shot: Shot) -> Picture:
+    def picture(self, knobs: Knobs, shot: Shot) -> DevicePicture:
         """An empty picture with these knobs; compiles what it needs."""
         stage = shot.stage.showing(knobs.applied_to(shot.stage.scene))
         if knobs.geometry == "triangles":

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from culet.study.image_error import colour_difference
-from culet.study.journal import Journal
-from culet.study.knobs import Knobs, Setting
+from culet.study.journal import PointJournal
+from culet.study.knobs import Knobs, KnobSetting
 from culet.study.pictures import write_pictures
 from culet.study.radiance_error import enlarged, non_finite, radiance_error
 from culet.study.reference import Reference
@@ -59,9 +59,9 @@ def measure_all(
     renderers: Renderers,
     shot: Shot,
     base: Knobs,
-    settings: list[Setting],
+    settings: list[KnobSetting],
     judges: Judges,
-    journal: Journal,
+    journal: PointJournal,
     repeats: int,
     progress: Callable[[str, int], None],
     pictures: Path,
@@ -75,7 +75,7 @@ def measure_all(
 
 
 def measure(
-    renderers: Renderers, shot: Shot, setting: Setting, label: str, judges: Judges, repeats: int, pictures: Path
+    renderers: Renderers, shot: Shot, setting: KnobSetting, label: str, judges: Judges, repeats: int, pictures: Path
 ) -> Point:
     """One setting: a first time for the compiler, then `repeats` whole frames."""
     knobs = setting.knobs

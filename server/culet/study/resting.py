@@ -18,15 +18,15 @@ from rich import box
 from rich.table import Table
 
 from culet.engine.governing.thrift import NO_LIMITS
-from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.frame_work import FrameWork, WorkKind
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Session
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import tone_map
 from culet.rendering.chains import is_spectral
 from culet.rendering.cut_out import CuttingRenderer
-from culet.rendering.light.effort import Effort
-from culet.rendering.renderer import Picture
+from culet.rendering.light.effort import LightEffort
+from culet.rendering.renderer import DevicePicture
 from culet.rendering.target import Target
 from culet.scene.film import Film
 from culet.stage import Stage
@@ -107,7 +107,7 @@ def measure(
     renderer.make_ready(stage)
     renderer.picture(stage, *WARM_UP, effort=None).refine(2)
     picture, taken = (
-        renderer.picture(stage, width, height, effort=Effort.RESTING),
+        renderer.picture(stage, width, height, effort=LightEffort.RESTING),
         list[tuple[float, int, NDArray[np.uint8], Image]](),
     )
     estimates = []
@@ -143,7 +143,7 @@ def _with_bands(stage: Stage, bands: int) -> Stage:
 
 
 def _at_rest(
-    renderer: CuttingRenderer, stage: Stage, picture: Picture, rest: Target
+    renderer: CuttingRenderer, stage: Stage, picture: DevicePicture, rest: Target
 ) -> Iterator[tuple[float, NDArray[np.uint8]]]:
     """Whenever a viewer whose link has no limits would get the picture: the seconds that it took so far, and what the
     viewer sees, (height, width, 3)."""
@@ -152,7 +152,9 @@ def _at_rest(
     while not final:
         begun = time.perf_counter()
         first = over is None
-        work = FrameWork(Kind.FULL if first else Kind.REFINED, shown, size, Account(None), begun, picture=picture)
+        work = FrameWork(
+            WorkKind.FULL if first else WorkKind.REFINED, shown, size, Account(None), begun, picture=picture
+        )
         work.aim, work.over = None if first else rest, over
         work.start(renderer)
         for _ in work.pieces:

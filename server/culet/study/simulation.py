@@ -22,8 +22,8 @@ from culet.simulation.rotation import IDENTITY
 from culet.simulation.settings import SimulationSettings as Settings
 from culet.simulation.state import Quaternion
 from culet.study.convergence import fit_order
-from culet.study.journal import Journal
-from culet.study.motions import End, Motion, motions_of, started
+from culet.study.journal import PointJournal
+from culet.study.motions import End, KnownMotion, motions_of, started
 from culet.study.report import Figure, Fit, Knob, Point
 from culet.study.tops import TOP_MOMENTS, TOP_SECONDS, TOP_SPIN, angle_between, rotation_truth
 
@@ -47,7 +47,7 @@ DEFAULTS = Settings()
 """What a scene has that says nothing of it."""
 
 
-def measure_all(shape: Shape, journal: Journal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
+def measure_all(shape: Shape, journal: PointJournal, *, quick: bool, progress: Callable[[str, int], None]) -> None:
     """Every point that the journal lacks."""
     for done, (key, run) in enumerate(points_of(shape, quick=quick)):
         progress(key, done)
@@ -111,7 +111,7 @@ def _motions(shape: Shape, repeats: int, *, quick: bool) -> Iterator[tuple[str, 
         for knobs in _variants(motion.name, quick=quick):
 
             def run(
-                motion: Motion = motion,
+                motion: KnownMotion = motion,
                 truth_of: Callable[[str], End] = truth_of,
                 truth: list[End] = truth,
                 knobs: dict[str, Knob] = knobs,
@@ -149,7 +149,7 @@ def _variants(name: str, *, quick: bool) -> Iterator[dict[str, Knob]]:
                 yield {"model": model, "time_step": step}
 
 
-def _run(motion: Motion, shape: Shape, knobs: dict[str, Knob], truth: End, repeats: int) -> Point:
+def _run(motion: KnownMotion, shape: Shape, knobs: dict[str, Knob], truth: End, repeats: int) -> Point:
     seconds: list[float] = []
     simulation = started(motion, shape, knobs)
     for _ in range(repeats):

@@ -17,10 +17,10 @@ from culet.rendering.renderer import Renderer
 from culet.simulation.staged import world_of
 from culet.stage import Stage
 from culet.study.image_error import mean_ciede2000, structural_similarity
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.report import Figure, Knob, Point
 
-Frame = NDArray[np.uint8]
+ScreenPixels = NDArray[np.uint8]
 
 FIGURES: dict[str, Figure] = {
     "bytes": Figure(unit="B", about="Of a frame, median."),
@@ -38,16 +38,16 @@ MOVING_FRAMES, SECONDS_APART = 6, 0.1
 STILL_SAMPLES = 32
 
 
-class Codec(NamedTuple):
+class StillCodec(NamedTuple):
     """A way to write a frame and to read it again."""
 
     name: str
     knobs: dict[str, Knob]
-    encode: Callable[[Frame], bytes]
-    decode: Callable[[bytes], Frame]
+    encode: Callable[[ScreenPixels], bytes]
+    decode: Callable[[bytes], ScreenPixels]
 
 
-def codecs(*, quick: bool) -> Iterator[Codec]:
+def codecs(*, quick: bool) -> Iterator[StillCodec]:
     """JPEG as the server sends it and otherwise, PNG, and TGA plain and run-length encoded."""
     for subsampling in SUBSAMPLINGS:
         for quality in JPEG_QUALITIES[1::2] if quick else JPEG_QUALITIES:
@@ -58,32 +58,32 @@ def codecs(*, quick: bool) -> Iterator[Codec]:
     yield _by_pillow("TGA, run lengths", {"codec": "tga", "compression": "rle"}, "TGA", compression="tga_rle")
 
 
-def _jpeg(quality: int, subsampling: str) -> Codec:
-    def encode(frame: Frame) -> bytes:
+def _jpeg(quality: int, subsampling: str) -> StillCodec:
+    def encode(frame: ScreenPixels) -> bytes:
         data: bytes = simplejpeg.encode_jpeg(frame, quality=quality, colorspace="RGB", colorsubsampling=subsampling)
         return data
 
-    def decode(data: bytes) -> Frame:
+    def decode(data: bytes) -> ScreenPixels:
         return np.asarray(simplejpeg.decode_jpeg(data, "RGB"))
 
     name = f"JPEG {quality} 4:{subsampling[1]}:{subsampling[2]}"
-    return Codec(name, {"codec": "jpeg", "quality": quality, "subsampling": subsampling}, encode, decode)
+    return StillCodec(name, {"codec": "jpeg", "quality": quality, "subsampling": subsampling}, encode, decode)
 
 
-def _by_pillow(name: str, knobs: dict[str, Knob], format_: str, **options: object) -> Codec:
-    def encode(frame: Frame) -> bytes:
+def _by_pillow(name: str, knobs: dict[str, Knob], format_: str, **options: object) -> StillCodec:
+    def encode(frame: ScreenPixels) -> bytes:
         buffer = io.BytesIO()
         PIL.Image.fromarray(frame).save(buffer, format_, **options)
         return buffer.getvalue()
 
-    def decode(data: bytes) -> Frame:
+    def decode(data: bytes) -> ScreenPixels:
         with PIL.Image.open(io.BytesIO(data)) as picture:
             return np.asarray(picture.convert("RGB"))
 
-    return Codec(name, knobs, encode, decode)
+    return StillCodec(name, knobs, encode, decode)
 
 
-def frames(renderer: Renderer, stage: Stage, width: int, height: int) -> dict[str, list[Frame]]:
+def frames(renderer: Renderer, stage: Stage, width: int, height: int) -> dict[str, list[ScreenPixels]]:
     """`moving`: one sample of the falling stones at several times; `still`: the stage as it is at rest."""
     world = world_of(stage)
     moving = []
@@ -100,7 +100,7 @@ def frames(renderer: Renderer, stage: Stage, width: int, height: int) -> dict[st
 
 
 def measure_all(
-    shown: dict[str, list[Frame]], journal: Journal, *, quick: bool, progress: Callable[[str, int], None]
+    shown: dict[str, list[ScreenPixels]], journal: PointJournal, *, quick: bool, progress: Callable[[str, int], None]
 ) -> None:
     """Every point that the journal lacks."""
     repeats = 3 if quick else 9
@@ -110,12 +110,12 @@ def measure_all(
             journal.add(measure(kind, codec, shown[kind], repeats))
 
 
-def settings_of(*, quick: bool) -> list[tuple[str, Codec]]:
+def settings_of(*, quick: bool) -> list[tuple[str, StillCodec]]:
     """Kind of frame and codec of each point."""
     return [(kind, codec) for kind in ("moving", "still") for codec in codecs(quick=quick)]
 
 
-def measure(kind: str, codec: Codec, shown: list[Frame], repeats: int) -> Point:
+def measure(kind: str, codec: StillCodec, shown: list[ScreenPixels], repeats: int) -> Point:
     """One codec on all frames of a kind."""
     sizes, encoding, decoding, alike, apart = [], [], [], [], []
     for frame in shown:
@@ -146,5 +146,5 @@ def measure(kind: str, codec: Codec, shown: list[Frame], repeats: int) -> Point:
     )
 
 
-def _key(kind: str, codec: Codec) -> str:
+def _key(kind: str, codec: StillCodec) -> str:
     return f"{kind} {codec.name}"

@@ -14,7 +14,7 @@ from culet.rendering.renderer import Renderer
 from culet.scene.model import Scene
 from culet.stage import Stage
 from culet.study import caustics, growth, race, rendering, simulation, streaming
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.knobs import base_knobs, settings_of
 from culet.study.mitsuba import SAMPLERS, find_llvm
 from culet.study.outcome import (
@@ -51,7 +51,7 @@ Progress = Callable[[str, int], AbstractContextManager[Advance]]
 """Begins a stage of that name and that many steps."""
 
 
-class Effort(NamedTuple):
+class StudyEffort(NamedTuple):
     """How much a study of the renderer spends."""
 
     width: int
@@ -68,9 +68,9 @@ class Effort(NamedTuple):
     """Samples of a pass of Mitsuba's."""
 
 
-QUICK = Effort(320, 180, 256, 48, 9, 512, 4.0, 16)
+QUICK = StudyEffort(320, 180, 256, 48, 9, 512, 4.0, 16)
 """For a first look."""
-FULL = Effort(640, 360, 1024, 192, 25, 1024, 15.0, 16)
+FULL = StudyEffort(640, 360, 1024, 192, 25, 1024, 15.0, 16)
 """How long each takes, docs/explanation/study.md says."""
 
 
@@ -79,7 +79,7 @@ def study_rendering(
     out: Path,
     progress: Progress,
     *,
-    effort: Effort,
+    effort: StudyEffort,
     quick: bool,
     fresh: bool = False,
     cache: Path | None = None,
@@ -100,7 +100,7 @@ def study_rendering(
         if groups is None or setting.group == "base" or setting.group in groups
     ]
     identity = _identity("rendering", stage, quick, code_digest(RENDERING_STUDY), device) | effort._asdict()
-    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+    with PointJournal(out / JOURNAL, identity, fresh=fresh) as journal:
         references = []
         for kind, samples in (("model", effort.model_samples), ("physics", effort.physics_samples)):
             knobs = reference_knobs(base, kind, device.lanes // 2 or 1)
@@ -134,7 +134,7 @@ def study_rendering(
     return report
 
 
-def _references_note(effort: Effort, judges: rendering.Judges) -> str:
+def _references_note(effort: StudyEffort, judges: rendering.Judges) -> str:
     return (
         f"The model reference ({effort.model_samples} samples a pixel) has itself an RMSE of some "
         f"{judges.model.error:.2g}, the physics reference ({effort.physics_samples}) of {judges.physics.error:.2g}: "
@@ -151,7 +151,7 @@ def _race_note(judge: Reference) -> str:
 
 
 def _run_race(
-    renderers: Renderers, effort: Effort, journal: Journal, progress: Progress, cache: Path | None
+    renderers: Renderers, effort: StudyEffort, journal: PointJournal, progress: Progress, cache: Path | None
 ) -> list[str]:
     """Against others, unless it may take no time; returns what there is to say about it."""
     if effort.race_seconds == 0:
@@ -191,7 +191,7 @@ def study_simulation(stage: Stage, out: Path, progress: Progress, *, quick: bool
     scene.only_stone()
     (shape,) = stage.shapes
     identity = _identity("simulation", stage, quick, code_digest(SIMULATION_STUDY))
-    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+    with PointJournal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("motions", len(simulation.points_of(shape, quick=quick))) as advance:
             simulation.measure_all(shape, journal, quick=quick, progress=advance)
         points = list(journal.points.values())
@@ -208,7 +208,7 @@ def study_streaming(
     width, height = size
     identity = _identity("streaming", stage, quick, code_digest(STREAMING_STUDY), device)
     identity |= {"width": width, "height": height}
-    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+    with PointJournal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("frames", 1):
             shown = streaming.frames(Renderer(device), stage, width, height)
         with progress("codecs", len(streaming.settings_of(quick=quick))) as advance:
@@ -226,7 +226,7 @@ def study_caustics(stage: Stage, out: Path, progress: Progress, *, quick: bool, 
         caustics.under(stage, lamp)
     renderer, extent = Renderer(), caustics.QUICK if quick else caustics.FULL
     identity = _identity("caustics", stage, quick, code_digest(CAUSTICS_STUDY), renderer.device)
-    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+    with PointJournal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("maps", caustics.steps(extent)) as advance:
             caustics.measure_all(renderer, stage, extent, journal, advance)
         points = list(journal.points.values())
@@ -242,7 +242,7 @@ def study_growth(out: Path, progress: Progress, *, quick: bool, fresh: bool = Fa
     """Fit how cost grows with pixels, facets, bounces, wavelengths, stones, lights, contacts, sessions and viewers."""
     renderer, extent = Renderer(), growth.QUICK if quick else growth.FULL
     identity = _identity("growth", Stage.of(Scene()), quick, code_digest(GROWTH_STUDY), renderer.device)
-    with Journal(out / JOURNAL, identity, fresh=fresh) as journal:
+    with PointJournal(out / JOURNAL, identity, fresh=fresh) as journal:
         with progress("growth", len(extent.sweeps)) as advance:
             growth.measure_all(renderer, extent, journal, advance)
         points = list(journal.points.values())

@@ -32,7 +32,7 @@ from culet.study.moving_pictures import flip, rmse
 from culet.study.video_frames import decoded
 from culet_protocol.frame import Codec
 
-Shown = NDArray[np.uint8]
+ScreenPixels = NDArray[np.uint8]
 Progress = Callable[[float], None]
 
 FIRE = 30.0
@@ -107,7 +107,7 @@ def measure(
     return VideoStudy(*size, frames, fire, tuple(rows))
 
 
-def _row(codec: Codec, quality: int, shown: Sequence[Shown], judged: Sequence[int]) -> Row:
+def _row(codec: Codec, quality: int, shown: Sequence[ScreenPixels], judged: Sequence[int]) -> Row:
     began = time.thread_time()
     packets = list(_encoded(codec, quality, shown))
     milliseconds = 1e3 * (time.thread_time() - began) / len(shown)
@@ -127,7 +127,7 @@ def _row(codec: Codec, quality: int, shown: Sequence[Shown], judged: Sequence[in
     )  # fmt: skip
 
 
-def _encoded(codec: Codec, quality: int, shown: Sequence[Shown]) -> Iterator[Packet]:
+def _encoded(codec: Codec, quality: int, shown: Sequence[ScreenPixels]) -> Iterator[Packet]:
     if codec is Codec.JPEG:
         yield from (Packet(jpeg.encode(frame, quality), is_key=True) for frame in shown)
         return
@@ -137,7 +137,7 @@ def _encoded(codec: Codec, quality: int, shown: Sequence[Shown]) -> Iterator[Pac
         yield encoder.encode(frame, number / 30)
 
 
-def _kept(decoded: Shown, before: Shown) -> float:
+def _kept(decoded: ScreenPixels, before: ScreenPixels) -> float:
     """Chroma in the fire over what it was; NaN without fire."""
     was = chroma(before)
     fire = was >= FIRE

@@ -10,7 +10,7 @@ import pytest
 
 from culet.engine.governing.governor import ERRORS, read_ladder
 from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
+from culet.engine.session.snapshot import SessionSnapshot
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.frame import Flags, Frame
@@ -102,5 +102,5 @@ def test_another_engine_goes_on_with_the_balance() -> None:
     scene = Scene()
     session = Session("0" * 32, Stage.of(scene))
     session.balance = Balance(exactness=0.75, pinned=True)
-    snapshot = Snapshot.read(json.loads(session.snapshot().model_dump_json()))
+    snapshot = SessionSnapshot.read(json.loads(session.snapshot().model_dump_json()))
     assert Session.restored("0" * 32, session.stage, snapshot).balance == session.balance

@@ -8,13 +8,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from culet.engine.governing.thrift import LEAST_PIXELS, NO_LIMITS, Allowance, Room, Thrift, read_byte_ladder
+from culet.engine.governing.thrift import LEAST_PIXELS, NO_LIMITS, ByteAllowance, ByteRoom, Thrift, read_byte_ladder
 
 LADDER = read_byte_ladder()
 HD = 1280, 720
 
 
-def chosen(thrift: Thrift, room: Room, wanted: tuple[int, int] = HD) -> tuple[tuple[int, int], int]:
+def chosen(thrift: Thrift, room: ByteRoom, wanted: tuple[int, int] = HD) -> tuple[tuple[int, int], int]:
     """Size and quality of the next frame."""
     scale = thrift.scale(wanted, room)
     size = round(wanted[0] * scale), round(wanted[1] * scale)
@@ -25,8 +25,8 @@ def expected(size: tuple[int, int], quality: int) -> float:
     return float(LADDER.expected(size[0] * size[1])[LADDER.qualities.index(quality)])
 
 
-def room_of(bytes_per_second: float, asked: float = 30.0, made: float = 60.0) -> Room:
-    room = Allowance(per_frame=int(bytes_per_second / asked)).room(asked, made)
+def room_of(bytes_per_second: float, asked: float = 30.0, made: float = 60.0) -> ByteRoom:
+    room = ByteAllowance(per_frame=int(bytes_per_second / asked)).room(asked, made)
     assert room is not None
     return room
 

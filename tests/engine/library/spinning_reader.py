@@ -2,8 +2,8 @@
 
 import sys
 
-from culet.engine.library.upload_reader import Order, limit
+from culet.engine.library.upload_reader import ReadingOrder, limit
 
-limit(Order.of(sys.argv[1:]))
+limit(ReadingOrder.of(sys.argv[1:]))
 while True:
     pass

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.engine.library.upload_answer import LENGTH, Answer, AnswerError, TooLittleMemoryError, taken
+from culet.engine.library.upload_answer import LENGTH, AnswerError, AnswerFile, TooLittleMemoryError, taken
 from culet.errors import InputError, MeshError, TooLargeError
 from culet.geometry.designs.limits import MOST_FACETS
 from culet.geometry.mesh import shape_from_mesh
@@ -34,7 +34,7 @@ def file() -> Iterator[int]:
 
 
 def test_a_stone_arrives_as_it_was_told(file: int) -> None:
-    Answer(file).tell_mesh(STONE)
+    AnswerFile(file).tell_mesh(STONE)
     stone = taken(file, "mesh")
     assert isinstance(stone, Shape)
     for name in ("vertices", "triangles", "facet_of_triangle", "planes"):
@@ -51,7 +51,7 @@ def test_a_designs_names_arrive_with_its_facets(file: int) -> None:
                for angle in (40, -40)]  # fmt: skip
     stone = shape_from_file("\n".join(["g 96", *records]).encode(), "asc")
     assert len(stone.names) > 1.9 * facets
-    Answer(file).tell_mesh(stone)
+    AnswerFile(file).tell_mesh(stone)
     arrived = taken(file, "mesh")
     assert isinstance(arrived, Shape)
     assert arrived.names == stone.names
@@ -59,7 +59,7 @@ def test_a_designs_names_arrive_with_its_facets(file: int) -> None:
 
 
 def told_sky(file: int, value: float = 0.5) -> None:
-    answer = Answer(file)
+    answer = AnswerFile(file)
     pixels = answer.allocate((2, 4, 3))
     pixels[:] = value
     answer.tell_sky(SkyPicture(pixels, ("Dark.",)))
@@ -77,14 +77,14 @@ def test_a_sky_arrives_where_it_was_written(file: int) -> None:
 
 @pytest.mark.parametrize("error", [InputError("flat", "file"), MeshError("open"), TooLargeError("wide", "file")])
 def test_a_refusal_is_raised_as_it_was(file: int, error: InputError) -> None:
-    Answer(file).refuse(error)
+    AnswerFile(file).refuse(error)
     with pytest.raises(type(error), match=str(error)) as refusal:
         taken(file, "mesh")
     assert (type(refusal.value), refusal.value.field) == (type(error), error.field)
 
 
 def test_a_lack_of_memory_says_how_much_if_that_is_known(file: int) -> None:
-    Answer(file).refuse(MemoryError(1234))
+    AnswerFile(file).refuse(MemoryError(1234))
     with pytest.raises(TooLittleMemoryError) as refusal:
         taken(file, "sky")
     assert refusal.value.needed == 1234
@@ -127,7 +127,7 @@ MESH_LIES: dict[str, Callable[[dict[str, Any]], object]] = {
 
 @pytest.mark.parametrize("lie", MESH_LIES)
 def test_no_lie_about_arrays_is_believed(file: int, lie: str) -> None:
-    Answer(file).tell_mesh(STONE)
+    AnswerFile(file).tell_mesh(STONE)
     rewritten(file, MESH_LIES[lie])
     with pytest.raises(AnswerError):
         taken(file, "mesh")
@@ -150,7 +150,7 @@ def test_what_is_no_answer_is_refused(file: int, content: bytes) -> None:
 
 
 def test_an_answer_that_somebody_can_still_write_to_is_refused(file: int) -> None:
-    answer = Answer(file)
+    answer = AnswerFile(file)
     pixels = answer.allocate((2, 4, 3))
     answer.tell_sky(SkyPicture(pixels))
     with pytest.raises(AnswerError, match="sealed"):

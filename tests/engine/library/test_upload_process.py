@@ -14,14 +14,14 @@ import pytest
 
 from culet.engine.library import upload_process
 from culet.engine.library.upload_answer import TooLittleMemoryError
-from culet.engine.library.upload_process import Room, read_upload
+from culet.engine.library.upload_process import ReadingRoom, read_upload
 from culet.engine.process.limits import Limits
 from culet.errors import InputError, MeshError, TooLargeError
 from culet.optics.sky_files.picture import SkyPicture
 from engine.peer import TETRAHEDRON
 from optics.sky_files.writers import chunk
 
-FULL = Room(2**30, full=True)
+FULL = ReadingRoom(2**30, full=True)
 
 
 def black_png(width: int, height: int) -> bytes:
@@ -33,7 +33,7 @@ def black_png(width: int, height: int) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", pixels) + chunk(b"IEND", b"")
 
 
-async def read_sky(data: bytes, file_type: str = "png", room: Room = FULL, **limits: float) -> SkyPicture:
+async def read_sky(data: bytes, file_type: str = "png", room: ReadingRoom = FULL, **limits: float) -> SkyPicture:
     sky = await read_upload("sky", InputError, file_type, data, Limits.read(limits), room)
     assert isinstance(sky, SkyPicture)
     return sky
@@ -41,16 +41,16 @@ async def read_sky(data: bytes, file_type: str = "png", room: Room = FULL, **lim
 
 async def test_a_sky_takes_little_more_to_read_than_to_keep() -> None:
     """4096 x 2048 pixels are 96 MiB; 8 times that before rows were decoded one after another."""
-    sky = await read_sky(black_png(4096, 2048), room=Room(145 * 2**20, full=False))
+    sky = await read_sky(black_png(4096, 2048), room=ReadingRoom(145 * 2**20, full=False))
     assert sky.pixels.nbytes == 96 * 2**20
     with pytest.raises(TooLittleMemoryError) as refusal:
-        await read_sky(black_png(4096, 2048), room=Room(100 * 2**20, full=False))
+        await read_sky(black_png(4096, 2048), room=ReadingRoom(100 * 2**20, full=False))
     assert 96 * 2**20 < refusal.value.needed < 2 * 96 * 2**20
 
 
 async def test_what_takes_more_memory_than_any_file_may_is_refused() -> None:
     with pytest.raises(InputError, match="the sky takes more than 64 MiB of memory to be read"):
-        await read_sky(black_png(4096, 2048), room=Room(2**26, full=True))
+        await read_sky(black_png(4096, 2048), room=ReadingRoom(2**26, full=True))
 
 
 async def test_the_size_of_a_sky_is_a_setting() -> None:

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from culet.engine.library import upload_store
-from culet.engine.library.upload_process import Room
+from culet.engine.library.upload_process import ReadingRoom
 from culet.engine.library.upload_store import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore, mesh_size
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
@@ -117,7 +117,7 @@ async def test_readers_of_both_kinds_at_once_share_the_memory(monkeypatch: pytes
 
     async def read(*arguments: object) -> None:
         room = arguments[-1]
-        assert isinstance(room, Room)
+        assert isinstance(room, ReadingRoom)
         rooms.append(room.memory)
         await both.wait()
         assert memory.free >= 0

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.painting.coded import Coded
-from culet.engine.painting.counters import Tally
+from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.frame_sender import FrameSender, Outgoing
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.video import Packet, VideoEncoder, VideoError
@@ -57,7 +57,9 @@ class Desk:
         """Bytes for which there was to be room."""
         self.session = Session(NAME, Stage.of(Scene()))
         self.outgoing = Outgoing()
-        self.sender = FrameSender(self._take, self._fail, lambda: None, Tally(), lambda: self.now, self._has_room)
+        self.sender = FrameSender(
+            self._take, self._fail, lambda: None, SharedCounters(), lambda: self.now, self._has_room
+        )
         shown = self.session.shown
         self.frame = LiveFrame(
             rgb=np.zeros((18, 32, 3), np.uint8), shown=shown, optics=shown.scene.optics, bands=3, samples=1,

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from culet.engine.governing.thrift import Allowance, Encoding
+from culet.engine.governing.thrift import ByteAllowance, Encoding
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.quality import Quality
@@ -109,7 +109,7 @@ def test_each_frame_of_a_falling_stone_is_encoded_once(
         return encode(rgb, quality)
 
     monkeypatch.setattr(jpeg, "encode", counted)
-    quality, allowance = Quality(), Allowance(per_frame)
+    quality, allowance = Quality(), ByteAllowance(per_frame)
     stages = falling(preset("falling"), 16)
     for stage in stages:
         plan = quality.plan(stage.scene, (320, 180), Balance(exactness=0.5, pinned=False), allowance)

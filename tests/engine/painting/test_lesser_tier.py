@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 import simplejpeg
 
-from culet.engine.governing.thrift import FINAL_TIMES, GROWN, NO_LIMITS, Allowance, Encoding
+from culet.engine.governing.thrift import FINAL_TIMES, GROWN, NO_LIMITS, ByteAllowance, Encoding
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
-from culet.engine.painting.live_picture import LivePicture, State
+from culet.engine.painting.live_picture import LivePicture, PictureState
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.errors import CuletError
 from culet.rendering.target import Target
@@ -47,7 +47,7 @@ def frame(desk: Desk) -> LiveFrame:
 
 def within(per_frame: int, at_rest: int | None = None) -> LesserTier:
     tier = LesserTier()
-    tier.allowance = Allowance(per_frame, at_rest)
+    tier.allowance = ByteAllowance(per_frame, at_rest)
     tier.room = tier.allowance.room(30, 30)
     return tier
 
@@ -97,7 +97,7 @@ async def test_the_last_picture_at_rest_has_the_bytes_of_some_seconds(desk: Desk
     assert coarse.thrifty
     assert len(coarse.data) <= most
     assert last == best
-    desk.outgoing.allowance = Allowance(1, most)
+    desk.outgoing.allowance = ByteAllowance(1, most)
     for final in (False, True):
         desk.frame = replace(resting, final=final)
         await desk.publish()
@@ -180,7 +180,12 @@ async def test_alone_it_is_repeated_too(desk: Desk) -> None:
 async def at_rest(desk: Desk, window: tuple[int, int]) -> LivePicture:
     """A picture that is as good as it becomes, and was sent as a lesser one for such a window alone."""
     live = LivePicture(desk.session, watched=True, outgoing=desk.outgoing)
-    live.painted, live.painted_size, live.size, live.state = live.session.shown, live.size, live.size, State.FINAL
+    live.painted, live.painted_size, live.size, live.state = (
+        live.session.shown,
+        live.size,
+        live.size,
+        PictureState.FINAL,
+    )
     desk.watch()
     desk.outgoing.watch(LESSER, subscribed=True)
     live.resize_lesser(window)
@@ -191,10 +196,10 @@ async def at_rest(desk: Desk, window: tuple[int, int]) -> LivePicture:
 
 @pytest.mark.parametrize(
     ("window", "state"),
-    [((640, 300), State.BLANK), ((320, 180), State.FINAL), ((100, 100), State.FINAL)],
+    [((640, 300), PictureState.BLANK), ((320, 180), PictureState.FINAL), ((100, 100), PictureState.FINAL)],
 )
 async def test_at_rest_it_is_drawn_anew_for_a_larger_window_only(
-    desk: Desk, window: tuple[int, int], state: State
+    desk: Desk, window: tuple[int, int], state: PictureState
 ) -> None:
     live = await at_rest(desk, (320, 180))
     live.resize_lesser(window)
@@ -204,7 +209,7 @@ async def test_at_rest_it_is_drawn_anew_for_a_larger_window_only(
 async def test_who_comes_to_a_session_at_rest_of_which_there_is_only_a_lesser_picture_has_one_drawn(desk: Desk) -> None:
     live = await at_rest(desk, (320, 180))
     painter = Painter(
-        cast(Renderer, None), cast(ThreadPoolExecutor, None), StillQueue(1, 1), send=lambda _: None,
+        cast(AnyRenderer, None), cast(ThreadPoolExecutor, None), StillQueue(1, 1), send=lambda _: None,
         tell_problem=lambda *_: None, encode_still=cast(EncodeStill, None), still_seconds=1, rest=Target(1, None),
     )  # fmt: skip
     states = []
@@ -212,7 +217,7 @@ async def test_who_comes_to_a_session_at_rest_of_which_there_is_only_a_lesser_pi
         desk.outgoing.watch(stream, subscribed=True)
         painter.show_again(live, stream)
         states.append(live.state)
-    assert states == [State.FINAL, State.BLANK]
+    assert states == [PictureState.FINAL, PictureState.BLANK]
 
 
 async def test_for_nobody_it_is_not_made(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

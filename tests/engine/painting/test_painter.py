@@ -20,21 +20,21 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
-from culet.engine.governing.thrift import Allowance
+from culet.engine.governing.thrift import ByteAllowance
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
-from culet.engine.painting.frame_work import FrameWork, Kind, has_shape
+from culet.engine.painting.frame_work import FrameWork, WorkKind, has_shape
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.live_picture import SETTLE_SECONDS, LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.shares import Account
 from culet.engine.painting.still import Still, StillQueue
 from culet.engine.session.session import Session
-from culet.engine.session.stepper import Stepper, Steps
+from culet.engine.session.stepper import Stepper, Stepping
 from culet.engine.session.viewpoint import orbit
 from culet.errors import TooLargeError
 from culet.optics.panoramas import Panorama
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import SOON
 from culet.rendering.target import Target
 from culet.scene import Scene
@@ -112,7 +112,9 @@ class World:
                 self.session.stage.showing(scene.model_copy(update={"camera": orbit(scene.camera, 0.01, 0)}))
             )
 
-    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
+    def picture(
+        self, stage: Stage, width: int, height: int, *, effort: LightEffort = LightEffort.PATIENT
+    ) -> TimedPicture:
         picture = TimedPicture(self, stage.scene, (width, height))
         self.pictures.add(picture)
         return picture
@@ -283,7 +285,7 @@ class AtOnce:
     def __init__(self, world: World) -> None:
         self._world = world
 
-    def keep_going(self, steps: Steps) -> None:
+    def keep_going(self, steps: Stepping) -> None:
         steps.run(self._world.now)
 
     def stop(self) -> None:
@@ -443,13 +445,13 @@ async def test_the_next_frame_is_begun_while_the_last_one_is_encoded(monkeypatch
     drawing = [threading.Event() for _ in range(8)]
     encoded, world = list[int](), World(0.1)
 
-    def encode(frame: LiveFrame, _: Allowance) -> Coded:
+    def encode(frame: LiveFrame, _: ByteAllowance) -> Coded:
         number = len(encoded)
         encoded.append(number)
         assert number + 1 >= len(drawing) or drawing[number + 1].wait(PATIENCE)
         return Coded.of_jpeg(jpeg.encode_within(frame.rgb, 50, math.inf), thrifty=False)
 
-    def picture(stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
+    def picture(stage: Stage, width: int, height: int, *, effort: LightEffort = LightEffort.PATIENT) -> TimedPicture:
         for begun in drawing[: len(world.drawn) + 1]:
             begun.set()
         return TimedPicture(world, stage.scene, (width, height))
@@ -488,10 +490,10 @@ def test_a_frame_that_is_small_is_developed_without_a_turn_of_others(size: tuple
             developed.append(soft)
             yield
 
-    world.picture = lambda stage, width, height, *, effort=Effort.PATIENT: InPieces(  # type: ignore[method-assign]
+    world.picture = lambda stage, width, height, *, effort=LightEffort.PATIENT: InPieces(  # type: ignore[method-assign]
         world, stage.scene, (width, height)
     )
-    work = FrameWork(Kind.FULL, world.session.shown, size, Account(None), world.now, now=lambda: world.now)
+    work = FrameWork(WorkKind.FULL, world.session.shown, size, Account(None), world.now, now=lambda: world.now)
     work.piece_seconds = 1.0
     work.start(world)
     assert sum(1 for _ in work.pieces) == turns
@@ -803,7 +805,9 @@ class Crowd(World):
         super().__init__(full_seconds, with_stone=True)
         self.other = World(other_seconds, with_stone=True)
 
-    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> TimedPicture:
+    def picture(
+        self, stage: Stage, width: int, height: int, *, effort: LightEffort = LightEffort.PATIENT
+    ) -> TimedPicture:
         world = self.other if stage.scene.floor.kind == "none" else self
         picture = TimedPicture(world, stage.scene, (width, height))
         picture.clock = self

@@ -10,7 +10,7 @@ import simplejpeg
 from numpy.typing import NDArray
 from PIL import Image
 
-from culet.engine.governing.thrift import FINAL_TIMES, NO_LIMITS, Allowance
+from culet.engine.governing.thrift import FINAL_TIMES, NO_LIMITS, ByteAllowance
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.resting_picture import FINER_QUALITIES, encode_png, encode_resting
@@ -51,7 +51,7 @@ def test_a_link_has_the_least_loss_that_it_carries_as_soon_as_any_picture_at_res
     assert sizes == sorted(sizes, reverse=True)
     errors = list[float]()
     for most in range(sizes[0], sizes[-1] // FINAL_TIMES, -sizes[0] // 40):
-        coded = encode_resting(rgb, Allowance(at_rest=most), final=True)
+        coded = encode_resting(rgb, ByteAllowance(at_rest=most), final=True)
         expected = next((size for size in sizes[:-1] if size <= most), sizes[-1])
         assert len(coded.data) == expected
         assert not coded.thrifty, "it is as good as those before it"
@@ -62,7 +62,7 @@ def test_a_link_has_the_least_loss_that_it_carries_as_soon_as_any_picture_at_res
 
 def test_a_slow_link_has_the_coarse_picture_in_the_time_that_the_last_one_may_take(rgb: NDArray[np.uint8]) -> None:
     most = len(jpeg.encode(rgb, 92)) // (2 * FINAL_TIMES)
-    coded = encode_resting(rgb, Allowance(at_rest=most), final=True)
+    coded = encode_resting(rgb, ByteAllowance(at_rest=most), final=True)
     assert (coded.codec, coded.thrifty) == (Codec.JPEG, True)
     assert len(coded.data) <= FINAL_TIMES * most
 
@@ -73,4 +73,4 @@ def test_what_has_no_room_is_not_encoded(rgb: NDArray[np.uint8], monkeypatch: py
 
     monkeypatch.setattr("culet.engine.painting.resting_picture.encode_png", never)
     most = 2 * len(jpeg.encode(rgb, 92)) - 1
-    assert encode_resting(rgb, Allowance(at_rest=most), final=True).codec is Codec.JPEG
+    assert encode_resting(rgb, ByteAllowance(at_rest=most), final=True).codec is Codec.JPEG

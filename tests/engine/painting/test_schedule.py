@@ -4,8 +4,8 @@ import pytest
 
 from culet.engine.painting import schedule
 from culet.engine.painting.frame_sender import UNSENT_FRAMES
-from culet.engine.painting.frame_work import FrameWork, Kind
-from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, LivePicture, State
+from culet.engine.painting.frame_work import FrameWork, WorkKind
+from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, LivePicture, PictureState
 from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
@@ -29,12 +29,12 @@ def live(*, watched: bool = True, begun_at: float = 0, rate: float = 10) -> Live
 def painted(picture: LivePicture, *, final: bool) -> LivePicture:
     picture.picture = None if final else RENDERER.picture(STAGE, 16, 16)
     picture.painted, picture.painted_size = picture.session.shown, picture.size
-    picture.state = State.FINAL if final else State.FULL
+    picture.state = PictureState.FINAL if final else PictureState.FULL
     picture.outgoing.message, picture.outgoing.sent_at = b"frame", 0
     return picture
 
 
-def in_work(picture: LivePicture, kind: Kind = Kind.FULL) -> LivePicture:
+def in_work(picture: LivePicture, kind: WorkKind = WorkKind.FULL) -> LivePicture:
     picture.making = FrameWork(kind, picture.session.shown, picture.size, picture.frames, begun_at=0)
     return picture
 
@@ -80,7 +80,7 @@ def test_a_picture_at_rest_is_refined_until_it_is_final() -> None:
 
 def test_a_reduced_picture_is_drawn_in_full_when_things_have_settled() -> None:
     reduced = painted(live(begun_at=4), final=False)
-    reduced.state, reduced.settles_at = State.REDUCED, 5
+    reduced.state, reduced.settles_at = PictureState.REDUCED, 5
     assert next_of([reduced], now=4.9) is None
     assert next_of([reduced], now=5) is reduced
     assert reduced.next_account is reduced.rest, "something is to be seen of it already"

@@ -13,15 +13,15 @@ from typing import Any
 import pytest
 import zmq.asyncio
 
-from culet.engine.painting.renderer import Picture
-from culet.engine.process.engine import Engine
+from culet.engine.painting.renderer import AnyPicture
+from culet.engine.process.engine import EngineServer
 from culet.engine.process.limits import Limits
 from culet.engine.process.serve import encode_still
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.errors import DeviceError
 from culet.optics.panoramas import Panorama
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import Renderer
 from culet.simulation.models import MODELS
 from culet.simulation.state import RigidState
@@ -41,7 +41,9 @@ class FailingRenderer:
     def __init__(self) -> None:
         self.renderer = Renderer()
 
-    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> Picture:
+    def picture(
+        self, stage: Stage, width: int, height: int, *, effort: LightEffort = LightEffort.PATIENT
+    ) -> AnyPicture:
         if stage.scene.environment.kind == "half":
             raise DeviceError("the kernel does not build")
         return self.renderer.picture(stage, width, height, effort=effort)
@@ -72,7 +74,7 @@ async def served(folder: Path) -> AsyncIterator[tuple[Peer, Callable[[str], Watc
     """An engine in this process; a peer of it, and what watches a session."""
     control, frames = f"ipc://{folder}/control", f"ipc://{folder}/frames"
     context, stopping, thread = zmq.asyncio.Context(), asyncio.Event(), ThreadPoolExecutor(1)
-    engine = Engine(context, control, [frames], Limits(), FailingRenderer(), thread, encode_still)
+    engine = EngineServer(context, control, [frames], Limits(), FailingRenderer(), thread, encode_still)
     running = asyncio.create_task(engine.run_until(stopping))
     peer = Peer(context, control)
     try:

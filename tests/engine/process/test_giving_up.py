@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 import zmq.asyncio
 
-from culet.engine.process.engine import Engine
+from culet.engine.process.engine import EngineServer
 from culet.engine.process.limits import Limits
 from culet.engine.process.serve import encode_still
 from engine.peer import PATIENCE, Peer
@@ -34,7 +34,7 @@ async def test_work_for_a_gateway_that_is_gone_is_given_up(
 
     control, frames = f"ipc://{tmp_path}/control", f"ipc://{tmp_path}/frames"
     context, stopping, thread = zmq.asyncio.Context(), asyncio.Event(), ThreadPoolExecutor(1)
-    engine = Engine(context, control, [frames], Limits(), FailingRenderer(), thread, encode_still)
+    engine = EngineServer(context, control, [frames], Limits(), FailingRenderer(), thread, encode_still)
     monkeypatch.setattr(engine._requests, "answer", endless)
     running = asyncio.create_task(engine.run_until(stopping))
     gateways = zmq.asyncio.Context()

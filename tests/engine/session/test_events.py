@@ -7,7 +7,7 @@ import pytest
 
 from culet.engine.session import events
 from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
+from culet.engine.session.snapshot import SessionSnapshot
 from culet.errors import InputError, SceneError
 from culet.optics.sky_files.picture import SkyPicture
 from culet.scene import Scene
@@ -184,7 +184,7 @@ def test_a_switched_sky_survives_in_another_engine() -> None:
     subject = session()
     own = subject.scene.environment
     after(subject, messages.ToggleEnvironment())
-    snapshot = Snapshot.read(json.loads(subject.snapshot().model_dump_json()))
+    snapshot = SessionSnapshot.read(json.loads(subject.snapshot().model_dump_json()))
     assert snapshot.environment is not None
     sky = LIBRARY.sky(snapshot.environment)
     other = Session.restored(subject.name, subject.stage, snapshot, sky=sky)
@@ -196,7 +196,7 @@ def test_the_light_sky_is_seen_in_the_atelier_too_and_goes_back_to_it_in_another
     before = subject.scene
     light = after(subject, messages.ToggleEnvironment())
     assert (light.environment.kind, light.backdrop.kind, kinds(light)) == ("light", "none", ("mirror", "none"))
-    snapshot = Snapshot.read(json.loads(subject.snapshot().model_dump_json()))
+    snapshot = SessionSnapshot.read(json.loads(subject.snapshot().model_dump_json()))
     other = Session.restored(subject.name, subject.stage, snapshot, sky=Sky(before.environment))
     for one in (subject, other):
         assert after(one, messages.ToggleEnvironment()) == before

@@ -9,9 +9,9 @@ import pytest
 
 from culet.engine.session import events
 from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
+from culet.engine.session.snapshot import SessionSnapshot
 from culet.scene import Scene
-from culet.scene.motion import Simulation as SimulationLaws
+from culet.scene.motion import MotionLaws
 from culet.stage import NOTHING, Stage
 from culet_protocol.messages import PatchScene
 from engine.peer import EngineProcess, connected
@@ -29,7 +29,7 @@ def falling(scene: dict[str, Any] | None = None) -> Session:
 
 def patch(session: Session, **settings: object) -> None:
     """Laws of motion, and what is the stone's own."""
-    own = {name: value for name, value in settings.items() if name not in SimulationLaws.model_fields}
+    own = {name: value for name, value in settings.items() if name not in MotionLaws.model_fields}
     laws = {name: value for name, value in settings.items() if name not in own}
     events.apply(session, PatchScene(patch={"simulation": laws, "stones": {"stone": own}}), NOTHING)
 
@@ -145,7 +145,9 @@ def test_another_engine_goes_on_with_the_settings_of_before() -> None:
     session.advance(0.21)
     patch(session, gravity=3, time_step=1 / 90, model="classic")
     report = json.loads(json.dumps(session.described()))
-    other = Session.restored(session.name, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
+    other = Session.restored(
+        session.name, Stage.of(Scene.read(report["scene"])), SessionSnapshot.read(report["snapshot"])
+    )
     assert other.shown.scene == session.shown.scene
     for one in (session, other):
         one.set_falling(True)

@@ -11,7 +11,7 @@ import pytest
 
 from culet.engine.session import events
 from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
+from culet.engine.session.snapshot import SessionSnapshot
 from culet.errors import CuletError, InputError
 from culet.scene import Scene
 from culet.simulation.bodies import BodyState
@@ -149,7 +149,7 @@ def test_several_stones_go_on_in_another_engine_to_the_same_bits() -> None:
     patch(session, stones={"s0": None})
     patch(session, stones=[stone(5), *(each.model_dump(mode="json") for each in session.scene.stones)])
     report = json.loads(json.dumps(session.described()))
-    other = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
+    other = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), SessionSnapshot.read(report["snapshot"]))
     assert shown(other) == shown(session)
     for one in (session, other):
         one.set_falling(True)
@@ -223,7 +223,7 @@ def test_a_session_takes_no_snapshot_of_stones_too_fast_for_numbers() -> None:
         saved = bytearray(base64.b64decode(snapshot["simulation"]["saved"]))
         struct.pack_into("d", saved, FIRST_MOMENTUM, momentum)
         changed = snapshot["simulation"] | {"saved": base64.b64encode(bytes(saved)).decode()}
-        return Session.restored(NAME, session.stage, Snapshot.read(snapshot | {"simulation": changed}))
+        return Session.restored(NAME, session.stage, SessionSnapshot.read(snapshot | {"simulation": changed}))
 
     with pytest.raises(InputError, match="simulation snapshot"):
         restored(1e300)

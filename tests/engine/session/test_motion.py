@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from culet.engine.session.motion import Motion
+from culet.engine.session.motion import StonesMotion
 from culet.scene import Scene
 from culet.scene.legacy import legacy
 from culet.simulation.clock import MAX_CATCH_UP
@@ -21,19 +21,19 @@ STEP = Scene().simulation.time_step
 PATIENCE = patience.PATIENCE
 
 
-def falling(scene: Scene = HIGH) -> Motion:
-    motion = Motion(Stage.of(scene))
+def falling(scene: Scene = HIGH) -> StonesMotion:
+    motion = StonesMotion(Stage.of(scene))
     motion.set_falling(True)
     return motion
 
 
-def height(motion: Motion, now: float) -> float:
+def height(motion: StonesMotion, now: float) -> float:
     ((position, _),) = motion.seen(now).poses.values()
     return position[1]
 
 
 @contextmanager
-def step_under_way(motion: Motion, now: float) -> Iterator[threading.Event]:
+def step_under_way(motion: StonesMotion, now: float) -> Iterator[threading.Event]:
     """A step is being taken in another thread until the event is set, which is so afterwards at the latest."""
     begun, go, step = threading.Event(), threading.Event(), motion.world.step
 

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
+from culet.engine.session.snapshot import SessionSnapshot
 from culet.errors import InputError, NotFoundError
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT
@@ -87,7 +87,7 @@ def test_a_restored_session_shows_the_same_and_moves_on_the_same() -> None:
         STAGE.showing(SCENE.model_copy(update={"camera": SCENE.camera.model_copy(update={"fov_degrees": 20.0})}))
     )
     report = json.loads(json.dumps(session.described()))
-    restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
+    restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), SessionSnapshot.read(report["snapshot"]))
     assert restored.pose() == session.pose()
     assert restored.scene == session.scene
     assert restored.home == SCENE.camera
@@ -114,12 +114,14 @@ def test_numbers_after_the_last_are_the_first_again_which_are_numbers_too(number
     restored = Session.restored(NAME, session.stage, snapshot).snapshot()
     assert 1 <= restored.step <= 2**53
     assert 0 <= restored.sequence < 2**53
-    assert Snapshot.read(restored.model_dump(mode="json")) == restored
+    assert SessionSnapshot.read(restored.model_dump(mode="json")) == restored
 
 
 def test_a_snapshot_that_is_none_is_refused_by_field() -> None:
     with pytest.raises(InputError, match="snapshot") as caught:
-        Snapshot.read({"simulation": None, "fraction": 2, "falling": False, "home": {}, "step": 1, "sequence": 0})
+        SessionSnapshot.read(
+            {"simulation": None, "fraction": 2, "falling": False, "home": {}, "step": 1, "sequence": 0}
+        )
     assert caught.value.field == "snapshot.fraction"
 
 
@@ -193,7 +195,7 @@ def test_giving_up_steps_does_not_change_those_taken(monkeypatch: pytest.MonkeyP
 def test_a_stone_that_cannot_be_simulated_stops_and_so_does_one_restored(monkeypatch: pytest.MonkeyPatch) -> None:
     session = fallen(0.21)
     report = json.loads(json.dumps(session.described()))
-    restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), Snapshot.read(report["snapshot"]))
+    restored = Session.restored(NAME, Stage.of(Scene.read(report["scene"])), SessionSnapshot.read(report["snapshot"]))
     for one in (session, restored):
         assert one.motion.falling
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as some
 
 from culet.geometry.designs.asc import read_asc
 from culet.geometry.designs.asc_writer import asc_of, planes_apart
-from culet.geometry.designs.design import Design, Facet, Side, Tier, Wheel, plane_of
+from culet.geometry.designs.design import Design, Facet, FacetSide, Tier, Wheel, plane_of
 from culet.geometry.designs.gem import read_gem
 from geometry.designs.files import NAMES, design, gem_of
 
@@ -36,7 +36,7 @@ def without_lines(given: Design) -> Design:
 
 @some.composite
 def tiers(draw: some.DrawFn, wheel: Wheel) -> Tier:
-    side: Side = draw(some.sampled_from(["table", "crown", "girdle", "pavilion", "culet"]))
+    side: FacetSide = draw(some.sampled_from(["table", "crown", "girdle", "pavilion", "culet"]))
     match side:
         case "table" | "culet":
             angle = 0.0

@@ -15,7 +15,7 @@ from culet.geometry.designs.asc import read_asc
 from culet.geometry.designs.diagram import HEIGHT, WIDTH, diagram_of
 from culet.geometry.designs.measures import outline_of
 from culet.geometry.designs.solid import Solid
-from culet.geometry.designs.views import ABOVE, BELOW, END, FRONT, Side, faces_seen
+from culet.geometry.designs.views import ABOVE, BELOW, END, FRONT, ViewSide, faces_seen
 from geometry.designs.files import NAMES, design
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -30,7 +30,7 @@ def area(corners: np.ndarray) -> float:
 
 @pytest.mark.parametrize("side", SIDES, ids=lambda side: side.name)
 @pytest.mark.parametrize("name", NAMES)
-def test_the_faces_that_are_seen_cover_the_stones_outline_once(name: str, side: Side) -> None:
+def test_the_faces_that_are_seen_cover_the_stones_outline_once(name: str, side: ViewSide) -> None:
     solid = Solid(design(name))
     outline = outline_of(solid.cut)
     faces = faces_seen(solid, outline, side)

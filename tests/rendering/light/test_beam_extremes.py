@@ -10,7 +10,7 @@ import pytest
 from culet.geometry.shape import Shape
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from rendering.light.throwing import UPRIGHT, Array, Thrown, lamp, sun, thrown
 from shared.stones import needle, prism, skew_block, slab
 from shared.trimesh_stones import exact_box
@@ -21,7 +21,7 @@ def beams(device: Device) -> Beams:
     return Beams(device)
 
 
-def unshaded(made: Thrown, ray: Ray, surface: int, level: int) -> Array:
+def unshaded(made: Thrown, ray: LightRay, surface: int, level: int) -> Array:
     """(512, 512) the light of a white surface without stones."""
     normal = np.array([(0, 1, 0), (0, 0, 1), (np.sqrt(0.75), 0, 0.5), (-np.sqrt(0.75), 0, 0.5)][surface])
     if ray.towards is not None:
@@ -37,7 +37,7 @@ def unshaded(made: Thrown, ray: Ray, surface: int, level: int) -> Array:
     return np.asarray(np.maximum(way @ normal / np.linalg.norm(way, axis=-1), 0))
 
 
-def check(made: Thrown, ray: Ray, lost: float = 2e-6) -> None:
+def check(made: Thrown, ray: LightRay, lost: float = 2e-6) -> None:
     assert np.isfinite(made.map).all()
     assert abs(made.lost()) < lost
     for surface in made.frame.matte:
@@ -65,7 +65,7 @@ LIGHTS = {
 
 @pytest.mark.parametrize("light", LIGHTS.values(), ids=LIGHTS.keys())
 @pytest.mark.parametrize("walls", ["none", "matte"])
-def test_every_light_leaves_a_sound_map(beams: Beams, light: Ray, walls: str) -> None:
+def test_every_light_leaves_a_sound_map(beams: Beams, light: LightRay, walls: str) -> None:
     for index in (1.3, 10):
         made = thrown(
             beams, [light], exact_box(), stones=[{**UPRIGHT, "material": {"ior": [index] * 3}}],
@@ -112,7 +112,7 @@ def test_a_light_inside_a_stone_shines_out_of_it(beams: Beams) -> None:
 
 
 def test_a_light_inside_a_stone_that_it_may_not_leave_lights_nothing(beams: Beams) -> None:
-    light = Ray((1, 1, 1), position=(0.1, 0.1, 0.2), follows=False)
+    light = LightRay((1, 1, 1), position=(0.1, 0.1, 0.2), follows=False)
     made = thrown(beams, [light], exact_box(), stones=[UPRIGHT])
     assert abs(made.map[0, 0, :, :, 0] + unshaded(made, light, 0, 0)).max() < 1e-6
 

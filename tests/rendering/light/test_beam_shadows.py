@@ -10,7 +10,7 @@ import pytest
 from culet.geometry.shape import Shape
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from rendering.light.throwing import SLANTED, UPRIGHT, Array, lamp, sun, thrown
 from shared.trimesh_stones import exact_box
 
@@ -20,8 +20,8 @@ def beams(device: Device) -> Beams:
     return Beams(device)
 
 
-def only_shadow(ray: Ray) -> Ray:
-    return Ray(ray.colour, ray.towards, ray.position, follows=False)
+def only_shadow(ray: LightRay) -> LightRay:
+    return LightRay(ray.colour, ray.towards, ray.position, follows=False)
 
 
 def hidden(shape: Shape, points: Array, ways: Array) -> Array:
@@ -41,7 +41,9 @@ def places(made_for: Array, rows: Array) -> Array:
 
 
 @pytest.mark.parametrize("ray", [sun(), lamp(), lamp((3, 0.2, 1))], ids=["parallel", "point", "low point"])
-def test_a_hard_shadow_lies_where_rays_to_the_light_meet_the_stone(beams: Beams, brilliant: Shape, ray: Ray) -> None:
+def test_a_hard_shadow_lies_where_rays_to_the_light_meet_the_stone(
+    beams: Beams, brilliant: Shape, ray: LightRay
+) -> None:
     made = thrown(beams, [only_shadow(ray)], stones=[UPRIGHT])
     columns, rows = made.frame.texels(0, 0)
     points = places(columns[::4], rows[::4])
@@ -69,7 +71,9 @@ PILE: list[tuple[tuple[float, float, float], float]] = [
 @pytest.mark.parametrize("ray", [sun(), sun((0.03, 1, 0.01)), lamp()], ids=["parallel", "from above", "point"])
 @pytest.mark.parametrize("turn", [1, -1], ids=["in order", "reversed"])
 @pytest.mark.parametrize("kind", ["brilliant", "box"])
-def test_what_several_stones_hide_is_dark_once(beams: Beams, brilliant: Shape, ray: Ray, turn: int, kind: str) -> None:
+def test_what_several_stones_hide_is_dark_once(
+    beams: Beams, brilliant: Shape, ray: LightRay, turn: int, kind: str
+) -> None:
     shape = brilliant if kind == "brilliant" else exact_box()
     pile = PILE[::turn]
     stones = [{**UPRIGHT, "position": list(place), "scale": scale} for place, scale in pile]
@@ -120,7 +124,7 @@ def test_a_wide_lamp_shines_into_its_shadow_what_the_stone_lets_through(beams: B
     r = ((index - 1) / (index + 1)) ** 2
     stone = {**UPRIGHT, "material": {"ior": [index] * 3}}
     lamps = [
-        Ray((0.5, 1.0, 0.25), towards=(0.0, 1.0, 0.0), follows=False, gauges=number == 0, emitter=3)
+        LightRay((0.5, 1.0, 0.25), towards=(0.0, 1.0, 0.0), follows=False, gauges=number == 0, emitter=3)
         for number in range(2)
     ]
     made = thrown(beams, lamps, exact_box(), stones=[stone], cutoff=1e-6)
@@ -132,7 +136,7 @@ def test_a_coloured_stone_colours_the_light_in_its_shadow(beams: Beams) -> None:
     index, absorption = 1.8, np.array([0.1, 1, 3])
     side = 2 * np.abs(exact_box().vertices[:, 1]).max()
     stone = {**UPRIGHT, "material": {"ior": [index] * 3}, "absorption": absorption.tolist()}
-    ray = Ray((1.0, 1.0, 1.0), towards=(0.0, 1.0, 0.0), follows=False, gauges=True)
+    ray = LightRay((1.0, 1.0, 1.0), towards=(0.0, 1.0, 0.0), follows=False, gauges=True)
     made = thrown(beams, [ray], exact_box(), stones=[stone], cutoff=1e-6)
     r, left = ((index - 1) / (index + 1)) ** 2, np.exp(-absorption * side)
     through = (1 - r) ** 2 * left / (1 - (r * left) ** 2)

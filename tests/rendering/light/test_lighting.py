@@ -22,14 +22,14 @@ from culet.rendering.device import Device
 from culet.rendering.inputs import Inputs
 from culet.rendering.light import beams
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.light_map import frame_of
 from culet.rendering.light.lighting import Illumination, Maker
 from culet.rendering.light.panorama_light import is_summed
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.light.sources import rays_of
-from culet.rendering.pace import Pace
-from culet.rendering.renderer import MIXED, Picture, Renderer
+from culet.rendering.pace import KernelPace
+from culet.rendering.renderer import MIXED, DevicePicture, Renderer
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
@@ -46,7 +46,7 @@ def scene_of(**changes: object) -> Scene:
     return Scene.read({**bare, **changes})
 
 
-def lit(renderer: Renderer, stage: Stage, effort: Effort, samples: int = 1) -> tuple[Picture, Illumination]:
+def lit(renderer: Renderer, stage: Stage, effort: LightEffort, samples: int = 1) -> tuple[DevicePicture, Illumination]:
     picture = renderer.picture(stage, *SIZE, effort=effort)
     picture.refine(samples)
     found = renderer.lighting.of(stage)
@@ -62,9 +62,9 @@ def texels(renderer: Renderer, found: Illumination) -> NDArray[np.float32]:
 
 def test_an_orbiting_camera_costs_the_map_nothing(renderer: Renderer) -> None:
     scene = scene_of()
-    _, before = lit(renderer, Stage.of(scene), Effort.MOVING)
+    _, before = lit(renderer, Stage.of(scene), LightEffort.MOVING)
     camera = scene.camera.model_copy(update={"position": (3.0, 2.0, 3.0)})
-    picture, after = lit(renderer, Stage.of(scene.model_copy(update={"camera": camera})), Effort.MOVING)
+    picture, after = lit(renderer, Stage.of(scene.model_copy(update={"camera": camera})), LightEffort.MOVING)
     assert after is before
     assert after.passes == 1
     assert picture.light_bound() == before.figures.bound if before.figures else False
@@ -137,11 +137,11 @@ def test_where_nothing_would_show_it_there_is_no_map_no_code_and_no_time(rendere
 def test_a_moving_picture_makes_one_pass_at_the_cutoff_of_its_scene(renderer: Renderer) -> None:
     for cutoff in (5e-3, 2e-3):
         stage = Stage.of(scene_of(optics={"caustics_cutoff": cutoff}, stones=[{"position": [0, 0.25, 0]}]))
-        _, found = lit(renderer, stage, Effort.MOVING)
+        _, found = lit(renderer, stage, LightEffort.MOVING)
         assert found.cutoff == cutoff, "a finer one is wanted than there is"
     passes = found.passes
     coarse = Stage.of(scene_of(optics={"caustics_cutoff": 0.1}, stones=[{"position": [0, 0.25, 0]}]))
-    assert lit(renderer, coarse, Effort.MOVING)[1].passes == passes, "there is a finer one than is wanted"
+    assert lit(renderer, coarse, LightEffort.MOVING)[1].passes == passes, "there is a finer one than is wanted"
 
 
 @pytest.mark.parametrize("emitter", [POINT, SUN], ids=["point", "sun"])
@@ -149,7 +149,7 @@ def test_passes_at_rest_come_as_near_as_they_say(renderer: Renderer, device: Dev
     """Against a map of 1e-7, of a sun of so many directions that 64 of them make no difference."""
     stage = Stage.of(scene_of(emitters=[emitter], stones=[{"position": [0, 0.125, 0]}]))
     renderer.lighting.of(stage)
-    picture, found = lit(renderer, stage, Effort.PATIENT)
+    picture, found = lit(renderer, stage, LightEffort.PATIENT)
     assert found.good_enough
     frame = frame_of(stage)
     target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
@@ -169,14 +169,14 @@ def test_passes_at_rest_come_as_near_as_they_say(renderer: Renderer, device: Dev
 
 def test_an_error_at_rest_falls_and_then_nothing_is_done(renderer: Renderer) -> None:
     stage = Stage.of(scene_of(stones=[{"position": [0, 0.375, 0]}]))
-    _, found = lit(renderer, stage, Effort.MOVING)
+    _, found = lit(renderer, stage, LightEffort.MOVING)
     first, bound = found.rmse, found.figures.bound if found.figures else math.nan
-    _, found = lit(renderer, stage, Effort.PATIENT)
+    _, found = lit(renderer, stage, LightEffort.PATIENT)
     assert found.rmse < first / 2
     assert found.figures is not None
     assert found.figures.bound < bound / 2
     passes = found.passes
-    picture, found = lit(renderer, stage, Effort.PATIENT, 4)
+    picture, found = lit(renderer, stage, LightEffort.PATIENT, 4)
     assert found.passes == passes
     assert picture.light_error() == found.rmse
 
@@ -184,7 +184,7 @@ def test_an_error_at_rest_falls_and_then_nothing_is_done(renderer: Renderer) -> 
 def test_of_frames_that_move_the_last_map_is_kept_and_of_pictures_at_rest_several(renderer: Renderer) -> None:
     """A map of floor and walls has 24 MiB, and no frame shows the one of a frame before."""
     stages = [Stage.of(scene_of(stones=[{"position": [x, 1, 0]}])) for x in (0.0, 0.1, 0.2)]
-    for effort, kept in ((Effort.MOVING, [False, False, True]), (Effort.RESTING, [True, True, True])):
+    for effort, kept in ((LightEffort.MOVING, [False, False, True]), (LightEffort.RESTING, [True, True, True])):
         renderer.lighting.forget()
         made = [ref(lit(renderer, stage, effort)[1]) for stage in stages]
         gc.collect()
@@ -199,7 +199,7 @@ def test_what_a_moving_picture_reads_is_made_during_the_first_launch_of_its_ligh
     """So that the device has something to do meanwhile; the picture is the same as one that had it before."""
     stage = Stage.of(scene_of())
     renderer.lighting.forget()
-    before = renderer.picture(stage, *SIZE, effort=Effort.MOVING)
+    before = renderer.picture(stage, *SIZE, effort=LightEffort.MOVING)
     before.prepare()
     before.refine()
     done: list[str] = []
@@ -216,7 +216,7 @@ def test_what_a_moving_picture_reads_is_made_during_the_first_launch_of_its_ligh
     monkeypatch.setattr(Beams, "_launch", launched)
     monkeypatch.setattr(Inputs, "of_sample", asked)
     renderer.lighting.forget()
-    picture = renderer.picture(stage, *SIZE, effort=Effort.MOVING)
+    picture = renderer.picture(stage, *SIZE, effort=LightEffort.MOVING)
     assert done == [], "nothing is made before its light"
     for _ in picture.refine_in_pieces(1, 1e-3):
         pass
@@ -245,9 +245,11 @@ def test_a_launch_that_may_have_ended_before_it_was_waited_for_makes_no_pace_slo
 def test_passes_of_two_pictures_may_be_under_way_by_turns(renderer: Renderer) -> None:
     """As the painter takes turns: each gets the map that it would get alone."""
     stages = [Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (0.0625, 0.1875)]
-    alone = [texels(renderer, lit(renderer, stage, Effort.MOVING)[1]) for stage in stages]
+    alone = [texels(renderer, lit(renderer, stage, LightEffort.MOVING)[1]) for stage in stages]
     renderer.lighting.forget()
-    under_way = [renderer.picture(stage, *SIZE, effort=Effort.MOVING).refine_in_pieces(1, 1e-4) for stage in stages]
+    under_way = [
+        renderer.picture(stage, *SIZE, effort=LightEffort.MOVING).refine_in_pieces(1, 1e-4) for stage in stages
+    ]
     while under_way:
         under_way = [each for each in under_way if next(each, None) is not None]
     for stage, wanted in zip(stages, alone, strict=True):
@@ -261,17 +263,17 @@ def test_a_picture_at_rest_is_the_same_whatever_was_drawn_before(renderer: Rende
     stage = Stage.of(scene_of(emitters=[emitter]))
     coarse = stage.scene.optics.model_copy(update={"caustics_cutoff": 0.05})
     renderer.lighting.forget()
-    fresh, _ = lit(renderer, stage, Effort.RESTING, 3)
-    again, _ = lit(renderer, stage, Effort.RESTING, 3)
+    fresh, _ = lit(renderer, stage, LightEffort.RESTING, 3)
+    again, _ = lit(renderer, stage, LightEffort.RESTING, 3)
     renderer.lighting.forget()
-    moving, _ = lit(renderer, Stage.of(stage.scene.model_copy(update={"optics": coarse})), Effort.MOVING)
-    after, _ = lit(renderer, stage, Effort.RESTING, 3)
+    moving, _ = lit(renderer, Stage.of(stage.scene.model_copy(update={"optics": coarse})), LightEffort.MOVING)
+    after, _ = lit(renderer, stage, LightEffort.RESTING, 3)
     renderer.lighting.forget()
-    given_up = renderer.picture(stage, *SIZE, effort=Effort.RESTING).refine_in_pieces(3, 1e-4)
+    given_up = renderer.picture(stage, *SIZE, effort=LightEffort.RESTING).refine_in_pieces(3, 1e-4)
     for _ in range(30):
         next(given_up)
     del given_up
-    resumed, _ = lit(renderer, stage, Effort.RESTING, 3)
+    resumed, _ = lit(renderer, stage, LightEffort.RESTING, 3)
     assert fresh.samples == again.samples == after.samples == resumed.samples == 3
     assert (resumed.linear() == fresh.linear()).all(), "by one that was begun for a picture that was given up"
     assert (again.linear() == fresh.linear()).all(), "by a map that is there already"
@@ -291,15 +293,15 @@ def test_light_at_rest_is_shown_while_it_gets_better_and_ends_in_the_same_pictur
     monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
     stage, target = Stage.of(scene_of(emitters=[SUN])), Target(4)
     renderer.lighting.forget()
-    expected = renderer.picture(stage, *size, effort=Effort.RESTING)
+    expected = renderer.picture(stage, *size, effort=LightEffort.RESTING)
     for _ in expected.refine_until(target, math.inf):
         pass
     assert expected.samples == expected.samples_seen == 4
     if many:
-        monkeypatch.setattr(Pace, "steps", lambda _pace, _seconds: 600)
+        monkeypatch.setattr(KernelPace, "steps", lambda _pace, _seconds: 600)
         monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
     renderer.lighting.forget()
-    picture, looks = renderer.picture(stage, *size, effort=Effort.RESTING), [(0, 0, 0)]
+    picture, looks = renderer.picture(stage, *size, effort=LightEffort.RESTING), [(0, 0, 0)]
     found, mixed = renderer.lighting.of(stage), 0
     assert found is not None
 
@@ -323,7 +325,7 @@ def test_light_at_rest_is_shown_while_it_gets_better_and_ends_in_the_same_pictur
     assert seen[anew] > samples[anew]
     assert picture.linear().tobytes() == expected.linear().tobytes()
     renderer.lighting.forget()
-    patient = renderer.picture(stage, *size, effort=Effort.PATIENT)
+    patient = renderer.picture(stage, *size, effort=LightEffort.PATIENT)
     for _ in patient.refine_until(target, 1e-4, due=lambda _: True):
         pass
     assert patient.light_error() == expected.light_error(), "a still waits for all its light"
@@ -337,7 +339,7 @@ def test_without_fireflies_a_picture_has_one_sample_in_each_light_until_the_last
     monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
     stage, target = Stage.of(scene_of(emitters=[SUN], film={"fireflies": "hide"})), Target(3)
     renderer.lighting.forget()
-    picture, seen = renderer.picture(stage, *SIZE, effort=Effort.RESTING), list[int]()
+    picture, seen = renderer.picture(stage, *SIZE, effort=LightEffort.RESTING), list[int]()
     while not picture.reached(target):
         for _ in picture.refine_until(target, 1e-5, due=lambda _: True):
             pass
@@ -345,7 +347,7 @@ def test_without_fireflies_a_picture_has_one_sample_in_each_light_until_the_last
     assert seen[-3:] == [1, 2, 3]
     assert seen == sorted(seen)
     assert len(seen) > 3, "one look in each light"
-    expected = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
+    expected = renderer.picture(stage, *SIZE, effort=LightEffort.RESTING)
     for _ in expected.refine_until(target, math.inf):
         pass
     assert picture.linear().tobytes() == expected.linear().tobytes()
@@ -356,16 +358,16 @@ def test_a_pass_that_another_picture_has_begun_anew_adds_nothing(renderer: Rende
     stage = Stage.of(scene_of())
     coarse = stage.scene.model_copy(update={"optics": stage.scene.optics.model_copy(update={"caustics_cutoff": 0.01})})
     renderer.lighting.forget()
-    _, alone = lit(renderer, stage, Effort.RESTING)
+    _, alone = lit(renderer, stage, LightEffort.RESTING)
     wanted = texels(renderer, alone)
     renderer.lighting.forget()
-    superseded = renderer.picture(stage.showing(coarse), *SIZE, effort=Effort.MOVING).refine_in_pieces(1, 1e-5)
+    superseded = renderer.picture(stage.showing(coarse), *SIZE, effort=LightEffort.MOVING).refine_in_pieces(1, 1e-5)
     for _ in range(5):
         next(superseded)
     found = renderer.lighting.of(stage.showing(coarse))
     assert found is not None
     assert found.passes == 0, "a pass is under way"
-    resting = found.pieces(stage.scene.optics.caustics_cutoff, Effort.RESTING, 1e-5, first=True)
+    resting = found.pieces(stage.scene.optics.caustics_cutoff, LightEffort.RESTING, 1e-5, first=True)
     for _ in range(5):
         next(resting)
     for _ in superseded:
@@ -384,7 +386,7 @@ def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_map
     wanted = []
     for stage in stages:
         renderer.lighting.forget()
-        wanted.append(texels(renderer, lit(renderer, stage, Effort.RESTING)[1]))
+        wanted.append(texels(renderer, lit(renderer, stage, LightEffort.RESTING)[1]))
     renderer.lighting.forget()
     held, most, take, give_back = 0, 0, renderer.lighting.take_beams, renderer.lighting.give_back
 
@@ -401,7 +403,7 @@ def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_map
 
     monkeypatch.setattr(renderer.lighting, "take_beams", taken)
     monkeypatch.setattr(renderer.lighting, "give_back", given)
-    works = [renderer.picture(stage, *SIZE, effort=Effort.RESTING).refine_in_pieces(1, 1e-5) for stage in stages]
+    works = [renderer.picture(stage, *SIZE, effort=LightEffort.RESTING).refine_in_pieces(1, 1e-5) for stage in stages]
     while works:
         works = [work for work in works if next(work, None) is not None]
     assert (most, held) == (1, 0)
@@ -415,15 +417,15 @@ def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_map
 def test_a_pass_that_nobody_waits_for_is_given_up_for_another_stage(renderer: Renderer) -> None:
     left, wanted = (Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (1.0, 1.5))
     renderer.lighting.forget()
-    given_up = renderer.picture(left, *SIZE, effort=Effort.RESTING).refine_in_pieces(1, 1e-5)
+    given_up = renderer.picture(left, *SIZE, effort=LightEffort.RESTING).refine_in_pieces(1, 1e-5)
     for _ in range(5):
         next(given_up)
     del given_up
     abandoned = renderer.lighting.of(left)
     assert abandoned is not None
-    lit(renderer, wanted, Effort.RESTING)
+    lit(renderer, wanted, LightEffort.RESTING)
     assert abandoned.passes == 0
-    lit(renderer, left, Effort.RESTING)
+    lit(renderer, left, LightEffort.RESTING)
     assert abandoned.passes == 1, "and made when it is needed"
 
 
@@ -439,11 +441,11 @@ def test_a_pass_that_failed_is_made_anew(renderer: Renderer, monkeypatch: pytest
     assert found is not None
     monkeypatch.setattr(Beams, "pieces", failing)
     with pytest.raises(DeviceError):
-        list(found.pieces(1e-3, Effort.RESTING, 1, first=True))
+        list(found.pieces(1e-3, LightEffort.RESTING, 1, first=True))
     monkeypatch.setattr(Beams, "pieces", made)
-    list(found.pieces(1e-3, Effort.RESTING, 1, first=True))
+    list(found.pieces(1e-3, LightEffort.RESTING, 1, first=True))
     assert found.passes == 1
-    picture = renderer.picture(stage, *SIZE, effort=Effort.RESTING)
+    picture = renderer.picture(stage, *SIZE, effort=LightEffort.RESTING)
     picture.refine()
     monkeypatch.setattr(Beams, "pieces", failing)
     with pytest.raises(DeviceError):
@@ -457,12 +459,12 @@ def test_a_pass_that_failed_is_made_anew(renderer: Renderer, monkeypatch: pytest
 def test_a_moving_pass_takes_the_rays_of_moving_pictures(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[bool] = []
 
-    def listening(stage: Stage, number: int, *, moving: bool = False) -> list[Ray]:
+    def listening(stage: Stage, number: int, *, moving: bool = False) -> list[LightRay]:
         asked.append(moving)
         return rays_of(stage, number, moving=moving)
 
     monkeypatch.setattr("culet.rendering.light.lighting.rays_of", listening)
-    for effort, moving in ((Effort.MOVING, True), (Effort.RESTING, False)):
+    for effort, moving in ((LightEffort.MOVING, True), (LightEffort.RESTING, False)):
         renderer.lighting.forget()
         asked.clear()
         lit(renderer, Stage.of(scene_of()), effort)
@@ -486,12 +488,12 @@ def test_a_moving_picture_of_many_stones_has_few_rays_of_each_wide_lamp() -> Non
 
 def test_a_stone_that_is_not_convex_is_lit_by_photons(renderer: Renderer) -> None:
     stage = staged(scene_of(stones=[{}], optics={"caustics_cutoff": 0.02}), ring())
-    picture, found = lit(renderer, stage, Effort.RESTING, 2)
+    picture, found = lit(renderer, stage, LightEffort.RESTING, 2)
     assert found.maker is Maker.PHOTONS
     assert found.figures is not None
     assert 0 < found.figures.bound < 0.3
     assert not picture.shows_shadows_only()
-    lit(renderer, stage, Effort.PATIENT)
+    lit(renderer, stage, LightEffort.PATIENT)
     assert 0 < found.rmse < 0.05
 
 
@@ -501,11 +503,11 @@ def test_where_photons_would_take_too_long_a_moving_picture_says_that_it_has_sha
     monkeypatch.setattr("culet.rendering.light.lighting.MOVING_PHOTON_SECONDS", 1e-9)
     monkeypatch.setattr("culet.rendering.light.lighting.PHOTON_PASSES", 1)
     stage = staged(scene_of(stones=[{"position": [0, 0.2, 0]}]), ring())
-    picture, found = lit(renderer, stage, Effort.MOVING)
+    picture, found = lit(renderer, stage, LightEffort.MOVING)
     assert picture.shows_shadows_only()
     assert picture.light_bound() == pytest.approx(1, abs=0.1)
     assert texels(renderer, found).max() < 1e-6
-    picture, found = lit(renderer, stage, Effort.RESTING)
+    picture, found = lit(renderer, stage, LightEffort.RESTING)
     assert picture.shows_shadows_only(), "what is there already is soon seen in full"
     picture.refine()
     assert not picture.shows_shadows_only(), "at rest there is time"
@@ -514,8 +516,8 @@ def test_where_photons_would_take_too_long_a_moving_picture_says_that_it_has_sha
 
 def test_a_stone_of_triangles_gets_the_light_that_one_of_half_spaces_gets(renderer: Renderer, brilliant: Shape) -> None:
     scene = scene_of(stones=[{}], optics={"caustics_cutoff": 0.02})
-    by_beams = lit(renderer, staged(scene, brilliant), Effort.PATIENT)[1]
-    by_photons = lit(renderer, staged(scene, replace(brilliant, convex=False)), Effort.PATIENT)[1]
+    by_beams = lit(renderer, staged(scene, brilliant), LightEffort.PATIENT)[1]
+    by_photons = lit(renderer, staged(scene, replace(brilliant, convex=False)), LightEffort.PATIENT)[1]
     assert (by_beams.maker, by_photons.maker) == (Maker.BEAMS, Maker.PHOTONS)
     wide = [
         texels(renderer, found)[0, 1].reshape(64, 8, 64, 8, 3).mean(axis=(1, 3)) for found in (by_beams, by_photons)

@@ -17,7 +17,7 @@ from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.light_map import MapFrame, frame_of
 from culet.rendering.light.photons import PhotonMaps, Photons
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.scene import Scene
 from optics.closed_forms import fresnel
 from shared.stages import staged
@@ -32,19 +32,19 @@ def photons(device: Device) -> Photons:
     return Photons(device)
 
 
-def sun(towards: tuple[float, float, float] = SLANTED) -> Ray:
-    return Ray((1.0, 1.0, 1.0), towards=towards)
+def sun(towards: tuple[float, float, float] = SLANTED) -> LightRay:
+    return LightRay((1.0, 1.0, 1.0), towards=towards)
 
 
-def lamp(position: tuple[float, float, float] = (-4.0, 6.0, 4.0)) -> Ray:
-    return Ray((1.0, 1.0, 1.0), position=position)
+def lamp(position: tuple[float, float, float] = (-4.0, 6.0, 4.0)) -> LightRay:
+    return LightRay((1.0, 1.0, 1.0), position=position)
 
 
 def shot(
     device: Device,
     photons: Photons,
     shape: Shape | None,
-    rays: Sequence[Ray],
+    rays: Sequence[LightRay],
     *,
     stones: Sequence[dict[str, Any]] = ({},),
     count: int = 60_000,
@@ -78,7 +78,7 @@ def balance(maps: PhotonMaps) -> float:
 
 
 @pytest.mark.parametrize("ray", [sun(), lamp()], ids=["parallel", "point"])
-def test_a_stone_of_index_1_changes_nothing(device: Device, photons: Photons, ray: Ray) -> None:
+def test_a_stone_of_index_1_changes_nothing(device: Device, photons: Photons, ray: LightRay) -> None:
     glass = {"material": {"ior": [1, 1, 1]}}
     maps, _, made = shot(device, photons, None, [ray], stones=[glass])
     assert maps.figures is not None
@@ -201,7 +201,7 @@ PASSES = 12
 
 @pytest.mark.parametrize(("ray", "stone"), [(sun(), {}), (lamp(), {"orientation": [0.6, 0.48, 0.64, 0]})])
 def test_photons_and_beams_agree_within_noise(
-    device: Device, photons: Photons, ray: Ray, stone: dict[str, Any]
+    device: Device, photons: Photons, ray: LightRay, stone: dict[str, Any]
 ) -> None:
     """By a Z-test of blocks: the spread of passes tells the noise of their mean."""
     made = np.array(

@@ -11,9 +11,9 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.rendering.light.beams import Beams, Tally
+from culet.rendering.light.beams import Beams, BeamTally
 from culet.rendering.light.light_map import Figures, MapFrame, frame_of
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.scene import Scene
 from shared.stages import staged
 
@@ -35,7 +35,7 @@ class Thrown(NamedTuple):
     map: Array
     """By surface, level, row, column and channel."""
     frame: MapFrame
-    tally: Tally
+    tally: BeamTally
     figures: Figures
 
     def at(self, u: float, v: float, surface: int = 0) -> Array:
@@ -51,18 +51,18 @@ class Thrown(NamedTuple):
         return (found - t.incident) / t.incident if t.incident else found
 
 
-def sun(towards: Sequence[float] | Array = SLANTED, colour: tuple[float, float, float] = (1, 1, 1)) -> Ray:
+def sun(towards: Sequence[float] | Array = SLANTED, colour: tuple[float, float, float] = (1, 1, 1)) -> LightRay:
     """Parallel light."""
     x, y, z = np.array(towards) / np.linalg.norm(towards)
-    return Ray(colour, towards=(float(x), float(y), float(z)))
+    return LightRay(colour, towards=(float(x), float(y), float(z)))
 
 
-def lamp(position: tuple[float, float, float] = (-4, 6, 4)) -> Ray:
+def lamp(position: tuple[float, float, float] = (-4, 6, 4)) -> LightRay:
     """Light of a point."""
-    return Ray((1, 1, 1), position=position)
+    return LightRay((1, 1, 1), position=position)
 
 
-def sun_from(degrees: float) -> Ray:
+def sun_from(degrees: float) -> LightRay:
     """Parallel light, so far from vertical, that goes towards +x."""
     angle = math.radians(degrees)
     return sun((-math.sin(angle), math.cos(angle), 0))
@@ -70,7 +70,7 @@ def sun_from(degrees: float) -> Ray:
 
 def thrown(
     beams: Beams,
-    rays: Sequence[Ray],
+    rays: Sequence[LightRay],
     shape: Shape | None = None,
     *,
     stones: Sequence[dict[str, Any]] = ({},),

@@ -1,6 +1,6 @@
 /** What a clip shows when: pictures came as they could, and a film has one size and a picture every thirtieth of a second. */
 
-import { pictureSize, type Size } from "../picture/picture-size";
+import { pictureSize, type PictureSize } from "../picture/picture-size";
 import type { ClipFrame } from "./clip-frames";
 
 /** Pictures a second: what films on the web have, and as many as the server sends at most where it is balanced. */
@@ -18,7 +18,7 @@ export function timeline(frames: readonly ClipFrame[], from: number, to: number)
 }
 
 /** The size of a clip: of its largest picture, in pairs of pixels, since encoders halve their colours' resolution. */
-export function clipSize(frames: readonly ClipFrame[]): Size {
+export function clipSize(frames: readonly ClipFrame[]): PictureSize {
   const largest = frames.reduce((a, b) => (b.width * b.height > a.width * a.height ? b : a));
   const { width, height } = pictureSize(largest.width, largest.height);
   return { width: 2 * Math.round(width / 2), height: 2 * Math.round(height / 2) };

@@ -1,6 +1,6 @@
 /** Where the pictures of a film are put, one after the other, all at the same size. */
 
-import { letterbox, type Size } from "../picture/picture-size";
+import { letterbox, type PictureSize } from "../picture/picture-size";
 import { bitmapOf } from "../video/bitmap";
 import { PacketDecoder } from "../video/packet-decoder";
 import type { ClipFrame, Packet } from "./clip-frames";
@@ -16,7 +16,7 @@ export class Easel {
   /** That were tried twice in vain: what needs them cannot be shown either. */
   private readonly broken = new WeakSet<Packet>();
 
-  constructor({ width, height }: Size) {
+  constructor({ width, height }: PictureSize) {
     Object.assign(this.canvas, { width, height });
     const context = this.canvas.getContext("2d", { alpha: false });
     if (!context) throw new Error("expected a 2D canvas, got none from this browser");

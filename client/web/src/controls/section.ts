@@ -6,7 +6,7 @@ import { freshId } from "./control";
 export type Level = 1 | 2 | 3;
 
 /** What can be put into a section. */
-export interface Part {
+export interface SectionPart {
   readonly element: HTMLElement;
 }
 
@@ -56,7 +56,7 @@ export class Section {
     return this;
   }
 
-  add<P extends Part>(part: P): P {
+  add<P extends SectionPart>(part: P): P {
     this.body.append(part.element);
     return part;
   }

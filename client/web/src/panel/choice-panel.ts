@@ -4,7 +4,7 @@ import { Choice, type Option } from "../controls/choice";
 import type { Section } from "../controls/section";
 import type { Clamped } from "../controls/slider";
 import { Toggle } from "../controls/toggle";
-import type { Material, Titled } from "../session/catalogue";
+import type { MaterialChoice, Titled } from "../session/catalogue";
 import type { ViewState } from "../session/view-state";
 import { hasStone } from "../stones/stones";
 import { words } from "../words/words";
@@ -42,7 +42,7 @@ export class ChoicePanel {
   private readonly material = new Choice<string>(words.material.label, [OWN_INDICES], NOTHING_CHOSEN.material);
   private readonly sky = new Choice<string>(words.skies.label, SKIES, NOTHING_CHOSEN.sky);
   private readonly facts = document.createElement("p");
-  private materials: readonly Material[] = [];
+  private materials: readonly MaterialChoice[] = [];
   private readonly size: SizeControl;
   private readonly studio = new SkyChoice();
   private skies: readonly Option<string>[] = SKIES;
@@ -104,7 +104,7 @@ export class ChoicePanel {
     this.studio.forget();
   }
 
-  addMaterials(materials: readonly Material[]): void {
+  addMaterials(materials: readonly MaterialChoice[]): void {
     this.materials = materials;
     this.showFacts();
     this.material.offer(materials.map((material) => materialOption(material)));

@@ -18,7 +18,7 @@ export interface GradeLine {
 /** Points of a curve: degrees, and ISO brightness about each axis. */
 export type TiltColumns = [number[], number[], number[]];
 
-export interface Report {
+export interface GradeTable {
   /** "9.10 x 6.50 x 4.02 mm, 1.53 ct" */
   size: string;
   lines: GradeLine[];
@@ -34,7 +34,7 @@ const SHARES: readonly GradeName[] = ["leak", "red", "green", "blue"];
 const OWN: readonly GradeName[] = ["iso", "cos", "sc2", "contrast", "fire", "window", "extinction"];
 
 /** What the answer of a request for grades says, and how far it is from that for another design. */
-export function reportOf(answer: JsonObject, other: JsonObject | null = null): Report {
+export function reportOf(answer: JsonObject, other: JsonObject | null = null): GradeTable {
   const grades = part(answer, "grades");
   const shares = part(grades, "shares");
   const others = part(other, "grades");

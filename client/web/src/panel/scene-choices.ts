@@ -3,7 +3,7 @@
 import type { JsonObject } from "@culet/protocol/messages";
 import type { Option } from "../controls/choice";
 import { number, object, part, text, triple } from "../json";
-import type { Material } from "../session/catalogue";
+import type { MaterialChoice } from "../session/catalogue";
 import { stoneOf, stonePatch, stonesOf } from "../stones/stones";
 import { words } from "../words/words";
 import { imageSky, skyPatch } from "./sky-choice";
@@ -49,19 +49,19 @@ function optionsOf<K extends string>(
 export const OWN_INDICES: Option<string> = { label: words.material.own, value: "(indices)" };
 
 /** A material under the name that people use. */
-export function materialOption({ name, title, summary }: Material): Option<string> {
+export function materialOption({ name, title, summary }: MaterialChoice): Option<string> {
   return { label: title, value: name, summary };
 }
 
 /** What the indices of a material for red, green and blue do to light, in degrees for green. */
-export function materialFacts([red, green, blue]: Material["indices"]): string {
+export function materialFacts([red, green, blue]: MaterialChoice["indices"]): string {
   const critical = (Math.asin(1 / green) * 180) / Math.PI;
   const brewster = (Math.atan(green) * 180) / Math.PI;
   return words.material.facts(green, critical, brewster, blue - red);
 }
 
 /** The indices of the stone's material, by its name or as the scene says them; null if they are not known. */
-export function indicesOf(scene: JsonObject | null, materials: readonly Material[]): Material["indices"] | null {
+export function indicesOf(scene: JsonObject | null, materials: readonly MaterialChoice[]): MaterialChoice["indices"] | null {
   const { material } = stoneOf(scene);
   if (typeof material === "string") return materials.find(({ name }) => name === material)?.indices ?? null;
   const { ior, sellmeier } = object(material);
@@ -72,7 +72,7 @@ export function indicesOf(scene: JsonObject | null, materials: readonly Material
 const LINES = [0.6563, 0.5461, 0.4358] as const;
 
 /** n^2 = 1 + sum B l^2 / (l^2 - C^2) (Sellmeier 1871); null where that is no index. */
-function sellmeierIndices(pairs: readonly unknown[]): Material["indices"] | null {
+function sellmeierIndices(pairs: readonly unknown[]): MaterialChoice["indices"] | null {
   const known = pairs.filter((pair): pair is [number, number] => Array.isArray(pair) && pair.length === 2);
   const index = (line: number) => {
     return Math.sqrt(known.reduce((sum, [b, c]) => sum + (b * line * line) / (line * line - c * c), 1));

@@ -12,7 +12,7 @@ import {
   causticsPatch,
   isMatte,
   PLACES,
-  type Place,
+  type SurfaceName,
   type Surface,
   showsCaustics,
   surfaceOf,
@@ -50,7 +50,7 @@ export class SurfacePanel {
 }
 
 class OneSurface {
-  private readonly place: Place;
+  private readonly place: SurfaceName;
   private readonly controls: LiveControls<Surface>;
   private readonly albedo: Colour;
   private readonly checkered: Toggle;
@@ -60,7 +60,7 @@ class OneSurface {
   /** The last checker that there was. */
   private checker: Pick<Surface, "cell" | "other"> = BARE;
 
-  constructor(place: Place, section: Section, send: Send, clamped: Clamped) {
+  constructor(place: SurfaceName, section: Section, send: Send, clamped: Clamped) {
     this.place = place;
     this.controls = new LiveControls<Surface>(
       () => surfaceOf(this.scene, place),

@@ -4,9 +4,9 @@ import type { JsonObject } from "@culet/protocol/messages";
 import { number, object, part, text, triple } from "../json";
 
 /** The scene's names of both. */
-export type Place = "floor" | "walls";
+export type SurfaceName = "floor" | "walls";
 
-export const PLACES: readonly Place[] = ["floor", "walls"];
+export const PLACES: readonly SurfaceName[] = ["floor", "walls"];
 
 export interface Surface {
   /** Its colour, as a screen shows it: `#rrggbb`. */
@@ -55,7 +55,7 @@ function colourOf(albedo: unknown, otherwise: string): string {
   return linear ? hexOf(linear) : otherwise;
 }
 
-export function surfaceOf(scene: JsonObject | null, place: Place): Surface {
+export function surfaceOf(scene: JsonObject | null, place: SurfaceName): Surface {
   const { albedo, checker } = part(scene, place);
   const { cell, albedo: other } = object(checker);
   return {
@@ -67,13 +67,13 @@ export function surfaceOf(scene: JsonObject | null, place: Place): Surface {
 }
 
 /** Whether it is matte: a mirror, a studio's floor and one that is not there have no use for an albedo. */
-export function isMatte(scene: JsonObject | null, place: Place): boolean {
+export function isMatte(scene: JsonObject | null, place: SurfaceName): boolean {
   return text(part(scene, place).kind, "none") === "matte";
 }
 
 /** The merge patch that changes one property; `before` is the checker that comes back when it is turned on. */
 export function surfacePatch<K extends keyof Surface>(
-  place: Place,
+  place: SurfaceName,
   name: K,
   value: Surface[K],
   before: Pick<Surface, "cell" | "other"> = BARE,

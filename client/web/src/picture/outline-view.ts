@@ -1,12 +1,12 @@
 /** The outline of the chosen stone, over the picture. */
 
-import { type Fit, placed, type Size } from "./picture-size";
+import { type Fit, placed, type PictureSize } from "./picture-size";
 
 /**
  * The corners of an SVG polygon, in pixels of the canvas that shows a picture of that shape. `points` are x and y in turn:
  * right and up from the picture's centre, in halves of its height.
  */
-export function polygonOf(points: readonly number[], picture: Size, canvas: Size, fit: Fit = "whole"): string {
+export function polygonOf(points: readonly number[], picture: PictureSize, canvas: PictureSize, fit: Fit = "whole"): string {
   const { x, y, width, height } = placed(picture, canvas, fit);
   const half = height / 2;
   const corners: string[] = [];
@@ -20,7 +20,7 @@ export function polygonOf(points: readonly number[], picture: Size, canvas: Size
 export class OutlineView {
   private readonly drawing: SVGSVGElement;
   private readonly canvas: HTMLCanvasElement;
-  private shown: { points: readonly number[]; picture: Size } | null = null;
+  private shown: { points: readonly number[]; picture: PictureSize } | null = null;
 
   /** The drawing covers the canvas, and holds polygons: the line, and what sets the line off from the picture. */
   constructor(drawing: SVGSVGElement, canvas: HTMLCanvasElement) {
@@ -28,7 +28,7 @@ export class OutlineView {
     this.canvas = canvas;
   }
 
-  show(points: readonly number[], picture: Size, fit: Fit): void {
+  show(points: readonly number[], picture: PictureSize, fit: Fit): void {
     this.shown = { points, picture };
     const { width, height } = this.canvas;
     this.drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);

@@ -1,6 +1,6 @@
 /** How many pixels to ask for, and where a picture goes on the canvas. */
 
-export interface Size {
+export interface PictureSize {
   width: number;
   height: number;
 }
@@ -28,7 +28,7 @@ export function deviceLength(css: number, ratio: number, exact?: number): number
 }
 
 /** A size of device pixels within the limits, with the same aspect. */
-export function pictureSize(width: number, height: number, largest = QUICK): Size {
+export function pictureSize(width: number, height: number, largest = QUICK): PictureSize {
   const long = Math.max(width, height, 1);
   const short = Math.max(Math.min(width, height), 1);
   const scale = Math.min(1, largest.long / long, largest.short / short);
@@ -36,7 +36,7 @@ export function pictureSize(width: number, height: number, largest = QUICK): Siz
   return { width: pixels(width), height: pixels(height) };
 }
 
-export interface Rectangle extends Size {
+export interface Rectangle extends PictureSize {
   x: number;
   y: number;
 }
@@ -45,12 +45,12 @@ export interface Rectangle extends Size {
 export type Fit = "whole" | "filled";
 
 /** The largest centred rectangle of the picture's aspect that fits the canvas. */
-export function letterbox(picture: Size, canvas: Size): Rectangle {
+export function letterbox(picture: PictureSize, canvas: PictureSize): Rectangle {
   return placed(picture, canvas, "whole");
 }
 
 /** That rectangle, or the smallest one that covers the canvas. */
-export function placed(picture: Size, canvas: Size, fit: Fit): Rectangle {
+export function placed(picture: PictureSize, canvas: PictureSize, fit: Fit): Rectangle {
   const across = [canvas.width / picture.width, canvas.height / picture.height];
   const scale = fit === "whole" ? Math.min(...across) : Math.max(...across);
   const width = Math.round(picture.width * scale);
@@ -59,7 +59,7 @@ export function placed(picture: Size, canvas: Size, fit: Fit): Rectangle {
 }
 
 /** The largest size of the picture's shape of which the canvas shows all: beyond it nobody sees a pixel more. */
-export function sizeWithin(picture: Size, canvas: Size): Size {
+export function sizeWithin(picture: PictureSize, canvas: PictureSize): PictureSize {
   const { width, height } = letterbox(picture, canvas);
   return { width: Math.max(1, width), height: Math.max(1, height) };
 }

@@ -9,7 +9,7 @@ import {
   placed,
   type Rectangle,
   SHARP,
-  type Size,
+  type PictureSize,
 } from "./picture-size";
 import { Settling } from "./settling";
 
@@ -19,12 +19,12 @@ const SLACK = 3;
 export class Screen {
   private readonly context: CanvasRenderingContext2D;
   private readonly canvas: HTMLCanvasElement;
-  private readonly onResize: (size: Size) => void;
+  private readonly onResize: (size: PictureSize) => void;
   private picture: ImageBitmap | null = null;
   /** What pictures are asked for: quick ones, and sharp ones once those are finished. */
-  private quick: Size = { width: 0, height: 0 };
-  private sharp: Size = { width: 0, height: 0 };
-  private asked: Size;
+  private quick: PictureSize = { width: 0, height: 0 };
+  private sharp: PictureSize = { width: 0, height: 0 };
+  private asked: PictureSize;
   /** What the canvas showed when the picture that comes up began to, and when, ms of the page's clock. */
   private fade: { under: HTMLCanvasElement; since: number } | null = null;
   private next = 0;
@@ -33,7 +33,7 @@ export class Screen {
   /** Told when pictures of another shape are shown otherwise from now on. */
   refitted: (fit: Fit) => void = () => undefined;
 
-  constructor(canvas: HTMLCanvasElement, onResize: (size: Size) => void) {
+  constructor(canvas: HTMLCanvasElement, onResize: (size: PictureSize) => void) {
     this.canvas = canvas;
     this.onResize = onResize;
     const context = canvas.getContext("2d", { alpha: false });
@@ -49,7 +49,7 @@ export class Screen {
   }
 
   /** Of the pictures that are asked for. */
-  get size(): Size {
+  get size(): PictureSize {
     return this.asked;
   }
 
@@ -139,11 +139,11 @@ export class Screen {
     this.next = requestAnimationFrame((later) => this.comeUp(later));
   }
 
-  private resize(pixels: Size): void {
+  private resize(pixels: PictureSize): void {
     const before = [this.quick, this.sharp];
     this.quick = pictureSize(pixels.width, pixels.height);
     this.sharp = pictureSize(pixels.width, pixels.height, SHARP);
-    if ([this.quick, this.sharp].every((size, kind) => isSame(size, before[kind] as Size))) return;
+    if ([this.quick, this.sharp].every((size, kind) => isSame(size, before[kind] as PictureSize))) return;
     const fitted = this.picture !== null && !this.differs;
     this.become(this.quick);
     this.settling.resized(fitted && this.differs);
@@ -152,17 +152,17 @@ export class Screen {
     this.ask(this.quick);
   }
 
-  private become({ width, height }: Size): void {
+  private become({ width, height }: PictureSize): void {
     if (!isSame({ width, height }, this.canvas)) Object.assign(this.canvas, { width, height });
   }
 
-  private ask(size: Size): void {
+  private ask(size: PictureSize): void {
     if (isSame(size, this.asked)) return;
     this.asked = size;
     this.onResize(size);
   }
 
-  private place(picture: Size): Rectangle {
+  private place(picture: PictureSize): Rectangle {
     return placed(picture, this.canvas, this.fits);
   }
 
@@ -195,7 +195,7 @@ export function afterPainting(told: (time: number) => void): void {
   requestAnimationFrame(() => setTimeout(() => told(performance.now())));
 }
 
-function isSame(a: Size, b: Size): boolean {
+function isSame(a: PictureSize, b: PictureSize): boolean {
   return a.width === b.width && a.height === b.height;
 }
 
@@ -205,7 +205,7 @@ function copyOf(canvas: HTMLCanvasElement): HTMLCanvasElement {
   return copy;
 }
 
-function devicePixels(entry: ResizeObserverEntry): Size {
+function devicePixels(entry: ResizeObserverEntry): PictureSize {
   const exact = entry.devicePixelContentBoxSize?.[0];
   const { width, height } = entry.contentRect;
   return {

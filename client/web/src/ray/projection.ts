@@ -5,7 +5,7 @@ import { number, part, triple } from "../json";
 import { cross, dot, minus, plus, times, unit, type Vector } from "./vectors";
 
 /** Right and up from the picture's centre, in halves of its height. */
-export type Place = readonly [number, number];
+export type PicturePoint = readonly [number, number];
 
 /** Of a camera that says nothing else: that of the default scene. */
 const POSITION: Vector = [0, 8.146, 11.032];
@@ -37,7 +37,7 @@ export class Projection {
   }
 
   /** Both ends of what is seen of a line; null if it lies behind the eye. */
-  line(from: Vector, to: Vector): readonly [Place, Place] | null {
+  line(from: Vector, to: Vector): readonly [PicturePoint, PicturePoint] | null {
     const [near, far] = [this.depth(from), this.depth(to)];
     if (this.parallel) return [this.place(from), this.place(to)];
     if (near < NEAR && far < NEAR) return null;
@@ -49,7 +49,7 @@ export class Projection {
     return dot(minus(point, this.eye), this.forward);
   }
 
-  private place(point: Vector): Place {
+  private place(point: Vector): PicturePoint {
     const apart = minus(point, this.eye);
     const scale = this.half * (this.parallel ? 1 : Math.max(this.depth(point), NEAR / 2));
     return [dot(apart, this.right) / scale, dot(apart, this.up) / scale];

@@ -1,9 +1,9 @@
 /** The lines of a ray over the picture: one for each chain, which add up to white while they are together. */
 
-import { letterbox, type Size } from "../picture/picture-size";
+import { letterbox, type PictureSize } from "../picture/picture-size";
 import type { Chain } from "../session/answers";
 import type { Line } from "./carrying";
-import type { Place, Projection } from "./projection";
+import type { PicturePoint, Projection } from "./projection";
 
 const NAMESPACE = "http://www.w3.org/2000/svg";
 /** Weight below which a line is not drawn: it would be all but black. */
@@ -32,13 +32,13 @@ export class RayDrawing {
     lines: readonly Line[],
     chains: readonly Chain[],
     projection: Projection,
-    picture: Size,
-    canvas: Size,
+    picture: PictureSize,
+    canvas: PictureSize,
     chosen: number | null,
   ): void {
     const { x, y, width, height } = letterbox(picture, canvas);
     this.drawing.setAttribute("viewBox", `0 0 ${canvas.width} ${canvas.height}`);
-    const at = ([right, up]: Place) => [x + width / 2 + (height / 2) * right, y + height / 2 - (height / 2) * up];
+    const at = ([right, up]: PicturePoint) => [x + width / 2 + (height / 2) * right, y + height / 2 - (height / 2) * up];
     const ground: SVGElement[] = [];
     const light: SVGElement[] = [];
     const marks: SVGElement[] = [];

@@ -84,6 +84,40 @@ export interface DrainAnswer {
   viewers: number;
 }
 /**
+ * What is known so far.
+ */
+export interface GradeReport {
+  stone: string;
+  index: number;
+  size: Size;
+  rules: Rules;
+  grades: Grades;
+  weighted_light_return?: Number | null;
+  tilt?: {
+    [k: string]: TiltPoint[];
+  } | null;
+  done?: number;
+}
+/**
+ * Millimetres and carats.
+ */
+export interface Size {
+  length: number;
+  width: number;
+  depth: number;
+  carats: number;
+  density: number;
+}
+/**
+ * By default culet's own: chains are followed to the end.
+ */
+export interface Rules {
+  head_degrees?: number;
+  glare?: "all" | "crown" | "none";
+  bounces?: number;
+  cutoff?: number;
+}
+/**
  * Per cent, but where said otherwise.
  */
 export interface Grades {
@@ -107,6 +141,15 @@ export interface Number {
   value: number;
   error: number;
   bound?: number;
+}
+/**
+ * Of a tilt curve.
+ */
+export interface TiltPoint {
+  degrees: number;
+  iso: Number;
+  cos: Number;
+  sc2: Number;
 }
 /**
  * A way to follow a free rotation; `simulation.integrator` of a scene takes the name.
@@ -345,49 +388,6 @@ export interface Proportions {
   crown_percent: number | null;
   girdle_percent: number | null;
   pavilion_percent: number | null;
-}
-/**
- * What is known so far.
- */
-export interface Report {
-  stone: string;
-  index: number;
-  size: Size;
-  rules: Rules;
-  grades: Grades;
-  weighted_light_return?: Number | null;
-  tilt?: {
-    [k: string]: TiltPoint[];
-  } | null;
-  done?: number;
-}
-/**
- * Millimetres and carats.
- */
-export interface Size {
-  length: number;
-  width: number;
-  depth: number;
-  carats: number;
-  density: number;
-}
-/**
- * By default culet's own: chains are followed to the end.
- */
-export interface Rules {
-  head_degrees?: number;
-  glare?: "all" | "crown" | "none";
-  bounces?: number;
-  cutoff?: number;
-}
-/**
- * Of a tilt curve.
- */
-export interface TiltPoint {
-  degrees: number;
-  iso: Number;
-  cos: Number;
-  sc2: Number;
 }
 /**
  * A session as it is now.

@@ -6,7 +6,7 @@ import { type Embedding, queryOf } from "../picture/embedding";
 /** An id as the gateway makes them; anything else in the address is treated as an unknown session. */
 const ID = /^[0-9a-f]{32}$/;
 
-export type Wanted =
+export type WantedSession =
   | { kind: "session"; id: string }
   /** By its watch id, which lets look and not steer. */
   | { kind: "watch"; id: string }
@@ -15,7 +15,7 @@ export type Wanted =
   | { kind: "invalid"; id: string };
 
 /** By the address' query, and by what follows its hash. */
-export function wantedSession(search: string, hash = ""): Wanted {
+export function wantedSession(search: string, hash = ""): WantedSession {
   const query = new URLSearchParams(search);
   for (const kind of ["session", "watch"] as const) {
     const id = query.get(kind);

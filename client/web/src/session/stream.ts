@@ -20,7 +20,7 @@ export type Connection =
   /** Over: the code says why, and nothing is tried again. */
   | { status: "closed"; code: number; reason: string };
 
-export interface Listener {
+export interface StreamListener {
   connection: (connection: Connection) => void;
   notice: (notice: Notice) => void;
   frame: (frame: Frame) => void;
@@ -43,7 +43,7 @@ export const LOST_PINGS = 8;
 export class Stream {
   readonly latency = new Latency();
   private readonly url: string;
-  private readonly listener: Listener;
+  private readonly listener: StreamListener;
   private readonly protocols: readonly string[];
   private readonly jitter: () => number;
   private socket: WebSocket | null = null;
@@ -56,7 +56,7 @@ export class Stream {
    * `jitter` spreads the viewers of a restarted gateway: each pause is multiplied by it. `watch`: the watch id of a
    * session that is only looked at, where the address does not name it.
    */
-  constructor(url: string, listener: Listener, jitter = () => 0.75 + 0.5 * Math.random(), watch: string | null = null) {
+  constructor(url: string, listener: StreamListener, jitter = () => 0.75 + 0.5 * Math.random(), watch: string | null = null) {
     this.url = url;
     this.protocols = watch === null ? [SUBPROTOCOL] : [SUBPROTOCOL, WATCH_SUBPROTOCOL + watch];
     this.listener = listener;

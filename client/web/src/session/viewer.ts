@@ -4,7 +4,7 @@ import type { Frame } from "@culet/protocol/frame";
 import type { ControlEvent, JsonObject, Notice, Outlined, Picked, Reached } from "@culet/protocol/messages";
 import { BottleneckMeter } from "../meter/bottleneck";
 import type { Arrival } from "../meter/frame-history";
-import type { Size } from "../picture/picture-size";
+import type { PictureSize } from "../picture/picture-size";
 import type { VideoCodec } from "../video/codec-string";
 import { FrameDecoder } from "../video/frame-decoder";
 import { loadVideo } from "../video/load";
@@ -17,7 +17,7 @@ import { INITIAL, isAmiss, type ViewState, withNotice } from "./view-state";
 
 export interface ViewerListener {
   show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
-  size: () => Size;
+  size: () => PictureSize;
   connection: (connection: Connection) => void;
   state: (before: ViewState, after: ViewState) => void;
   /** A question of this viewer is answered. */
@@ -91,7 +91,7 @@ export class Viewer {
     return this.spoken !== null && this.spoken === this.state.revision;
   }
 
-  resize(size: Size): void {
+  resize(size: PictureSize): void {
     this.stream.send({ type: "resize", ...size });
   }
 

@@ -7,7 +7,7 @@ import { part } from "../json";
 import type { Arrival } from "../meter/frame-history";
 import { type Embedding, queryOf } from "../picture/embedding";
 import { framingPatch } from "../picture/framing";
-import type { Size } from "../picture/picture-size";
+import type { PictureSize } from "../picture/picture-size";
 import { obstacleText } from "../signs/banner";
 import type { Complaints } from "../signs/complaints";
 import type { Signs } from "../signs/signs";
@@ -15,14 +15,14 @@ import { words } from "../words/words";
 import type { SessionEvent } from "./events";
 import { type OpenedFiles, recover } from "./recovery";
 import * as rest from "./rest";
-import { sessionAddress, streamUrl, tokenIn, type Wanted, wantedSession, watchedStreamUrl } from "./session-url";
+import { sessionAddress, streamUrl, tokenIn, type WantedSession, wantedSession, watchedStreamUrl } from "./session-url";
 import { type Connection, pauseBefore } from "./stream";
 import { INITIAL, type ViewState } from "./view-state";
 import { Viewer } from "./viewer";
 
 export interface VisitWorld {
   /** Of the picture that is asked for. */
-  size: () => Size;
+  size: () => PictureSize;
   /** Of what the picture covers: width by height. */
   aspect: () => number;
   show: (picture: ImageBitmap, frame: Frame, arrival: Arrival) => void;
@@ -103,7 +103,7 @@ export class Visit {
   }
 
   /** The id of the session that is there, or of the one that is made. */
-  private async sessionFor(wanted: Exclude<Wanted, { kind: "invalid" }>): Promise<string> {
+  private async sessionFor(wanted: Exclude<WantedSession, { kind: "invalid" }>): Promise<string> {
     switch (wanted.kind) {
       case "session":
       case "watch":

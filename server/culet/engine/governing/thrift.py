@@ -70,7 +70,7 @@ class ByteLadder:
 
 
 @dataclass(frozen=True)
-class Room:
+class ByteRoom:
     """That a link has for a frame."""
 
     bytes: float
@@ -80,7 +80,7 @@ class Room:
 
 
 @dataclass(frozen=True)
-class Allowance:
+class ByteAllowance:
     """Bytes that a viewer's link has for each frame of a session; None: as many as one likes."""
 
     per_frame: int | None = None
@@ -92,15 +92,15 @@ class Allowance:
         """Bytes of a picture at rest, at most. One that is `final` is all that will come: it is worth more time."""
         return math.inf if self.at_rest is None else self.at_rest * (FINAL_TIMES if final else 1)
 
-    def room(self, asked: float, made: float) -> Room | None:
+    def room(self, asked: float, made: float) -> ByteRoom | None:
         """For frames that are asked for, and can be made, so many times a second."""
         if self.per_frame is None:
             return None
         each_second = asked * self.per_frame
-        return Room(each_second / max(min(asked, made), min(asked, SLOW_RATE)), each_second / min(asked, SLOW_RATE))
+        return ByteRoom(each_second / max(min(asked, made), min(asked, SLOW_RATE)), each_second / min(asked, SLOW_RATE))
 
 
-NO_LIMITS = Allowance()
+NO_LIMITS = ByteAllowance()
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class Thrift:
         self._row = 0
         """Of the scale chosen last."""
 
-    def scale(self, wanted: tuple[int, int], room: Room) -> float:
+    def scale(self, wanted: tuple[int, int], room: ByteRoom) -> float:
         """Of width and height that the viewer asked for, for the next moving frame: the one that misses least."""
         pixels, scales = wanted[0] * wanted[1], self._ladder.scales
         expected = self._times * self._ladder.expected_of_scales(pixels)
@@ -140,7 +140,7 @@ class Thrift:
         self._row = len(scales) - 1 if chosen is None else chosen
         return float(scales[self._row])
 
-    def encoding(self, size: tuple[int, int], room: Room) -> Encoding:
+    def encoding(self, size: tuple[int, int], room: ByteRoom) -> Encoding:
         """Of a frame of that size: of the best quality for which there is room, or the least."""
         expected = self._times * self._ladder.expected(size[0] * size[1])
         best, *_, least = self._ladder.qualities

@@ -45,7 +45,7 @@ class TooLittleMemoryError(CuletError):
         self.needed = needed
 
 
-class Part(BaseModel):
+class ArrayPart(BaseModel):
     """Where an array is in the file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -71,11 +71,11 @@ class MeshHeader(BaseModel):
 
     kind: Literal["mesh"] = "mesh"
     name: str
-    vertices: Part
-    triangles: Part
-    facet_of_triangle: Part
-    planes: Part
-    inertia: Part
+    vertices: ArrayPart
+    triangles: ArrayPart
+    facet_of_triangle: ArrayPart
+    planes: ArrayPart
+    inertia: ArrayPart
     convex: bool
     volume: float
     findings: tuple[str, ...]
@@ -89,7 +89,7 @@ class SkyHeader(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     kind: Literal["sky"] = "sky"
-    pixels: Part
+    pixels: ArrayPart
     findings: tuple[str, ...]
 
 
@@ -106,22 +106,22 @@ class Refusal(BaseModel):
     """Bytes, of a MemoryError that knows."""
 
 
-Header = MeshHeader | SkyHeader | Refusal
-_header: TypeAdapter[Header] = TypeAdapter(Annotated[Header, Field(discriminator="kind")])
+AnswerHeader = MeshHeader | SkyHeader | Refusal
+_header: TypeAdapter[AnswerHeader] = TypeAdapter(Annotated[AnswerHeader, Field(discriminator="kind")])
 
 
-class Answer:
+class AnswerFile:
     """The reading process's side: an empty file to fill."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
         self._end = 0
-        self._sky: Part | None = None
+        self._sky: ArrayPart | None = None
 
     def allocate(self, shape: tuple[int, int, int]) -> NDArray[np.float32]:
         """The sky's pixels, black, in the file itself: they are there once, however large."""
         size = math.prod(shape) * 4
-        self._sky = Part(dtype="float32", shape=shape, offset=self._end)
+        self._sky = ArrayPart(dtype="float32", shape=shape, offset=self._end)
         os.ftruncate(self._descriptor, self._end + size)
         pixels = np.frombuffer(mmap.mmap(self._descriptor, size, offset=self._end), np.float32).reshape(shape)
         self._end += _whole_pages(size)
@@ -161,8 +161,8 @@ class Answer:
             (message,) = _utf_8([str(error)[:10_000]])
             self._finish(Refusal.model_validate({"error": name, "message": message, "field": error.field}))
 
-    def _place(self, array: NDArray[np.generic]) -> Part:
-        part = Part.model_validate({"dtype": array.dtype.name, "shape": array.shape, "offset": self._end})
+    def _place(self, array: NDArray[np.generic]) -> ArrayPart:
+        part = ArrayPart.model_validate({"dtype": array.dtype.name, "shape": array.shape, "offset": self._end})
         self._write(np.ascontiguousarray(array).tobytes())
         self._end = _whole_pages(self._end)
         return part
@@ -207,7 +207,7 @@ def _seal(descriptor: int) -> None:
         raise AnswerError(f"its answer could not be sealed: {error.strerror}") from error
 
 
-def _read_header(descriptor: int, size: int) -> Header:
+def _read_header(descriptor: int, size: int) -> AnswerHeader:
     if size < LENGTH.size:
         raise AnswerError("there is no answer")
     (length,) = LENGTH.unpack(os.pread(descriptor, LENGTH.size, size - LENGTH.size))
@@ -251,7 +251,7 @@ def _check_range(name: str, numbers: NDArray[np.int32], count: int) -> None:
         raise AnswerError(f"{name} beyond what there is")
 
 
-def _array(part: Part, dtype: str, shape: tuple[int, ...], descriptor: int, size: int) -> NDArray[np.generic]:
+def _array(part: ArrayPart, dtype: str, shape: tuple[int, ...], descriptor: int, size: int) -> NDArray[np.generic]:
     """The array, in the file's memory and not to be written; of the shape, where -1 is any length."""
     fits = len(part.shape) == len(shape) and all(
         wanted in (-1, given) for given, wanted in zip(part.shape, shape, strict=True)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from culet.engine.library.upload_answer import AnswerError, TooLittleMemoryError, taken
-from culet.engine.library.upload_reader import NAME, Order
+from culet.engine.library.upload_reader import NAME, ReadingOrder
 from culet.engine.process.limits import Limits
 from culet.errors import InputError
 from culet.geometry.shape import Shape
@@ -32,7 +32,7 @@ BYTES_PER_PIXEL = 12
 
 
 @dataclass(frozen=True)
-class Room:
+class ReadingRoom:
     """What reading may take."""
 
     memory: int
@@ -42,13 +42,13 @@ class Room:
 
 
 async def read_upload(
-    kind: str, error: type[InputError], file_type: str, data: Buffer, limits: Limits, room: Room
+    kind: str, error: type[InputError], file_type: str, data: Buffer, limits: Limits, room: ReadingRoom
 ) -> Shape | SkyPicture:
     """What the file holds. InputError (of that type, if there is no better one) says what is wrong with it;
     TooLittleMemoryError, that the room was too little, which is not all that a file may take."""
     with _descriptor("upload") as upload, _descriptor("answer") as answer, _descriptor("complaint") as complaint:
         await asyncio.to_thread(_fill, os.dup(upload), data)  # a pipe would be filled by the loop
-        order = Order(
+        order = ReadingOrder(
             kind, file_type, answer, limits.max_mesh_triangles, limits.max_sky_pixels, room.memory,
             math.ceil(limits.read_processor_seconds),
             max(BYTES_PER_PIXEL * limits.max_sky_pixels + 2**21, 2 * limits.max_upload_bytes),
@@ -77,7 +77,7 @@ async def read_upload(
             raise error(f"the process that read the {kind} gave no usable answer: {fault}", "file") from fault
 
 
-def _ended(kind: str, error: type[InputError], code: int, last: str, limits: Limits, room: Room) -> Exception:
+def _ended(kind: str, error: type[InputError], code: int, last: str, limits: Limits, room: ReadingRoom) -> Exception:
     """Why a process ended without an answer."""
     if code == -signal.SIGXCPU or (code == -signal.SIGKILL and not last):
         seconds = math.ceil(limits.read_processor_seconds)
@@ -89,7 +89,7 @@ def _ended(kind: str, error: type[InputError], code: int, last: str, limits: Lim
     return error(f"the {kind} ended the process that read it: {last or f'exit code {code}'}", "file")
 
 
-def _too_large(kind: str, error: type[InputError], room: Room, needed: int) -> Exception:
+def _too_large(kind: str, error: type[InputError], room: ReadingRoom, needed: int) -> Exception:
     if room.full:
         return error(f"the {kind} takes more than {room.memory / 2**20:.0f} MiB of memory to be read", "file")
     return TooLittleMemoryError(needed)

@@ -22,7 +22,7 @@ BESIDES = 2**25
 """Bytes that reading a sky takes besides the file, twice, and what is kept of it: rows, and the decoder's own."""
 
 
-class Order(NamedTuple):
+class ReadingOrder(NamedTuple):
     """What the process is told, as its arguments."""
 
     kind: str
@@ -42,7 +42,7 @@ class Order(NamedTuple):
         return [str(value) for value in self]
 
     @classmethod
-    def of(cls, words: list[str]) -> Order:
+    def of(cls, words: list[str]) -> ReadingOrder:
         """What a command line says."""
         kind, file_type, *numbers = words
         return cls(kind, file_type, *(int(number) for number in numbers))
@@ -50,10 +50,10 @@ class Order(NamedTuple):
 
 def main(words: list[str]) -> None:
     """Read, answer, end."""
-    from culet.engine.library.upload_answer import Answer
+    from culet.engine.library.upload_answer import AnswerFile
 
-    order = Order.of(words)
-    answer = Answer(order.answer)
+    order = ReadingOrder.of(words)
+    answer = AnswerFile(order.answer)
     # all that reading needs is loaded before memory is limited
     if order.kind == "mesh":
         from culet.geometry.stone_file import shape_from_file
@@ -78,7 +78,7 @@ def main(words: list[str]) -> None:
         answer.refuse(error)
 
 
-def limit(order: Order) -> None:
+def limit(order: ReadingOrder) -> None:
     """What this process may take from here on; whatever is more ends it, or fails with MemoryError."""
     memory = address_space() + order.memory
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))

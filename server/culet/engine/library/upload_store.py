@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from culet.engine.library.upload_answer import TooLittleMemoryError
-from culet.engine.library.upload_process import Buffer, Room, read_upload
+from culet.engine.library.upload_process import Buffer, ReadingRoom, read_upload
 from culet.engine.process.limits import Limits
 from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
@@ -42,7 +42,7 @@ T = TypeVar("T", bound=Read)
 
 
 @dataclass(frozen=True)
-class Kind(Generic[T]):
+class StoredKind(Generic[T]):
     """What is uploaded."""
 
     name: str
@@ -71,7 +71,7 @@ class UploadStore(Mapping[str, T]):
 
     def __init__(
         self,
-        kind: Kind[T],
+        kind: StoredKind[T],
         limits: Limits,
         memory: Memory | None = None,
         *,
@@ -163,13 +163,13 @@ class UploadStore(Mapping[str, T]):
         self._needed = min(self._needed, max(LEAST_TO_READ, 2 * kind.size(kept.content)))
         return kept
 
-    def _room(self, size: int) -> Room:
+    def _room(self, size: int) -> ReadingRoom:
         """So much, or what a file may take at most, or at least."""
         most = int(self._limits.max_read_bytes)
         memory = max(LEAST_TO_READ, min(most, size))
-        return Room(memory, full=memory == most)
+        return ReadingRoom(memory, full=memory == most)
 
-    async def _read_within(self, room: Room, digest: bytes, file_type: str, data: Buffer) -> _Kept[T]:
+    async def _read_within(self, room: ReadingRoom, digest: bytes, file_type: str, data: Buffer) -> _Kept[T]:
         kind = self._kind
         with self._memory.reserved("reading", room.memory, f"reading a {kind.name}"):
             content = await read_upload(kind.name, kind.error, file_type, data, self._limits, room)
@@ -234,5 +234,5 @@ def sky_size(picture: SkyPicture) -> int:
     return int(picture.pixels.nbytes)
 
 
-MESH = Kind("mesh", "meshes", Shape, MeshError, described_mesh, mesh_size)
-SKY = Kind("sky", "skies", SkyPicture, InputError, described_sky, sky_size)
+MESH = StoredKind("mesh", "meshes", Shape, MeshError, described_mesh, mesh_size)
+SKY = StoredKind("sky", "skies", SkyPicture, InputError, described_sky, sky_size)

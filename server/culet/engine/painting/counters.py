@@ -47,7 +47,7 @@ class Durations:
 
 
 @dataclass(frozen=True)
-class Tally:
+class SharedCounters:
     """Both, as all parts of the painter share them."""
 
     counters: Counters = field(default_factory=Counters)

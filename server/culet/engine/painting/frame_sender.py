@@ -10,9 +10,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
-from culet.engine.governing.thrift import NO_LIMITS, Allowance
+from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance
 from culet.engine.painting.coded import Coded
-from culet.engine.painting.counters import Tally
+from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
@@ -46,7 +46,7 @@ class Outgoing:
     """s, steady clock: when a frame was last encoded as video."""
     unsent: int = 0
     """Frames that are being encoded, or wait for that."""
-    allowance: Allowance = NO_LIMITS
+    allowance: ByteAllowance = NO_LIMITS
     """Bytes that frames may have."""
     latest: asyncio.Task[None] | None = None
     """Encodes and sends the frame that was drawn last."""
@@ -124,7 +124,7 @@ class FrameSender:
         send: Callable[[bytes], None],
         tell_problem: Callable[[Session, CuletError], None],
         wake: Callable[[], None],
-        tally: Tally,
+        tally: SharedCounters,
         clock: Callable[[], float],
         has_room: Callable[[int], bool] = lambda _: True,
     ) -> None:

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Plan
 from culet.engine.painting.live_frame import LiveFrame
-from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
+from culet.engine.painting.renderer import PIECE_SECONDS, AnyPicture, AnyRenderer
 from culet.engine.painting.shares import Account
-from culet.engine.session.session import Shown
+from culet.engine.session.session import ShownScene
 from culet.rendering.behind import before_its_colour
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.target import Target
 from culet.stage import Stage
 
@@ -31,7 +31,7 @@ AT_ONCE = 2**19
 until it is the frame's turn again, while nothing is rendered."""
 
 
-class Kind(Enum):
+class WorkKind(Enum):
     """What a frame is made of."""
 
     PLANNED = auto()
@@ -50,15 +50,15 @@ class Unprepared(Exception):  # noqa: N818 - nothing went wrong
 class FrameWork:
     """Belongs to the painter; its pieces run in the render thread."""
 
-    kind: Kind
-    shown: Shown
+    kind: WorkKind
+    shown: ShownScene
     wanted: tuple[int, int]
     """Pixels that were asked for when it was begun."""
     account: Account
     begun_at: float
     """s, steady clock."""
     plan: Plan | None = None
-    picture: Picture | None = None
+    picture: AnyPicture | None = None
     """Made by the first piece, unless it is refined."""
     aim: Target | None = None
     """To which what is refined is refined at last."""
@@ -99,7 +99,7 @@ class FrameWork:
         """That the picture has already."""
         return 0 if self.picture is None else self.picture.samples
 
-    def start(self, renderer: Renderer) -> None:
+    def start(self, renderer: AnyRenderer) -> None:
         """To be called once, before any piece."""
         self.pieces = self._made(renderer)
 
@@ -120,12 +120,12 @@ class FrameWork:
         if self.picture is not None:
             self.picture.give_up()
 
-    def _made(self, renderer: Renderer) -> Generator[object, None, None]:
+    def _made(self, renderer: AnyRenderer) -> Generator[object, None, None]:
         width, height = self.wanted if self.plan is None else self.plan.size
         if not renderer.is_ready(self.stage, self.samples):
             raise Unprepared
         if self.picture is None:
-            effort = Effort.RESTING if self.plan is None else Effort.MOVING
+            effort = LightEffort.RESTING if self.plan is None else LightEffort.MOVING
             self.picture = renderer.picture(self.stage, width, height, effort=effort)
         picture, sampled = self.picture, self.picture.sample_seconds > 0
         small = width * height <= AT_ONCE
@@ -153,7 +153,7 @@ class FrameWork:
             soft=soft, overlaid=overlaid,
         )  # fmt: skip
 
-    def _samples(self, picture: Picture, renderer: Renderer) -> Iterator[float]:
+    def _samples(self, picture: AnyPicture, renderer: AnyRenderer) -> Iterator[float]:
         """The first one; or as many more as there are, but no more than REFRESH_SECONDS allow, nor than are needed.
 
         When frames are sent depends on the time, but which of them is final does not.
@@ -171,7 +171,7 @@ class FrameWork:
             yield from picture.refine_until(self.aim, self.piece_seconds, pause=enough, due=self._due)
             self.final = picture.reached(self.aim)
 
-    def _waits(self, picture: Picture, renderer: Renderer) -> bool:
+    def _waits(self, picture: AnyPicture, renderer: AnyRenderer) -> bool:
         """Whether the next sample would wait for a compiler: the second may need another program than the first."""
         return picture.samples == 1 and not renderer.is_ready(self.stage, 1)
 

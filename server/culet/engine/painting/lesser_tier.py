@@ -9,7 +9,7 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
-from culet.engine.governing.thrift import NO_LIMITS, Allowance, Room, Thrift, read_byte_ladder
+from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance, ByteRoom, Thrift, read_byte_ladder
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.live_frame import LiveFrame
@@ -24,10 +24,10 @@ class LesserTier:
 
     def __init__(self) -> None:
         """Without limits, until some are told."""
-        self.allowance: Allowance = NO_LIMITS
+        self.allowance: ByteAllowance = NO_LIMITS
         self.size: tuple[int, int] | None = None
         """Pixels into which the picture has to fit in one direction at least; None: of any size."""
-        self.room: Room | None = None
+        self.room: ByteRoom | None = None
         """That the link has for a moving frame, by the rate at which they are made."""
         self.message: bytes | None = None
         """The frame sent last, by the session's watch id."""

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.engine.governing.governor import Plan
-from culet.engine.governing.thrift import BEST_CRF, Allowance, Encoding
+from culet.engine.governing.thrift import BEST_CRF, ByteAllowance, Encoding
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
-from culet.engine.painting.renderer import Picture
+from culet.engine.painting.renderer import AnyPicture
 from culet.engine.painting.resting_picture import encode_resting
 from culet.engine.painting.video_track import TrackedPacket
 from culet.engine.painting.whereabouts import Ball, whereabouts
-from culet.engine.session.session import Session, Shown
+from culet.engine.session.session import Session, ShownScene
 from culet.rendering.chains import bands_seen
 from culet.rendering.target import Target
 from culet.scene.optics import Optics
@@ -30,7 +30,7 @@ class LiveFrame:
 
     rgb: NDArray[np.uint8]
     """(height, width, 3)"""
-    shown: Shown
+    shown: ShownScene
     optics: Optics
     """As drawn."""
     bands: int
@@ -67,8 +67,8 @@ class LiveFrame:
     @classmethod
     def developed(
         cls,
-        picture: Picture,
-        shown: Shown,
+        picture: AnyPicture,
+        shown: ShownScene,
         plan: Plan | None,
         spent: tuple[float, float],
         develop_seconds: float,
@@ -112,7 +112,7 @@ class LiveFrame:
             planned=plan is not None,
         )
 
-    def encoded(self, allowance: Allowance) -> Coded:
+    def encoded(self, allowance: ByteAllowance) -> Coded:
         """Its picture as it is sent; one that does not move has no more bytes than the link allows. Takes milliseconds,
         a final one some hundredths of a second."""
         if self.encoding is not None:

@@ -6,10 +6,10 @@ import asyncio
 from collections.abc import Callable
 from typing import Protocol
 
-from culet.engine.painting.counters import Tally
+from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_sender import FrameSender
-from culet.engine.painting.frame_work import FrameWork, Kind, Unprepared, has_shape, proceed
+from culet.engine.painting.frame_work import FrameWork, Unprepared, WorkKind, has_shape, proceed
 from culet.engine.painting.live_picture import (
     FINE_SAMPLES,
     FINE_SECONDS,
@@ -17,15 +17,15 @@ from culet.engine.painting.live_picture import (
     NEVER,
     REST_WEIGHT,
     LivePicture,
+    PictureState,
     Preparing,
-    State,
 )
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
-from culet.engine.painting.renderer import ALONE_SECONDS, Renderer
+from culet.engine.painting.renderer import ALONE_SECONDS, AnyRenderer
 from culet.engine.painting.shares import Account, Shares
-from culet.engine.session.motion import Motion
-from culet.engine.session.session import Session, Shown
+from culet.engine.session.motion import StonesMotion
+from culet.engine.session.session import Session, ShownScene
 from culet.errors import CuletError
 from culet.rendering.target import Target
 
@@ -33,7 +33,7 @@ from culet.rendering.target import Target
 class Stepping(Protocol):
     """Who takes the steps of motions; `culet.engine.session.stepper.Stepper` is one."""
 
-    def keep_going(self, steps: Motion) -> None:
+    def keep_going(self, steps: StonesMotion) -> None:
         """See to it that the steps of a motion are taken, from now on as long as there are any. Does not wait."""
 
     def stop(self) -> None:
@@ -45,7 +45,7 @@ class LivePainter:
 
     def __init__(
         self,
-        renderer: Renderer,
+        renderer: AnyRenderer,
         thread: RenderThread,
         shares: Shares,
         sender: FrameSender,
@@ -55,7 +55,7 @@ class LivePainter:
         share_of: Callable[[LivePicture], float],
         tell_problem: Callable[[Session, CuletError], None],
         wake: Callable[[], None],
-        tally: Tally,
+        tally: SharedCounters,
         clock: Callable[[], float],
     ) -> None:
         """Pictures at rest are refined to `rest`. `share_of` tells the part of the render thread's time that a picture
@@ -101,14 +101,14 @@ class LivePainter:
         session.remember(shown)
         simulated = session.motion.take_spent()
         self._shares.charge(account, simulated, now)
-        if not live.current or live.state is State.BLANK or settled:  # or the motion has not gone on
+        if not live.current or live.state is PictureState.BLANK or settled:  # or the motion has not gone on
             try:
                 live.making = self._planned(live, shown, account, now, simulated)
             except Exception as error:  # one session's failure must not end the others'
                 self._refuse(live, shown, error)
 
     def _planned(
-        self, live: LivePicture, shown: Shown, account: Account, begun_at: float, simulated: float
+        self, live: LivePicture, shown: ShownScene, account: Account, begun_at: float, simulated: float
     ) -> FrameWork:
         """Choose how to draw what is shown."""
         wanted = live.size  # as of now: it may change while the picture is rendered, which then is not current
@@ -118,10 +118,10 @@ class LivePainter:
             if live.governed
             else None
         )
-        kind = Kind.FULL if plan is None else Kind.PLANNED
+        kind = WorkKind.FULL if plan is None else WorkKind.PLANNED
         work = FrameWork(kind, shown, wanted, account, begun_at, plan, simulate_seconds=simulated, now=self._now)
         if plan is None and shown is live.painted and live.seen is not None and has_shape(live.seen, wanted):
-            work.over, work.seen_at = live.seen, None if live.state is State.FINAL else live.seen_at
+            work.over, work.seen_at = live.seen, None if live.state is PictureState.FINAL else live.seen_at
         if self._share_of(live) >= 1:
             work.piece_seconds = ALONE_SECONDS
         work.slow = shown.moving and live.session.motion.pace.slow
@@ -137,7 +137,7 @@ class LivePainter:
         fine = picture.samples >= FINE_SAMPLES
         live.rest.weight = FINE_WEIGHT if fine else REST_WEIGHT
         work = FrameWork(
-            Kind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, aim=self._rest,
+            WorkKind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, aim=self._rest,
             now=self._now, render_seconds=live.render_seconds, over=live.seen, seen_at=live.seen_at,
         )  # fmt: skip
         if fine and self._share_of(live) < 1:
@@ -151,7 +151,7 @@ class LivePainter:
         try:
             more = await self._thread.run(work.account, proceed, work.pieces, self._now, work.hold_seconds)
         except Unprepared:
-            if work.kind is Kind.REFINED:
+            if work.kind is WorkKind.REFINED:
                 live.making, live.preparing_more = None, asyncio.create_task(self._prepare_more(live, work))
             else:
                 live.making = Preparing(asyncio.create_task(self._prepare(live, work)))
@@ -163,7 +163,7 @@ class LivePainter:
         if more or work.frame is None or work.picture is None:
             return
         live.drew(work, self._now())
-        if work.kind is Kind.REFINED:
+        if work.kind is WorkKind.REFINED:
             self._tally.counters.refinements += 1
         else:
             self._tally.counters.frames_rendered += 1
@@ -196,6 +196,6 @@ class LivePainter:
             live.preparing_more = None
             self._wake()
 
-    def _refuse(self, live: LivePicture, shown: Shown, error: Exception) -> None:
+    def _refuse(self, live: LivePicture, shown: ShownScene, error: Exception) -> None:
         live.refuse(shown)
         self._tell_problem(live.session, as_culet_error(error))

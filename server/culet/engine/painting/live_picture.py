@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from culet.engine.governing.governor import asked_rate
 from culet.engine.painting.frame_sender import Outgoing
-from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.frame_work import FrameWork, WorkKind
 from culet.engine.painting.lesser_tier import fitting
 from culet.engine.painting.quality import Quality
-from culet.engine.painting.renderer import Picture
+from culet.engine.painting.renderer import AnyPicture
 from culet.engine.painting.shares import Account
-from culet.engine.session.session import Session, Shown
+from culet.engine.session.session import Session, ShownScene
 from culet_protocol.messages import Balance
 from culet_protocol.sizes import LIVE_SIZE
 
@@ -51,7 +51,7 @@ NEVER = -1e9
 """s, of a steady clock: when what has not happened yet last happened."""
 
 
-class State(Enum):
+class PictureState(Enum):
     """What there is of the picture that was drawn last."""
 
     BLANK = auto()
@@ -88,10 +88,10 @@ class LivePicture:
     rate: float = 0.0
     """Frames per second that the gateway's viewers can take; 0 if it has none."""
     size: tuple[int, int] = LIVE_SIZE
-    state: State = State.BLANK
-    picture: Picture | None = None
+    state: PictureState = PictureState.BLANK
+    picture: AnyPicture | None = None
     """That can be refined: none of a reduced one, which is drawn anew."""
-    painted: Shown | None = None
+    painted: ShownScene | None = None
     """What the picture drawn last shows, or what was refused."""
     painted_size: tuple[int, int] = (0, 0)
     seen: NDArray[np.uint8] | None = None
@@ -135,7 +135,7 @@ class LivePicture:
     @property
     def current(self) -> bool:
         """Whether the picture, and the frame made of it, still are what is shown."""
-        drawn = self.state is not State.REFUSED and self.painted is self.session.shown
+        drawn = self.state is not PictureState.REFUSED and self.painted is self.session.shown
         return drawn and self.painted_size == self.size
 
     @property
@@ -146,7 +146,7 @@ class LivePicture:
     @property
     def settled(self) -> bool:
         """Whether the picture is a reduced one of what no longer changes."""
-        return self.state is State.REDUCED and self.at_rest
+        return self.state is PictureState.REDUCED and self.at_rest
 
     def due_at(self) -> float | None:
         """When the next first-sample frame is to be begun (steady clock), or None if nothing calls for one."""
@@ -156,13 +156,13 @@ class LivePicture:
             return None
         next_at = self.begun_at + 1 / self.frames_per_second
         match self.state:
-            case State.BLANK:
+            case PictureState.BLANK:
                 return next_at
-            case State.REDUCED:
+            case PictureState.REDUCED:
                 return max(self.settles_at, next_at) if self.at_rest else next_at
-            case State.FULL | State.FINAL:
+            case PictureState.FULL | PictureState.FINAL:
                 return None if self.at_rest else next_at
-            case State.REFUSED:  # not tried again until something else is to be shown
+            case PictureState.REFUSED:  # not tried again until something else is to be shown
                 return None if self.painted is self.session.shown else next_at
             case _:
                 assert_never(self.state)
@@ -172,7 +172,7 @@ class LivePicture:
         """Whose time the next piece of work is."""
         if self.work is not None:
             return self.work.account
-        return self.rest if self.at_rest and self.state is not State.BLANK else self.frames
+        return self.rest if self.at_rest and self.state is not PictureState.BLANK else self.frames
 
     @property
     def governed(self) -> bool:
@@ -205,16 +205,16 @@ class LivePicture:
         if self.picture is not work.picture:
             self._let_go()
         match work.kind:
-            case Kind.PLANNED:
-                self.state, self.picture, self.settles_at = State.REDUCED, None, now + SETTLE_SECONDS
-            case Kind.FULL | Kind.REFINED:
-                self.state, self.picture = State.FULL, work.picture
+            case WorkKind.PLANNED:
+                self.state, self.picture, self.settles_at = PictureState.REDUCED, None, now + SETTLE_SECONDS
+            case WorkKind.FULL | WorkKind.REFINED:
+                self.state, self.picture = PictureState.FULL, work.picture
             case _:
                 assert_never(work.kind)
         self.seen, self.seen_at = None if work.frame is None else work.frame.rgb, now
         if work.final:
             self._let_go()
-            self.state = State.FINAL
+            self.state = PictureState.FINAL
 
     def outdated(self, now: float) -> bool:
         """Whether the frame in the making is to be given up."""
@@ -225,14 +225,14 @@ class LivePicture:
             return True
         newer = work.shown is not self.session.shown or work.wanted != self.size
         match work.kind:
-            case Kind.PLANNED:
+            case WorkKind.PLANNED:
                 if self.quality.is_too_dear(work, pinned=self.balance.pinned):
                     return True
                 return newer and now - work.begun_at > STALE_SECONDS and not self.quality.gave_up
-            case Kind.FULL:
+            case WorkKind.FULL:
                 unseen = self.painted is not work.shown
                 return newer or (unseen and work.spent > FIRST_LOOK_SECONDS)
-            case Kind.REFINED:
+            case WorkKind.REFINED:
                 return newer
             case _:
                 assert_never(work.kind)
@@ -247,39 +247,39 @@ class LivePicture:
         if work.shown is not self.session.shown or work.wanted == self.size:  # else only its size was wrong
             self.changed_at = now
         match work.kind:
-            case Kind.PLANNED:
+            case WorkKind.PLANNED:
                 self.quality.give_up_planned(
                     work, self.session.balance, self.frames_per_second, pinned=self.balance.pinned
                 )
-            case Kind.FULL:
+            case WorkKind.FULL:
                 self.quality.give_up_full(work)
-            case Kind.REFINED:  # its sums are neither those of before nor those of after
+            case WorkKind.REFINED:  # its sums are neither those of before nor those of after
                 self._let_go()
-                self.state = State.BLANK
+                self.state = PictureState.BLANK
             case _:
                 assert_never(work.kind)
 
     def wants_refinement(self) -> bool:
         """Whether more samples would improve what is seen, as far as is wanted, and nothing is in their way."""
         idle = self.making is None and self.preparing_more is None and not self.outgoing.full
-        return self.watched and self.at_rest and self.state is State.FULL and idle
+        return self.watched and self.at_rest and self.state is PictureState.FULL and idle
 
-    def refuse(self, shown: Shown) -> None:
+    def refuse(self, shown: ShownScene) -> None:
         """It cannot be rendered."""
         self._let_go()
-        self.making, self.painted, self.state = None, shown, State.REFUSED
+        self.making, self.painted, self.state = None, shown, PictureState.REFUSED
         self.seen = None
 
     def try_again(self) -> None:
         """What could not be rendered may be rendered now."""
-        if self.state is State.REFUSED:
-            self.state = State.BLANK
+        if self.state is PictureState.REFUSED:
+            self.state = PictureState.BLANK
 
     def draw_anew(self) -> None:
         """The picture at rest is wanted in a form in which it was not sent; a frame under way brings it by itself."""
-        if self.making is None and self.state in (State.FULL, State.FINAL):
+        if self.making is None and self.state in (PictureState.FULL, PictureState.FINAL):
             self._let_go()
-            self.seen, self.state = None, State.BLANK
+            self.seen, self.state = None, PictureState.BLANK
 
     def resize_lesser(self, size: tuple[int, int]) -> None:
         """Lesser pictures are to fill other windows. One at rest is made anew if it is smaller than that."""
@@ -299,8 +299,8 @@ class LivePicture:
         self.seen = None
         self.session.motion.look_away()
         self.unwatched_at = now
-        if self.state in (State.REDUCED, State.FULL):
-            self.state = State.BLANK
+        if self.state in (PictureState.REDUCED, PictureState.FULL):
+            self.state = PictureState.BLANK
         if self.painted is not self.session.shown:
             self.painted = None
 

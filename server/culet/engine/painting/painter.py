@@ -12,13 +12,13 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 from culet.engine.painting import schedule
-from culet.engine.painting.counters import Counters, Durations, Tally
+from culet.engine.painting.counters import Counters, Durations, SharedCounters
 from culet.engine.painting.frame_sender import FrameSender
 from culet.engine.painting.live_painter import LivePainter, Stepping
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
-from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.shares import Shares, share
 from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.engine.painting.still_painter import StillPainter
@@ -36,7 +36,7 @@ class Painter:
 
     def __init__(
         self,
-        renderer: Renderer,
+        renderer: AnyRenderer,
         render_thread: ThreadPoolExecutor,
         stills: StillQueue,
         *,
@@ -60,7 +60,7 @@ class Painter:
         self._tell_of_problem = tell_problem
         self._now = clock
         self._shares = Shares()
-        self._tally = tally = Tally()
+        self._tally = tally = SharedCounters()
         self._changed = asyncio.Event()
         thread = RenderThread(render_thread, self._shares, tally, clock)
         self._sender = FrameSender(send, self._tell_problem, self.wake, tally, clock, has_room)

@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import assert_never
 
 from culet.engine.governing.governor import Governor, Plan, read_ladder
-from culet.engine.governing.thrift import Allowance, Room, Thrift, read_byte_ladder, read_video_ladder
+from culet.engine.governing.thrift import ByteAllowance, ByteRoom, Thrift, read_byte_ladder, read_video_ladder
 from culet.engine.painting.coded import Coded
-from culet.engine.painting.frame_work import FrameWork, Kind
+from culet.engine.painting.frame_work import FrameWork, WorkKind
 from culet.scene import Scene
 from culet.scene.optics import Optics
 from culet_protocol.frame import Codec
@@ -51,7 +51,7 @@ class Quality:
         return chosen
 
     def plan(
-        self, scene: Scene, size: tuple[int, int], balance: Balance, allowance: Allowance, *, video: bool = False
+        self, scene: Scene, size: tuple[int, int], balance: Balance, allowance: ByteAllowance, *, video: bool = False
     ) -> Plan:
         """For the next moving frame: as good as there is time for, and as large as the link has room for; `video` has
         more pixels in as many bytes."""
@@ -65,7 +65,7 @@ class Quality:
         encoding, crf = self.thrift.encoding(plan.size, room), self.video_thrift.encoding(plan.size, room).quality
         return replace(plan, encoding=replace(encoding, thrifty=encoding.thrifty or smaller, crf=crf, reduced=smaller))
 
-    def room(self, balance: Balance, allowance: Allowance) -> Room | None:
+    def room(self, balance: Balance, allowance: ByteAllowance) -> ByteRoom | None:
         """That a link has for a moving frame; None: as much as one likes."""
         return allowance.room(balance_rate(balance.exactness), 1 / max(self._planned_seconds, 1e-3))
 
@@ -86,13 +86,13 @@ class Quality:
         """A frame is done."""
         self.gave_up = False
         match work.kind:
-            case Kind.FULL if work.first_seconds is None:  # it was shown amid its first sample
+            case WorkKind.FULL if work.first_seconds is None:  # it was shown amid its first sample
                 self.full_seconds = max(self.full_seconds, work.render_seconds)
-            case Kind.FULL:
+            case WorkKind.FULL:
                 self.full_seconds = work.render_seconds
-            case Kind.PLANNED:
+            case WorkKind.PLANNED:
                 self._planned_seconds += PACE_MEMORY * (work.spent - self._planned_seconds)
-            case Kind.REFINED:
+            case WorkKind.REFINED:
                 if work.first_seconds is not None:
                     self.full_seconds = work.first_seconds
             case _:

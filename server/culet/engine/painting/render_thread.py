@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
-from culet.engine.painting.counters import Tally
+from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.shares import Account, Shares
 
 T = TypeVar("T")
@@ -16,7 +16,9 @@ T = TypeVar("T")
 class RenderThread:
     """Runs one piece of work after the other."""
 
-    def __init__(self, executor: ThreadPoolExecutor, shares: Shares, tally: Tally, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, executor: ThreadPoolExecutor, shares: Shares, tally: SharedCounters, clock: Callable[[], float]
+    ) -> None:
         """`executor` has one thread, `clock` is a steady one, in seconds."""
         self._executor = executor
         self._shares = shares

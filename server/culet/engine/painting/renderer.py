@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
@@ -25,7 +25,7 @@ ALONE_SECONDS = 0.05
 """The same where nobody else wants the thread: a governed frame is then one launch, however busy the machine is."""
 
 
-class Picture(Protocol):
+class AnyPicture(Protocol):
     """An image that gets better with every sample."""
 
     @property
@@ -111,13 +111,15 @@ class Picture(Protocol):
         """Whether its map shows nothing of what goes through the stones."""
 
 
-class Renderer(Protocol):
+class AnyRenderer(Protocol):
     """A device that draws scenes."""
 
-    def picture(self, stage: Stage, width: int, height: int, *, effort: Effort = Effort.PATIENT) -> Picture:
+    def picture(
+        self, stage: Stage, width: int, height: int, *, effort: LightEffort = LightEffort.PATIENT
+    ) -> AnyPicture:
         """An empty picture of the stage, with that effort on its light map."""
 
-    def cut_out(self, stage: Stage, width: int, height: int) -> Picture:
+    def cut_out(self, stage: Stage, width: int, height: int) -> AnyPicture:
         """The same in front of nothing: with alpha, and twice the work."""
 
     def forget(self, panorama: Panorama) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
-from culet.engine.governing.thrift import Allowance
+from culet.engine.governing.thrift import ByteAllowance
 from culet.engine.painting import jpeg
 from culet.engine.painting.coded import Coded
 from culet_protocol.frame import Codec
@@ -28,7 +28,7 @@ LEAST_TIMES = 2
 """Bytes of a PNG over those of the JPEG of quality 92, at least: where not even so many may be sent, none is made."""
 
 
-def encode_resting(rgb: NDArray[np.uint8], allowance: Allowance, *, final: bool) -> Coded:
+def encode_resting(rgb: NDArray[np.uint8], allowance: ByteAllowance, *, final: bool) -> Coded:
     """A (height, width, 3) picture that does not move, within what the link allows. Takes milliseconds, a final one
     some hundredths of a second."""
     picture = jpeg.encode_within(rgb, jpeg.RESTING_QUALITY, allowance.resting(final=final))

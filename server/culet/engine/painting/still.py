@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from culet.engine.painting.renderer import PIECE_SECONDS, Picture, Renderer
+from culet.engine.painting.renderer import PIECE_SECONDS, AnyPicture, AnyRenderer
 from culet.engine.painting.shares import Account, Shares
 from culet.errors import BusyError
 from culet.rendering.target import Target
@@ -19,7 +19,7 @@ from culet_protocol.engine import Format
 if TYPE_CHECKING:
     from culet.legend import Line
 
-EncodeStill = Callable[[Picture, str, Sequence["Line"]], bytes]
+EncodeStill = Callable[[AnyPicture, str, Sequence["Line"]], bytes]
 """A still that is rendered, its format, and the lines of its legend, as a file."""
 
 STILLS_WEIGHT = 0.5
@@ -50,7 +50,7 @@ class Still:
     asked_at: float = 0.0
     """s, steady clock."""
     done: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
-    picture: Picture | None = None
+    picture: AnyPicture | None = None
     pieces: Iterator[object] | None = None
     rendered: bool = False
     """It is only to be encoded, which is no work of the render thread."""
@@ -69,7 +69,7 @@ class Still:
         """Of all its pictures."""
         return self.width * self.height * self.pictures
 
-    def paint(self, renderer: Renderer) -> Iterator[object]:
+    def paint(self, renderer: AnyRenderer) -> Iterator[object]:
         """Render, yielding between pieces of work. Runs in the render thread."""
         make = renderer.picture if self.pictures == 1 else renderer.cut_out
         picture = make(self.stage, self.width, self.height)

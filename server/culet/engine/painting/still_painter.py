@@ -6,11 +6,11 @@ import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
-from culet.engine.painting.counters import Tally
+from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.failure import as_culet_error
 from culet.engine.painting.frame_work import proceed
 from culet.engine.painting.render_thread import RenderThread
-from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, Still, StillQueue
 from culet.errors import TooLargeError
 from culet.rendering.chains import band_count
@@ -22,11 +22,11 @@ class StillPainter:
     def __init__(
         self,
         queue: StillQueue,
-        renderer: Renderer,
+        renderer: AnyRenderer,
         thread: RenderThread,
         encode: EncodeStill,
         most_seconds: float,
-        tally: Tally,
+        tally: SharedCounters,
         clock: Callable[[], float],
     ) -> None:
         """A still may take `most_seconds` of the render thread."""

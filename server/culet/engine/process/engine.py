@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import zmq.asyncio
 
 from culet.engine.painting.painter import Painter
-from culet.engine.painting.renderer import Renderer
+from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.engine.painting.video import video_codecs
 from culet.engine.process.limits import Limits
@@ -44,7 +44,7 @@ RETRY_SECONDS = 10.0
 """Until a picture is tried again that something passing was in the way of."""
 
 
-class Engine:
+class EngineServer:
     """Sockets, and the tasks that serve them."""
 
     def __init__(
@@ -53,7 +53,7 @@ class Engine:
         control: str,
         frames: Sequence[str],
         limits: Limits,
-        renderer: Renderer,
+        renderer: AnyRenderer,
         render_thread: ThreadPoolExecutor,
         encode: EncodeStill,
         keys: EngineKeys | None = None,

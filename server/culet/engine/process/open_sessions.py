@@ -18,7 +18,7 @@ from culet.engine.process.memory import Memory
 from culet.engine.process.staging import CHANGE_SECONDS, Staging
 from culet.engine.session import events
 from culet.engine.session.session import Session
-from culet.engine.session.snapshot import Snapshot
+from culet.engine.session.snapshot import SessionSnapshot
 from culet.errors import BusyError, NotFoundError
 from culet.scene import Environment, Scene
 from culet.simulation.overlaps import overlaps
@@ -105,7 +105,7 @@ class OpenSessions:
         if request.session in self:  # asked again by a gateway that heard nothing for a while
             return self.get(request.session)
         scene = Scene.read(request.scene)
-        snapshot = None if request.snapshot is None else Snapshot.read(request.snapshot)
+        snapshot = None if request.snapshot is None else SessionSnapshot.read(request.snapshot)
         self._make_room()
         own = scene.environment if snapshot is None else snapshot.environment or scene.environment
         most = CHANGE_SECONDS if snapshot is None else math.inf  # what was there before comes again, whatever it takes
@@ -207,7 +207,9 @@ class OpenSessions:
             raise BusyError(f"there are {self._limits.max_sessions} sessions already; close one, or try again later")
         self.close(oldest)
 
-    def _made(self, name: str, scene: Scene, own: Environment, snapshot: Snapshot | None, library: Library) -> Session:
+    def _made(
+        self, name: str, scene: Scene, own: Environment, snapshot: SessionSnapshot | None, library: Library
+    ) -> Session:
         """A session whose own sky is of that environment. Takes a while, as shapes and their hulls are made."""
         stage, sky = Stage.of(scene, library), events.own_sky(library.sky(own))
         if snapshot is None:

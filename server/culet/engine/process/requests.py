@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, assert_never
 
-from culet.engine.governing.thrift import Allowance
+from culet.engine.governing.thrift import ByteAllowance
 from culet.engine.library.upload_process import Buffer
 from culet.engine.library.upload_store import MESH, SKY, UploadStore
 from culet.engine.painting.live_picture import LivePicture
@@ -54,7 +54,7 @@ LONG_EVENTS = SHAPING_EVENTS | frozenset(
 """They may make a stone or its hull, try whether a stone that sleeps would move, or look for a way among all triangles
 of a mesh that the camera is near: other sessions go on meanwhile."""
 
-Answer = tuple[dict[str, Any], bytes | None]
+ReplyParts = tuple[dict[str, Any], bytes | None]
 
 
 class Requests:
@@ -92,7 +92,7 @@ class Requests:
         self._started = time.monotonic()
         memory.count("sessions", self._session_bytes)
 
-    async def answer(self, request: protocol.Request, data: Buffer | None) -> Answer:
+    async def answer(self, request: protocol.Request, data: Buffer | None) -> ReplyParts:
         """Do what is asked; CuletError if it cannot be done."""
         match request:
             case protocol.OpenSession():
@@ -217,9 +217,9 @@ class Requests:
         live = self.sessions.get(request.session)
         others = [other for other in self.sessions if other is not live]
         live.rate = request.frames_per_second
-        live.outgoing.allowance = Allowance(request.bytes_per_frame, request.bytes_at_rest)
+        live.outgoing.allowance = ByteAllowance(request.bytes_per_frame, request.bytes_at_rest)
         if (less := request.lesser) is not None:
-            live.outgoing.lesser.allowance = Allowance(less.bytes_per_frame, less.bytes_at_rest)
+            live.outgoing.lesser.allowance = ByteAllowance(less.bytes_per_frame, less.bytes_at_rest)
             live.resize_lesser((less.width, less.height))
         live.size = size_within(
             self._memory,

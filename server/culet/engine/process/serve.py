@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import zmq.asyncio
 
-from culet.engine.painting.renderer import Picture, Renderer
+from culet.engine.painting.renderer import AnyPicture, AnyRenderer
 from culet.engine.painting.still import EncodeStill
-from culet.engine.process.engine import Engine
+from culet.engine.process.engine import EngineServer
 from culet.engine.process.heap import return_large_blocks
 from culet.engine.process.limits import Limits
 from culet.engine.process.strangers import engine_keys, letting_in
@@ -78,7 +78,7 @@ async def _run(control: str, frames: Sequence[str], limits: Limits, start: async
         loop.remove_reader(sys.stdin)
 
 
-def open_renderer(*, special_programs: bool) -> Renderer:
+def open_renderer(*, special_programs: bool) -> AnyRenderer:
     """The OpenCL renderer, its special programs compiled while the general one serves, or with none.
 
     It is imported here, so that whatever only speaks to an engine never loads it.
@@ -97,12 +97,12 @@ def open_renderer(*, special_programs: bool) -> Renderer:
     return renderer
 
 
-def encode_still(picture: Picture, file_format: str, legend: Sequence[Line] = ()) -> bytes:
+def encode_still(picture: AnyPicture, file_format: str, legend: Sequence[Line] = ()) -> bytes:
     """A still in its file format, with those lines in a corner."""
     from culet.rendering.files import encode
-    from culet.rendering.renderer import Picture as OpenClPicture
+    from culet.rendering.renderer import DevicePicture
 
-    assert isinstance(picture, OpenClPicture)  # noqa: S101 - made by `open_renderer`
+    assert isinstance(picture, DevicePicture)  # noqa: S101 - made by `open_renderer`
     if not legend:
         return encode(file_format, picture.rgb, picture.linear)
     from culet.legend import drawn
@@ -114,7 +114,7 @@ async def serve(
     control: str,
     frames: Sequence[str],
     limits: Limits,
-    renderer_of: Callable[[], Renderer],
+    renderer_of: Callable[[], AnyRenderer],
     encode: EncodeStill,
     start: asyncio.Event | None = None,
 ) -> None:
@@ -131,7 +131,7 @@ async def serve(
         if start is not None and not await _first(start, stopping):
             return
         with letting_in(context, keys):
-            engine = Engine(context, control, frames, limits, renderer, render_thread, encode, keys)
+            engine = EngineServer(context, control, frames, limits, renderer, render_thread, encode, keys)
             await engine.run_until(stopping)
     finally:
         render_thread.shutdown(wait=False, cancel_futures=True)

@@ -25,7 +25,7 @@ from culet.geometry.designs.of_shape import design_of
 from culet.geometry.designs.solid import Solid
 from culet.geometry.shape import Shape
 from culet.geometry.tier_angles import tiers_of
-from culet.grading.answer import Report
+from culet.grading.answer import GradeReport
 from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
 from culet.grading.size import size_of
@@ -35,7 +35,7 @@ from culet.paths.asked import Pixel, Ray, answered
 from culet.paths.recorder import PathRecorder
 from culet.rendering.device import open_device
 from culet.rendering.features import MOST_HALF_SPACES
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.scene import Scene
 from culet.stage import Library, Stage
 from culet_protocol.engine import DrawDiagram, Grade, ListTiers, Measure, TracePath
@@ -101,7 +101,7 @@ class StoneRequests:
         soon another scene, so that its light map is made in one pass."""
         asked = _asked(request)
         stage = await self._staged(request)
-        effort = Effort.PATIENT if request.session is None else Effort.RESTING
+        effort = LightEffort.PATIENT if request.session is None else LightEffort.RESTING
         given_up = threading.Event()
         try:
             return await _in(self._tracing, self._traced, stage, asked, request.wavelengths, effort, given_up)
@@ -109,7 +109,12 @@ class StoneRequests:
             given_up.set()
 
     def _traced(
-        self, stage: Stage, asked: Pixel | Ray, wavelengths: Sequence[float], effort: Effort, given_up: threading.Event
+        self,
+        stage: Stage,
+        asked: Pixel | Ray,
+        wavelengths: Sequence[float],
+        effort: LightEffort,
+        given_up: threading.Event,
     ) -> bytes:
         if self._recorder is None:
             self._recorder = PathRecorder(open_device(), apart=True, light_seconds=LIGHT_SECONDS)
@@ -147,7 +152,7 @@ def _asked(request: TracePath) -> Pixel | Ray:
     raise InputError("pixel: expected either a pixel or a ray, got both or neither", "pixel")
 
 
-def _next(reports: Iterator[Report]) -> tuple[Report | None, float]:
+def _next(reports: Iterator[GradeReport]) -> tuple[GradeReport | None, float]:
     """The next one, if there is one, and the seconds that it took."""
     begun = time.monotonic()
     return next(reports, None), time.monotonic() - begun

@@ -11,7 +11,7 @@ import faulthandler
 import threading
 from concurrent.futures import Executor
 
-from culet.notify import Notice, notify, notify_patience
+from culet.notify import ServiceNotice, notify, notify_patience
 from culet.rendering import compiling
 
 HANG_SECONDS = 20.0
@@ -37,12 +37,12 @@ class Watchdog:
         self._running = True
         compiling.listen(self._have_patience)
         self._arm()
-        notify(Notice.READY)
+        notify(ServiceNotice.READY)
         try:
             while True:
                 await loop.run_in_executor(self._render_thread, _nothing)
                 self._arm()
-                notify(Notice.ALIVE)
+                notify(ServiceNotice.ALIVE)
                 await asyncio.sleep(BEAT_SECONDS)
         finally:
             self._running = False

@@ -51,7 +51,7 @@ class Instant:
 
 
 @dataclass(frozen=True)
-class Seen:
+class PosesSeen:
     """Where the stones are at a time."""
 
     poses: Mapping[str, Pose]

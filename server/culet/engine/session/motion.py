@@ -15,7 +15,7 @@ from time import thread_time
 from typing import Any, Literal
 
 from culet.engine.session.following import adapt, in_order, moved_by, same_form
-from culet.engine.session.instants import Instant, Lease, Seen
+from culet.engine.session.instants import Instant, Lease, PosesSeen
 from culet.engine.session.snapshot import LARGEST_FRACTION
 from culet.errors import CuletError, InputError
 from culet.simulation import Allowance, FixedStepClock, Pace
@@ -30,7 +30,7 @@ LATE = 1e-3
 """Time steps after a step is due, when it is taken: however the sums of times are rounded, it is due by then."""
 
 
-class Motion:
+class StonesMotion:
     """Mutable. Whoever changes or saves a motion that may be running does so within `still`."""
 
     def __init__(self, stage: Stage, *, timer: Callable[[], float] = thread_time) -> None:
@@ -103,7 +103,7 @@ class Motion:
         """Of the step that is put by."""
         return self.clock.fraction
 
-    def seen(self, now: float | None = None) -> Seen:
+    def seen(self, now: float | None = None) -> PosesSeen:
         """Where the stones are at `now` (s, steady clock), or when the latest step was taken. From any thread."""
         instant, lease = self._instant, self._lease
         fraction = instant.fraction if now is None else instant.fraction_at(now, lease)
@@ -114,20 +114,20 @@ class Motion:
         if now is not None:
             self._seen_until = time
         poses = between(instant.previous, instant.state, fraction)
-        return Seen(
+        return PosesSeen(
             {name: (pose.position, pose.orientation) for name, pose in zip(instant.names, poses, strict=True)},
             time,
             self.moving,
         )
 
-    def latest(self) -> Seen:
+    def latest(self) -> PosesSeen:
         """Where the stones are at the latest step. From any thread."""
         instant = self._instant
         poses = {
             name: (body.position, body.orientation)
             for name, body in zip(instant.names, instant.state.bodies, strict=True)
         }
-        return Seen(poses, instant.state.time, self.moving)
+        return PosesSeen(poses, instant.state.time, self.moving)
 
     def states(self) -> dict[str, BodyState]:
         """How each stone moves at the latest step, by its id. From any thread."""

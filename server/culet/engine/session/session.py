@@ -14,12 +14,12 @@ from typing import Any
 
 from culet.engine.session.edits import Edits, Moment
 from culet.engine.session.history import History, Past
-from culet.engine.session.instants import Seen
-from culet.engine.session.motion import Motion
+from culet.engine.session.instants import PosesSeen
+from culet.engine.session.motion import StonesMotion
 from culet.engine.session.news import News
 from culet.engine.session.picking import placed, struck
 from culet.engine.session.removals import Removals
-from culet.engine.session.snapshot import LARGEST_FRACTION, Snapshot
+from culet.engine.session.snapshot import LARGEST_FRACTION, SessionSnapshot
 from culet.engine.session.viewpoint import axes
 from culet.errors import InputError
 from culet.scene import Camera, Scene, StoneSettings
@@ -32,7 +32,7 @@ from culet_protocol.watch import watch_key
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownScene:
     """Everything that one picture depends on."""
 
     step: int
@@ -77,7 +77,7 @@ class Session:
         """Stones that may come back."""
         self.edits = Edits()
         """Which may be undone."""
-        self.motion = Motion(stage, timer=timer)
+        self.motion = StonesMotion(stage, timer=timer)
         self.news = News(name, stage.scene, self.condition())
         self.stage = stage
         """As it is now: with the live camera, and the stones where they start."""
@@ -92,7 +92,7 @@ class Session:
         cls,
         name: str,
         stage: Stage,
-        snapshot: Snapshot,
+        snapshot: SessionSnapshot,
         *,
         sky: Sky | None = None,
         history: int = 600,
@@ -219,7 +219,7 @@ class Session:
         if moved:
             self._show()
 
-    def remember(self, shown: Shown) -> None:
+    def remember(self, shown: ShownScene) -> None:
         """Keep what a frame was made of, so that it can be rendered again."""
         self.history.add(Past(shown.step, shown.scene))
 
@@ -259,9 +259,9 @@ class Session:
             "snapshot": self.snapshot().model_dump(mode="json"),
         }
 
-    def snapshot(self) -> Snapshot:
+    def snapshot(self) -> SessionSnapshot:
         """What the scene does not say."""
-        return Snapshot(
+        return SessionSnapshot(
             simulation=self.motion.snapshot(),
             fraction=min(self.motion.fraction, LARGEST_FRACTION),
             falling=self.motion.falling,
@@ -295,9 +295,9 @@ class Session:
         if look != self.shown:
             self.shown = replace(look, step=self.shown.step + 1)
 
-    def _look(self, step: int, now: float | None = None) -> Shown:
+    def _look(self, step: int, now: float | None = None) -> ShownScene:
         seen = self.motion.seen(now)
-        return Shown(step, self._posed(seen), seen.time, seen.moving)
+        return ShownScene(step, self._posed(seen), seen.time, seen.moving)
 
-    def _posed(self, seen: Seen) -> Stage:
+    def _posed(self, seen: PosesSeen) -> Stage:
         return self.stage.posed(seen.poses[stone.id] for stone in self.scene.stones)

@@ -24,7 +24,7 @@ LARGEST_FRACTION = 1 - 2**-20
 """Just short of the next step, so that putting the time by again never takes that step."""
 
 
-class Snapshot(BaseModel):
+class SessionSnapshot(BaseModel):
     """Goes through JSON and back without loss."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -49,7 +49,7 @@ class Snapshot(BaseModel):
         return self.model_dump(mode="json", include={"simulation", "fraction", "falling", "step", "sequence"})
 
     @classmethod
-    def read(cls, data: dict[str, Any]) -> Snapshot:
+    def read(cls, data: dict[str, Any]) -> SessionSnapshot:
         """Validate; InputError names the field."""
         try:
             return cls.model_validate(data)

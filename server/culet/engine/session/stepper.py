@@ -13,7 +13,7 @@ THREADS = 4
 """As many worlds whose steps take long, up to a second each at the extremes, do not keep the others from moving."""
 
 
-class Steps(Protocol):
+class Stepping(Protocol):
     """What takes its steps by the clock."""
 
     def run(self, now: float) -> float | None:
@@ -36,18 +36,18 @@ class Stepper:
         """Something is due sooner than what the leader waits for."""
         self._free = threading.Condition(self._lock)
         """The place of the leader is free, and something is to come."""
-        self._due: list[tuple[float, int, Steps]] = []
+        self._due: list[tuple[float, int, Stepping]] = []
         """A heap."""
         self._numbers = itertools.count()
-        self._kept: set[Steps] = set()
+        self._kept: set[Stepping] = set()
         """What is in the heap, or is being run."""
-        self._again: set[Steps] = set()
+        self._again: set[Stepping] = set()
         """What was to be kept going while it was being run."""
         self._leading = False
         self._begun = False
         self._stopped = False
 
-    def keep_going(self, steps: Steps) -> None:
+    def keep_going(self, steps: Stepping) -> None:
         """Run it now, and on until it says that there is nothing more to do."""
         with self._lock:
             if self._stopped:
@@ -69,7 +69,7 @@ class Stepper:
             self._sooner.notify_all()
             self._free.notify_all()
 
-    def _put(self, due: float, steps: Steps) -> None:
+    def _put(self, due: float, steps: Stepping) -> None:
         item = due, next(self._numbers), steps
         heapq.heappush(self._due, item)
         if not self._leading:
@@ -90,7 +90,7 @@ class Stepper:
                 else:
                     self._put(due, steps)
 
-    def _next(self) -> Steps | None:
+    def _next(self) -> Stepping | None:
         """What is due, once something is; None if nothing will be any more."""
         with self._lock:
             while not self._stopped:

@@ -16,10 +16,10 @@ import numpy as np
 
 from culet.errors import MeshError
 from culet.geometry.cuts.facets import Facets, Point, at
-from culet.geometry.cuts.outlines import Outline, Points
+from culet.geometry.cuts.outlines import GirdleOutline, Points
 
 
-class Proportions(Protocol):
+class BrilliantProportions(Protocol):
     """What all brilliants have; angles hold where the support line is 1 from the axis."""
 
     @property
@@ -39,7 +39,7 @@ class Proportions(Protocol):
 
 
 def brilliant_on(
-    outline: Outline, cut: Proportions, *, culet: float = 0, keel: float = 0, least_star: float = 0
+    outline: GirdleOutline, cut: BrilliantProportions, *, culet: float = 0, keel: float = 0, least_star: float = 0
 ) -> Facets:
     """The facets on an outline of half width 1.
 
@@ -87,7 +87,7 @@ def _end(corners: Points, k: int, keel: float) -> Points:
     return np.array([math.copysign(keel, middle) if keel else 0.0, 0.0])
 
 
-def _star_tip(outline: Outline, meet: Points, k: int, cut: Proportions, least: float) -> float:
+def _star_tip(outline: GirdleOutline, meet: Points, k: int, cut: BrilliantProportions, least: float) -> float:
     """Of the way from the axis to `meet`, where a star ends."""
     table, corners = cut.table_percent / 100, outline.corners
     a, b = table * corners[2 * k], table * corners[(2 * k + 2) % len(corners)]

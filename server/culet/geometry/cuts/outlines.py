@@ -19,7 +19,7 @@ Way = Callable[[Points], float]
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class GirdleOutline:
     """Of m mains, counter-clockwise. The axis is at (0, 0)."""
 
     corners: Points
@@ -43,18 +43,18 @@ class Outline:
         det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         return np.column_stack([h * b[:, 1] - i * a[:, 1], a[:, 0] * i - b[:, 0] * h]) / det[:, None]
 
-    def stretched(self, x: float, y: float) -> Outline:
+    def stretched(self, x: float, y: float) -> GirdleOutline:
         """By these factors along x and y: an affine map, which keeps all meets."""
         normals = self.normals / [x, y]
-        return Outline(self.corners * [x, y], normals / np.linalg.norm(normals, axis=1)[:, None])
+        return GirdleOutline(self.corners * [x, y], normals / np.linalg.norm(normals, axis=1)[:, None])
 
 
-def outline(mains: Sequence[tuple[float, float]], normals: Sequence[tuple[float, float]], curve: Way) -> Outline:
+def outline(mains: Sequence[tuple[float, float]], normals: Sequence[tuple[float, float]], curve: Way) -> GirdleOutline:
     """Mains on a curve, with the curve's normals there. The corner between two mains is where the way from the axis to
     the meet of their support lines leaves the curve."""
     unit = np.array(normals) / np.linalg.norm(normals, axis=1)[:, None]
     corners = np.repeat(np.array(mains, np.float64), 2, axis=0)
-    found = Outline(corners, unit)
+    found = GirdleOutline(corners, unit)
     for k, meet in enumerate(found.meets()):
         corners[2 * k + 1] = meet * (
             1.0 if curve(meet) <= 0 else brentq(lambda u, m=meet: curve(u * m), 0, 1, xtol=1e-15)
@@ -67,7 +67,7 @@ def _leaves(curve: Way, way: Points) -> float:
     return 1.0 if curve(way) <= 0 else float(brentq(lambda u: curve(u * way), 0, 1, xtol=1e-15))
 
 
-def ellipse(length_to_width: float, mains: int = 8) -> Outline:
+def ellipse(length_to_width: float, mains: int = 8) -> GirdleOutline:
     """The first main at the end."""
     a = length_to_width
     around = [_direction(2 * math.pi * k / mains) for k in range(mains)]
@@ -76,7 +76,7 @@ def ellipse(length_to_width: float, mains: int = 8) -> Outline:
     )
 
 
-def pillow(length_to_width: float, power: float) -> Outline:
+def pillow(length_to_width: float, power: float) -> GirdleOutline:
     """|x/a|^p + |y|^p = 1 (Lame 1818), mains at the ends, the sides and the four corners."""
     a, p = length_to_width, power
 
@@ -92,7 +92,7 @@ def pillow(length_to_width: float, power: float) -> Outline:
     )
 
 
-def two_arcs(length_to_width: float, mains: int = 10) -> Outline:
+def two_arcs(length_to_width: float, mains: int = 10) -> GirdleOutline:
     """Arcs through (+-a, 0) and (0, +-1): their radius is (a^2 + 1) / 2. The tips are corners between two mains."""
     a, per_arc = length_to_width, mains // 2
     radius, half = _arc(a)
@@ -102,7 +102,7 @@ def two_arcs(length_to_width: float, mains: int = 10) -> Outline:
     return outline(places, normals, lambda q: math.hypot(q[0], abs(q[1]) + radius - 1) - radius)
 
 
-def drop(length_to_width: float, round_mains: int = 3, side_mains: int = 2) -> Outline:
+def drop(length_to_width: float, round_mains: int = 3, side_mains: int = 2) -> GirdleOutline:
     """Half a circle of radius 1 about the axis, and two arcs that touch it at (0, +-1) and meet in a tip at x = a."""
     a = 2 * length_to_width - 1
     radius, half = _arc(a)
@@ -123,7 +123,7 @@ def drop(length_to_width: float, round_mains: int = 3, side_mains: int = 2) -> O
     return found.stretched(2 * length_to_width / length, 2 / width)
 
 
-def three_arcs(bulge: float) -> Outline:
+def three_arcs(bulge: float) -> GirdleOutline:
     """A triangle whose sides are arcs of that height over their length; mains at the corners and the sides' middles."""
     side, high = math.sqrt(3), bulge * math.sqrt(3)
     radius = (side**2 / 4 + high**2) / (2 * high)
@@ -147,7 +147,7 @@ _BOW = 0.05
 """Height of the bow of a lobe's sides over their length: a straight side would give two mains one support line."""
 
 
-def lobe(length_to_width: float, arc: float) -> Outline:
+def lobe(length_to_width: float, arc: float) -> GirdleOutline:
     """The right lobe of a heart of half width 1: a circle of that radius, and two bowed ways from it to the tip at
     x = 0, stretched to that length. The culet, where the axis is, lies 0.47 of the length below the top. MeshError if
     the tip is inside the circle."""

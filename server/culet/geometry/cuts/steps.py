@@ -10,7 +10,7 @@ from culet.errors import MeshError
 from culet.geometry.cuts.facets import Facets, Points, at
 
 
-class Proportions(Protocol):
+class StepProportions(Protocol):
     """What all step cuts have."""
 
     @property
@@ -36,7 +36,7 @@ class Proportions(Protocol):
 _PLACES = ("end", "corner", "side", "corner") * 2
 
 
-def step_cut(cut: Proportions, length_to_width: float, corner: float) -> Facets:
+def step_cut(cut: StepProportions, length_to_width: float, corner: float) -> Facets:
     """`corner` is what is cut off a corner each way, of half the width.
 
     Each step takes the same part of the way from the girdle to the table, or to the keel. Corners shrink as the width
@@ -67,7 +67,7 @@ def step_cut(cut: Proportions, length_to_width: float, corner: float) -> Facets:
 
 
 def _levels(
-    cut: Proportions, part: str, slope: float, flatter: float, steps: int, way: float
+    cut: StepProportions, part: str, slope: float, flatter: float, steps: int, way: float
 ) -> list[tuple[float, float]]:
     """How far inward each level is, and how far from the girdle."""
     slopes = slope - flatter * np.arange(steps)

@@ -20,7 +20,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from culet.errors import InputError, MeshError
-from culet.geometry.designs.design import MOST_TEETH, Design, Facet, Side, Tier, Wheel, plane_of
+from culet.geometry.designs.design import MOST_TEETH, Design, Facet, FacetSide, Tier, Wheel, plane_of
 from culet.geometry.designs.limits import LARGEST_DISTANCE, check_facets
 from culet.geometry.designs.text import decoded, is_number, lines_of, number, one_line, shown
 
@@ -52,7 +52,7 @@ class _Given:
     """A tier as its record has it, before the wheel is known."""
 
     record: _Record
-    side: Side
+    side: FacetSide
     angle: float
     distance: float
     indices: list[float] = field(default_factory=list)
@@ -179,7 +179,7 @@ def _tier(record: _Record, findings: list[str]) -> _Given:
     return tier
 
 
-def _side(angle: float, distance: float) -> Side:
+def _side(angle: float, distance: float) -> FacetSide:
     if angle == 0:
         return "culet" if distance < 0 or math.copysign(1, angle) < 0 else "table"
     if abs(angle) == 90:

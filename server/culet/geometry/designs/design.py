@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 DesignType = Literal["asc", "gem", "gcs"]
-Side = Literal["table", "crown", "girdle", "pavilion", "culet"]
-Plane = tuple[float, float, float, float]
+FacetSide = Literal["table", "crown", "girdle", "pavilion", "culet"]
+PlaneRow = tuple[float, float, float, float]
 """Outward unit normal and distance from the design's origin."""
 
 MOST_TEETH = 3600
@@ -51,14 +51,14 @@ class Facet:
     """Place on the wheel, in teeth, as the file has it; of a table or a culet it means nothing."""
     name: str
     """The facet's own or else the tier's; may be empty."""
-    plane: Plane
+    plane: PlaneRow
 
 
 @dataclass(frozen=True)
 class Tier:
     """Facets of one angle and one distance."""
 
-    side: Side
+    side: FacetSide
     angle: float
     """Degrees from the horizontal, 0 to 90."""
     distance: float
@@ -110,7 +110,7 @@ class Design:
         return np.array([facet.plane for _, facet in self.facets()], np.float64).reshape(-1, 4)
 
 
-def plane_of(side: Side, angle: float, azimuth: float, distance: float) -> Plane:
+def plane_of(side: FacetSide, angle: float, azimuth: float, distance: float) -> PlaneRow:
     """The plane at so many degrees from the horizontal, its normal at an azimuth in radians."""
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     match side:
@@ -132,7 +132,7 @@ LEVEL = 1e-9
 written with 6 decimals comes nearer to the horizontal or the vertical."""
 
 
-def side_and_angle(normal: tuple[float, float, float]) -> tuple[Side, float]:
+def side_and_angle(normal: tuple[float, float, float]) -> tuple[FacetSide, float]:
     """Which side a facet is on, and its degrees from the horizontal."""
     x, y, z = normal
     level = math.hypot(x, y)

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.designs.design import Tier, Wheel
-from culet.geometry.designs.measures import Outline, outline_of, proportions_of
+from culet.geometry.designs.measures import DesignOutline, outline_of, proportions_of
 from culet.geometry.designs.solid import Solid
 from culet.geometry.designs.tables import indices_of, listing
-from culet.geometry.designs.views import ABOVE, BELOW, END, FRONT, Face, Side, faces_seen
+from culet.geometry.designs.views import ABOVE, BELOW, END, FRONT, Face, ViewSide, faces_seen
 
 WIDTH, HEIGHT = 210.0, 297.0
 """Of the page, mm: ISO 216 A4."""
@@ -89,7 +89,9 @@ def diagram_of(solid: Solid) -> str:
     return "\n".join([head, *parts, "</svg>", ""])
 
 
-def _view(solid: Solid, outline: Outline, side: Side, middle: tuple[float, float], scale: float) -> Iterator[str]:
+def _view(
+    solid: Solid, outline: DesignOutline, side: ViewSide, middle: tuple[float, float], scale: float
+) -> Iterator[str]:
     """Faces with their names where there is room, about a middle on the page."""
     axes = np.array([side.right, side.up], np.float64).T
     seen = outline.corners @ axes

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError, MeshError, TooLargeError
-from culet.geometry.designs.design import LEVEL, MOST_TEETH, Design, Plane, Tier, Wheel
+from culet.geometry.designs.design import LEVEL, MOST_TEETH, Design, PlaneRow, Tier, Wheel
 from culet.geometry.designs.grouping import tier_of
 from culet.geometry.designs.limits import LARGEST_DISTANCE, check_facets
 from culet.geometry.designs.text import decoded, number, one_line, shown
@@ -152,7 +152,7 @@ def _tiers(given: list[_Tier], wheel: Wheel, findings: list[str]) -> list[Tier]:
     return tiers
 
 
-def _plane(facet: _Facet, depth: float | None, said: str) -> tuple[Plane, bool]:
+def _plane(facet: _Facet, depth: float | None, said: str) -> tuple[PlaneRow, bool]:
     """The facet's plane, and whether it lies elsewhere than at the depth."""
     corners = np.array(facet.corners, np.float64).reshape(-1, 3)
     normal = np.array(facet.normal or _normal_of(corners, said))

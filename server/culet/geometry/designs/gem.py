@@ -14,7 +14,7 @@ import struct
 from dataclasses import dataclass, field
 
 from culet.errors import MeshError
-from culet.geometry.designs.design import LEVEL, MOST_TEETH, Design, Plane, Wheel
+from culet.geometry.designs.design import LEVEL, MOST_TEETH, Design, PlaneRow, Wheel
 from culet.geometry.designs.grouping import tier_of
 from culet.geometry.designs.limits import LARGEST_DISTANCE, check_facets
 from culet.geometry.designs.text import one_line
@@ -64,7 +64,7 @@ class _Bytes:
 class _Given:
     """A tier as the file has it."""
 
-    planes: list[Plane] = field(default_factory=list)
+    planes: list[PlaneRow] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     notes: str = ""
 
@@ -127,7 +127,7 @@ def _section(source: _Bytes, findings: list[str]) -> Design:
     )  # fmt: skip
 
 
-def _plane(vector: tuple[float, float, float], at: int) -> Plane:
+def _plane(vector: tuple[float, float, float], at: int) -> PlaneRow:
     """Of n / d; what is level or upright but for rounding is so exactly."""
     size = math.hypot(*vector)
     if not 1 / LARGEST_DISTANCE <= size <= LARGEST_DISTANCE:
@@ -143,7 +143,7 @@ def _plane(vector: tuple[float, float, float], at: int) -> Plane:
     return x, y, z, 1 / size
 
 
-def _corners(source: _Bytes, plane: Plane) -> float:
+def _corners(source: _Bytes, plane: PlaneRow) -> float:
     """How far the facet's corners are off its plane, in units of its distance."""
     x, y, z, distance = plane
     farthest = 0.0

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from culet.geometry.designs.design import Facet, Plane, Tier, Wheel, side_and_angle, without_noise
+from culet.geometry.designs.design import Facet, PlaneRow, Tier, Wheel, side_and_angle, without_noise
 
 
-def tier_of(planes: Sequence[Plane], names: Sequence[str], wheel: Wheel, notes: str = "") -> Tier:
+def tier_of(planes: Sequence[PlaneRow], names: Sequence[str], wheel: Wheel, notes: str = "") -> Tier:
     """The tier of at least one facet; angle and distance are the first one's."""
     side, angle = side_and_angle(planes[0][:3])
     facets = tuple(

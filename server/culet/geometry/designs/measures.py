@@ -23,7 +23,7 @@ leave a cluster of corners, up to 9e-5 wide; the shortest edges that were meant 
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class DesignOutline:
     """Corners and faces as the designer meant them."""
 
     corners: Points
@@ -72,7 +72,7 @@ class Proportions:
         return self.volume / self.width**3
 
 
-def outline_of(cut: Intersection) -> Outline:
+def outline_of(cut: Intersection) -> DesignOutline:
     """Corners that are nearer to each other than SAME_CORNER made one."""
     points = cut.vertices
     near = KDTree(points).query_pairs(SAME_CORNER * float(np.ptp(points, axis=0).max()), output_type="ndarray")
@@ -80,7 +80,7 @@ def outline_of(cut: Intersection) -> Outline:
     number, label = connected_components(links, directed=False)
     weight = np.bincount(label, minlength=number)
     corners = np.column_stack([np.bincount(label, points[:, k], number) / weight for k in range(3)])
-    return Outline(corners, tuple(_without_repeats([int(label[k]) for k in polygon]) for polygon in cut.polygons))
+    return DesignOutline(corners, tuple(_without_repeats([int(label[k]) for k in polygon]) for polygon in cut.polygons))
 
 
 def proportions_of(solid: Solid) -> Proportions:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import MeshError
-from culet.geometry.designs.design import LEVEL, Design, Plane, Tier, Wheel
+from culet.geometry.designs.design import LEVEL, Design, PlaneRow, Tier, Wheel
 from culet.geometry.designs.grouping import tier_of
 from culet.geometry.shape import FacetName, Shape
 
@@ -39,7 +39,7 @@ def design_of(shape: Shape, headings: Sequence[str] = ()) -> Design:
     )
 
 
-def _turned(plane: NDArray[np.float64]) -> Plane:
+def _turned(plane: NDArray[np.float64]) -> PlaneRow:
     """In a cutter's frame; what is level or upright but for rounding is so exactly."""
     x, y, z, distance = (float(component) for component in plane)
     normal = np.array([x, -z, y])
@@ -50,13 +50,13 @@ def _turned(plane: NDArray[np.float64]) -> Plane:
     return float(normal[0]), float(normal[1]), float(normal[2]), distance
 
 
-def _tier(facets: list[tuple[Plane, str]]) -> Tier:
+def _tier(facets: list[tuple[PlaneRow, str]]) -> Tier:
     tier = tier_of([plane for plane, _ in facets], [name for _, name in facets], WHEEL)
     order = sorted(range(len(facets)), key=lambda k: tier.facets[k].index % abs(WHEEL.teeth))
     return tier_of([facets[k][0] for k in order], [facets[k][1] for k in order], WHEEL)
 
 
-def _by_angle(planes: list[Plane]) -> tuple[FacetName, ...]:
+def _by_angle(planes: list[PlaneRow]) -> tuple[FacetName, ...]:
     order = sorted(range(len(planes)), key=lambda k: (-planes[k][2], planes[k][3]))
     tiers = [0] * len(planes)
     number, last = 0, None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from culet.errors import InputError
-from culet.geometry.designs.design import Design, Plane, Tier
+from culet.geometry.designs.design import Design, PlaneRow, Tier
 from culet.geometry.designs.grouping import tier_of
 from culet.geometry.designs.solid import Solid
 from culet.geometry.recut import TABLE, recut_planes, said_of
@@ -24,7 +24,7 @@ def recut_design(design: Design, recut: Recut) -> Design:
         return design
     solid = Solid(design)
     planes, gone = recut_planes("the design", solid.cut.planes, recut, [number for number, _ in solid.facets])
-    listed: list[Plane] = [(x, y, z, d) for x, y, z, d in planes.tolist()]
+    listed: list[PlaneRow] = [(x, y, z, d) for x, y, z, d in planes.tolist()]
     tiers: list[Tier] = []
     for number, tier in enumerate(design.tiers, 1):
         own = [k for k, (of, _) in enumerate(solid.facets) if of == number]

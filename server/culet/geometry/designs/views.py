@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.geometry.designs.measures import Outline
+from culet.geometry.designs.measures import DesignOutline
 from culet.geometry.designs.solid import Solid
 
 Points = NDArray[np.float64]
@@ -17,7 +17,7 @@ EDGE_ON = 1e-9
 
 
 @dataclass(frozen=True)
-class Side:
+class ViewSide:
     """Where a viewer stands: what of the design's frame is right, up, and toward the viewer, a right-handed triple."""
 
     name: str
@@ -26,12 +26,12 @@ class Side:
     toward: tuple[int, int, int]
 
 
-ABOVE = Side("From above", (1, 0, 0), (0, 1, 0), (0, 0, 1))
+ABOVE = ViewSide("From above", (1, 0, 0), (0, 1, 0), (0, 0, 1))
 """Index 0 is up; a positive wheel counts clockwise."""
-BELOW = Side("From below", (-1, 0, 0), (0, 1, 0), (0, 0, -1))
+BELOW = ViewSide("From below", (-1, 0, 0), (0, 1, 0), (0, 0, -1))
 """Index 0 is up; a positive wheel counts counter-clockwise."""
-FRONT = Side("From the front", (1, 0, 0), (0, 0, 1), (0, -1, 0))
-END = Side("From the end", (0, 1, 0), (0, 0, 1), (1, 0, 0))
+FRONT = ViewSide("From the front", (1, 0, 0), (0, 0, 1), (0, -1, 0))
+END = ViewSide("From the end", (0, 1, 0), (0, 0, 1), (1, 0, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Face:
     """How far its nearest side is from its middle."""
 
 
-def faces_seen(solid: Solid, outline: Outline, side: Side) -> list[Face]:
+def faces_seen(solid: Solid, outline: DesignOutline, side: ViewSide) -> list[Face]:
     """The faces that look at the viewer: of a convex solid all of each, and nothing else, is seen."""
     axes = np.array([side.right, side.up], np.float64).T
     facing = solid.cut.planes[:, :3] @ side.toward

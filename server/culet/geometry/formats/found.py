@@ -14,7 +14,7 @@ CORNERS = 3
 
 
 @dataclass(frozen=True)
-class Limits:
+class MeshLimits:
     """How much a reader takes on before it refuses."""
 
     triangles: int
@@ -38,7 +38,7 @@ class Limits:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MeshPart:
     """One mesh of a file, where its scene shows it."""
 
     vertices: NDArray[np.float64]
@@ -51,7 +51,7 @@ class Part:
 class Found:
     """The meshes of a file."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[MeshPart, ...]
     findings: tuple[str, ...] = ()
     """What the reader left out or took otherwise than the file says, a sentence each."""
     doubt: str | None = None
@@ -63,9 +63,9 @@ def fan(corners: list[int]) -> list[tuple[int, int, int]]:
     return [(corners[0], corners[k], corners[k + 1]) for k in range(1, len(corners) - 1)]
 
 
-def part_of(positions: list[tuple[float, float, float]], triangles: list[tuple[int, int, int]]) -> Part:
+def part_of(positions: list[tuple[float, float, float]], triangles: list[tuple[int, int, int]]) -> MeshPart:
     """The part of lists."""
-    return Part(
+    return MeshPart(
         np.array(positions, np.float64).reshape(-1, 3),
         np.array(triangles, np.int64).reshape(-1, 3),
     )

@@ -11,7 +11,7 @@ import struct
 from typing import Any
 
 from culet.errors import MeshError, TooLargeError
-from culet.geometry.formats.found import Found, Limits
+from culet.geometry.formats.found import Found, MeshLimits
 from culet.geometry.formats.gltf_scene import parts_of
 
 MAX_JSON = 8 << 20
@@ -28,7 +28,7 @@ _WITHOUT_SHAPE = (
 """How the names of extensions begin that neither add nor move a corner."""
 
 
-def read(data: bytes, limits: Limits) -> Found:
+def read(data: bytes, limits: MeshLimits) -> Found:
     """A part for each mesh that the scene shows, where it shows it. MeshError names what cannot be read."""
     try:
         document, binary = _chunks(data)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import MeshError, TooLargeError
-from culet.geometry.formats.found import Found, Limits, Part, counted
+from culet.geometry.formats.found import Found, MeshLimits, MeshPart, counted
 from culet.geometry.formats.gltf_accessor import count_of, indices, positions
 
 MAX_NODES = 10_000
@@ -29,7 +29,7 @@ class _Shown:
     """(4, 4) from the node to the scene."""
 
 
-def parts_of(document: dict[str, Any], binary: bytes, limits: Limits) -> Found:
+def parts_of(document: dict[str, Any], binary: bytes, limits: MeshLimits) -> Found:
     """A part for each primitive of triangles of each shown node.
 
     MeshError names what would move a corner and is not read.
@@ -47,7 +47,7 @@ def parts_of(document: dict[str, Any], binary: bytes, limits: Limits) -> Found:
             raise TooLargeError(f"expected at most {MAX_NODES} glTF primitives in the scene, got more")
         total += sum(_triangle_count(document, primitive) for primitive in meshes[mesh]["primitives"])
         limits.check_triangles(total)
-    read: dict[int, list[Part]] = {}
+    read: dict[int, list[MeshPart]] = {}
     points: dict[int, NDArray[np.float64]] = {}  # by accessor: primitives share them
     parts = []
     for each in shown:
@@ -162,9 +162,9 @@ def _part(
     binary: bytes,
     primitive: dict[str, Any],
     read: dict[int, NDArray[np.float64]],
-    limits: Limits,
+    limits: MeshLimits,
     notes: Counter[str],
-) -> Part | None:
+) -> MeshPart | None:
     """The triangles of a primitive, on the vertices that they use; None if it has none."""
     mode = primitive.get("mode", _TRIANGLES)
     if mode not in {_TRIANGLES, _STRIP, _FAN}:
@@ -184,7 +184,7 @@ def _part(
     if len(order) and int(order.max()) >= len(points):
         raise MeshError(f"a face names vertex {int(order.max())} of {len(points)}")
     used, compact = np.unique(_corners(order, mode), return_inverse=True)
-    return Part(points[used], compact.reshape(-1, 3))
+    return MeshPart(points[used], compact.reshape(-1, 3))
 
 
 def _corners(order: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
@@ -199,9 +199,9 @@ def _corners(order: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
     return np.column_stack([order[k], order[k + 1 + k % 2], order[k + 2 - k % 2]])
 
 
-def _moved(part: Part, matrix: NDArray[np.float64]) -> Part:
+def _moved(part: MeshPart, matrix: NDArray[np.float64]) -> MeshPart:
     """In the scene, wound the same way if the matrix mirrors."""
     with np.errstate(all="ignore"):  # what is not finite is refused later, by name
         vertices = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     mirrored = np.linalg.det(matrix[:3, :3]) < 0
-    return Part(vertices, part.triangles[:, ::-1] if mirrored else part.triangles)
+    return MeshPart(vertices, part.triangles[:, ::-1] if mirrored else part.triangles)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 
 from culet.errors import MeshError
-from culet.geometry.formats.found import Found, Limits, counted, fan, part_of
+from culet.geometry.formats.found import Found, MeshLimits, counted, fan, part_of
 from culet.geometry.formats.text import ascii_text, integer, numbered_lines, point, shown
 
 _FREE_FORM = {b"curv", b"curv2", b"surf", b"bzp", b"bsp", b"cdc", b"cdp"}
@@ -22,7 +22,7 @@ _WITHOUT_SHAPE = set(
 """Statements that neither add nor move a polygon."""
 
 
-def read(data: bytes, limits: Limits) -> Found:
+def read(data: bytes, limits: MeshLimits) -> Found:
     """One part with all faces; a polygon is cut into a fan of triangles.
 
     An index counts from 1, or, if negative, back from the vertex before the face. MeshError names the line.

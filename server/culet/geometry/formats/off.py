@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 
 from culet.errors import MeshError
-from culet.geometry.formats.found import Found, Limits, counted, fan, part_of
+from culet.geometry.formats.found import Found, MeshLimits, counted, fan, part_of
 from culet.geometry.formats.text import ascii_text, integer, numbered_lines, point, shown
 
 _HEADER = re.compile(rb"(?:ST)?C?N?(?P<space>4?n?)OFF")
 """Texture coordinates, colours and normals follow each vertex's position, which they leave alone."""
 
 
-def read(data: bytes, limits: Limits) -> Found:
+def read(data: bytes, limits: MeshLimits) -> Found:
     """One part with all faces, a polygon cut into a fan of triangles; each vertex and face has a line of its own.
 
     The word OFF may be missing, as the format says. MeshError names the line.

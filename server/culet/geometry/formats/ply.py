@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import MeshError
-from culet.geometry.formats.found import Found, Limits, Part, counted
+from culet.geometry.formats.found import Found, MeshLimits, MeshPart, counted
 from culet.geometry.formats.ply_rows import Element, Lists, Property, binary_rows, text_rows
 from culet.geometry.formats.text import ascii_text, has_mark, shown
 
@@ -34,7 +34,7 @@ _CORNERS = ("vertex_indices", "vertex_index")
 
 
 @dataclass(frozen=True)
-class Header:
+class PlyHeader:
     """What stands before the rows."""
 
     encoding: str
@@ -45,7 +45,7 @@ class Header:
     lines: int
 
 
-def read(data: bytes, limits: Limits) -> Found:
+def read(data: bytes, limits: MeshLimits) -> Found:
     """One part with all faces, a polygon cut into a fan of triangles. MeshError names the line of a text file."""
     if has_mark(data):
         data = ascii_text(data)
@@ -79,10 +79,10 @@ def read(data: bytes, limits: Limits) -> Found:
     triangles = _fans(lists, limits)
     small = int((lists.lengths < 3).sum())
     said = (f"Left out: {counted(small, 'face', 'faces')} of less than 3 corners.",) if small else ()
-    return Found((Part(np.column_stack(positions), triangles),), said)
+    return Found((MeshPart(np.column_stack(positions), triangles),), said)
 
 
-def read_header(data: bytes) -> Header:
+def read_header(data: bytes) -> PlyHeader:
     """MeshError names the line that cannot be understood."""
     end = _END.search(data, 0, _MAX_HEADER)
     text = ascii_text(data[: end.end()]) if end is not None else b""
@@ -108,10 +108,10 @@ def read_header(data: bytes) -> Header:
                 raise MeshError(f"PLY header, line {number}: {shown(b' '.join(words))} cannot be understood")
     if encoding not in {b"ascii", b"binary_little_endian", b"binary_big_endian"}:
         raise MeshError(f"PLY format {shown(encoding)} is not known")
-    return Header(encoding.decode(), tuple(elements), end.end() if end is not None else 0, len(lines))
+    return PlyHeader(encoding.decode(), tuple(elements), end.end() if end is not None else 0, len(lines))
 
 
-def _only(header: Header, name: str) -> Element | None:
+def _only(header: PlyHeader, name: str) -> Element | None:
     """The element of that name; MeshError if there are two."""
     own = [element for element in header.elements if element.name == name]
     if len(own) > 1:
@@ -134,7 +134,7 @@ def _with(element: Element, own: Property, line: int) -> Element:
     return replace(element, properties=(*element.properties, own))
 
 
-def _fans(lists: Lists, limits: Limits) -> NDArray[np.int64]:
+def _fans(lists: Lists, limits: MeshLimits) -> NDArray[np.int64]:
     """(T, 3) the triangles of each polygon, from its first corner."""
     each = np.maximum(lists.lengths - 2, 0)
     limits.check_triangles(int(each.sum()))

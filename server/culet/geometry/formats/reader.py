@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from culet.errors import InputError, MeshError, TooLargeError
 from culet.geometry.formats import glb, obj, off, ply, stl
-from culet.geometry.formats.found import Found, Limits
+from culet.geometry.formats.found import Found, MeshLimits
 
 _READERS = {"obj": obj.read, "off": off.read, "stl": stl.read, "ply": ply.read, "glb": glb.read}
 FORMATS = tuple(_READERS)
@@ -50,14 +50,14 @@ def read_triangles(data: bytes, file_type: str, *, max_triangles: int, max_bytes
         raise TooLargeError(f"expected at most {max_bytes} bytes, got {len(data)}")
     if not data.strip():
         raise MeshError("the file is empty")
-    limits = Limits(max_triangles)
+    limits = MeshLimits(max_triangles)
     try:
         return _joined(_READERS[kind](data, limits), limits)
     except InputError as error:
         raise type(error)(f".{kind}: {error}") from error
 
 
-def _joined(found: Found, limits: Limits) -> Soup:
+def _joined(found: Found, limits: MeshLimits) -> Soup:
     parts = [part for part in found.parts if len(part.triangles)]
     if not parts:
         left_out = f" ({' '.join(found.findings)})" if found.findings else ""

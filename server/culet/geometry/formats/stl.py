@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from culet.errors import MeshError
-from culet.geometry.formats.found import Found, Limits, Part, part_of
+from culet.geometry.formats.found import Found, MeshLimits, MeshPart, part_of
 from culet.geometry.formats.text import ascii_text, has_mark, numbered_lines, point, shown
 
 _HEADER, _ROW = 84, 50
@@ -19,7 +19,7 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 _TEXT = re.compile(rb"^[ \t]*(?:solid|facet)\b", re.IGNORECASE | re.MULTILINE)
 
 
-def read(data: bytes, limits: Limits) -> Found:
+def read(data: bytes, limits: MeshLimits) -> Found:
     """A part for each solid. MeshError names the line, or the bytes that are missing."""
     announced = int.from_bytes(data[80:_HEADER], "little") if len(data) >= _HEADER else None
     whole = announced is not None and len(data) == _HEADER + _ROW * announced
@@ -35,7 +35,7 @@ def read(data: bytes, limits: Limits) -> Found:
         )
     limits.check_triangles(announced)
     rows = np.frombuffer(data, _TRIANGLE, announced, _HEADER)
-    part = Part(
+    part = MeshPart(
         rows["corners"].reshape(-1, 3).astype(np.float64), np.arange(3 * announced, dtype=np.int64).reshape(-1, 3)
     )
     rest = len(data) - wanted
@@ -46,12 +46,12 @@ def read(data: bytes, limits: Limits) -> Found:
 class _Solid:
     positions: list[tuple[float, float, float]] = field(default_factory=list)
 
-    def part(self) -> Part:
+    def part(self) -> MeshPart:
         corners = range(0, len(self.positions), 3)
         return part_of(self.positions, [(k, k + 1, k + 2) for k in corners])
 
 
-def _text(data: bytes, limits: Limits) -> Found:
+def _text(data: bytes, limits: MeshLimits) -> Found:
     solids: list[_Solid] = []
     inside = False  # of a solid, until its endsolid
     corners: int | None = None  # of the facet that is being read

@@ -15,17 +15,17 @@ from culet.errors import InputError
 from culet.optics.gamut import desaturate
 from culet.optics.observer import LUMINANCE
 
-Point = tuple[float, float]
+Chromaticity = tuple[float, float]
 """x and y of CIE 1931."""
 
 
 class Primaries(NamedTuple):
     """Chromaticities of a colour space."""
 
-    red: Point
-    green: Point
-    blue: Point
-    white: Point
+    red: Chromaticity
+    green: Chromaticity
+    blue: Chromaticity
+    white: Chromaticity
 
     def same(self, other: Primaries) -> bool:
         """Whether they are equal, but for the digits that files leave out."""
@@ -35,7 +35,7 @@ class Primaries(NamedTuple):
 SAME = 2e-3
 """Files give D65 as 0.3127, 0.329 or as 0.313, 0.329."""
 
-D65: Point = (0.3127, 0.3290)
+D65: Chromaticity = (0.3127, 0.3290)
 REC_709 = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), D65)
 CIE_XYZ = Primaries((1, 0), (0, 1), (0, 0), (1 / 3, 1 / 3))
 """The axes of XYZ themselves: values of such a picture are absolute, so no white is adapted."""
@@ -75,7 +75,7 @@ def to_xyz(primaries: Primaries) -> Matrix:
         raise InputError(f"expected primaries that span colours, got {name_of(primaries)}", "file") from None
 
 
-def to_rec709(primaries: Primaries, neutral: Point | None = None) -> Matrix | None:
+def to_rec709(primaries: Primaries, neutral: Chromaticity | None = None) -> Matrix | None:
     """(3, 3): colours of these primaries to Rec. 709's, their white (or what is `neutral`) to its white.
 
     None if there is nothing to convert.
@@ -111,11 +111,11 @@ def conversion_finding(name: str, outside: int) -> str:
     return f"Colours were converted from {name} to Rec. 709{moved}."
 
 
-def _xyz(point: Point) -> NDArray[np.float64]:
+def _xyz(point: Chromaticity) -> NDArray[np.float64]:
     x, y = point
     return np.array([x / y, 1, (1 - x - y) / y]) if y else np.array([x, y, 1 - x - y])
 
 
-def _adaptation(white: Point, target: Point) -> Matrix:
+def _adaptation(white: Chromaticity, target: Chromaticity) -> Matrix:
     seen, wanted = BRADFORD @ _xyz(white), BRADFORD @ _xyz(target)
     return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(wanted / seen) @ BRADFORD)

@@ -18,7 +18,7 @@ from culet.optics.panoramas import Panorama
 from culet.optics.sky_files.colour import (
     NAMES,
     REC_709,
-    Point,
+    Chromaticity,
     Primaries,
     conversion_finding,
     converted,
@@ -64,7 +64,7 @@ class Channels:
 
 
 @dataclass
-class Seen:
+class PixelsRead:
     """What is known when the pixels have been read."""
 
     transparent: int = 0
@@ -86,7 +86,7 @@ def read_exr(data: bytes, max_pixels: int, allocate: Allocate, census: Census) -
         pixels = allocate((spec.full_height, spec.full_width, 3))
         window = _Window(decoder)
         first_channel = min(channels.used)
-        seen = Seen()
+        seen = PixelsRead()
         for first, rows in decoder.rows(first_channel, max(channels.used) + 1 - first_channel):
             colours = _colours(rows, channels, first_channel, luminance)
             if channels.alpha is not None:
@@ -205,7 +205,7 @@ def _primaries(decoder: Decoder) -> Primaries:
     return INTEROP_PRIMARIES[space]
 
 
-def _neutral(decoder: Decoder) -> Point | None:
+def _neutral(decoder: Decoder) -> Chromaticity | None:
     """What is to look white, if that is not the white of the primaries."""
     given = decoder.attribute("adoptedNeutral")
     return None if given is None else (float(given[0]), float(given[1]))

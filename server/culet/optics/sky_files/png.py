@@ -61,7 +61,7 @@ CICP_TRANSFERS: dict[int, Transfer] = {
 
 
 @dataclass(frozen=True)
-class Encoding:
+class PngEncoding:
     """What the numbers mean."""
 
     transfer: Transfer
@@ -132,7 +132,7 @@ def _size(chunks: dict[bytes, bytes]) -> tuple[int, int]:
     return width, height
 
 
-def _encoding(chunks: dict[bytes, bytes]) -> Encoding:
+def _encoding(chunks: dict[bytes, bytes]) -> PngEncoding:
     findings = []
     if b"acTL" in chunks:
         findings.append("The picture is animated; its first frame was taken.")
@@ -140,9 +140,9 @@ def _encoding(chunks: dict[bytes, bytes]) -> Encoding:
         return _of_code_points(chunks[b"cICP"], findings)
     if b"iCCP" in chunks:
         findings += _profile_findings(chunks[b"iCCP"])
-        return Encoding(from_srgb, None, "", tuple(findings))
+        return PngEncoding(from_srgb, None, "", tuple(findings))
     if b"sRGB" in chunks:
-        return Encoding(from_srgb, None, "", tuple(findings))
+        return PngEncoding(from_srgb, None, "", tuple(findings))
     transfer: Transfer = from_srgb
     if b"gAMA" in chunks:
         transfer = _power(_whole(chunks[b"gAMA"], 1, "gAMA")[0])
@@ -152,7 +152,7 @@ def _encoding(chunks: dict[bytes, bytes]) -> Encoding:
         white, red, green, blue = [(numbers[i], numbers[i + 1]) for i in (0, 2, 4, 6)]
         primaries = Primaries(red, green, blue, white)
         matrix, source = to_rec709(primaries), name_of(primaries)
-    return Encoding(transfer, matrix, source, tuple(findings))
+    return PngEncoding(transfer, matrix, source, tuple(findings))
 
 
 def _power(gamma: int) -> Transfer:
@@ -173,7 +173,7 @@ def _whole(content: bytes, count: int, name: str) -> tuple[int, ...]:
     return struct.unpack(f">{count}I", content)
 
 
-def _of_code_points(content: bytes, findings: list[str]) -> Encoding:
+def _of_code_points(content: bytes, findings: list[str]) -> PngEncoding:
     """ITU-T H.273's numbers of primaries and transfer, and whether all numbers are used."""
     primaries, transfer, matrix, full = content if len(content) == 4 else (0, 0, 0, 0)
     if primaries not in CICP_PRIMARIES or transfer not in CICP_TRANSFERS or matrix != 0 or full != 1:
@@ -183,7 +183,7 @@ def _of_code_points(content: bytes, findings: list[str]) -> Encoding:
             "file",
         )
     colours = CICP_PRIMARIES[primaries]
-    return Encoding(CICP_TRANSFERS[transfer], to_rec709(colours), name_of(colours), tuple(findings))
+    return PngEncoding(CICP_TRANSFERS[transfer], to_rec709(colours), name_of(colours), tuple(findings))
 
 
 def _profile_findings(content: bytes) -> list[str]:

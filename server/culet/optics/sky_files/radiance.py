@@ -17,8 +17,8 @@ from culet.optics.panoramas import Panorama
 from culet.optics.sky_files.colour import (
     RADIANCE,
     REC_709,
+    Chromaticity,
     Matrix,
-    Point,
     Primaries,
     conversion_finding,
     converted,
@@ -35,7 +35,7 @@ _SIZE = re.compile(r"([+-])([XY]) +(\d{1,9}) +([+-])([XY]) +(\d{1,9})\s*")
 
 
 @dataclass
-class Header:
+class HdrHeader:
     """What the lines before the pixels say."""
 
     format: str | None = None
@@ -50,7 +50,7 @@ class Header:
 
 
 @dataclass(frozen=True)
-class Order:
+class PixelOrder:
     """In which order the pixels come."""
 
     slow_axis: str
@@ -123,8 +123,8 @@ def _head(data: bytes) -> tuple[list[str], int]:
     return [line.decode("latin-1").strip() for line in lines], end + 1
 
 
-def _header(lines: list[str]) -> Header:
-    header = Header()
+def _header(lines: list[str]) -> HdrHeader:
+    header = HdrHeader()
     for line in lines:
         name, found, value = line.partition("=")
         if not found or name.startswith("#"):
@@ -162,15 +162,15 @@ def _numbers(line: str, value: str, count: int) -> list[float]:
     return numbers
 
 
-def _order(line: str) -> Order:
+def _order(line: str) -> PixelOrder:
     found = _SIZE.fullmatch(line)
     if found is None or found[2] == found[5]:
         raise InputError(f"expected the picture's size such as '-Y 512 +X 1024', got {line[:60]!r}", "file")
     sign = {found[2]: found[1], found[5]: found[4]}
-    return Order(found[2], int(found[3]), int(found[6]), top_first=sign["Y"] == "-", left_first=sign["X"] == "+")
+    return PixelOrder(found[2], int(found[3]), int(found[6]), top_first=sign["Y"] == "-", left_first=sign["X"] == "+")
 
 
-def _matrix(header: Header, census: Census) -> Matrix | None:
+def _matrix(header: HdrHeader, census: Census) -> Matrix | None:
     """To Rec. 709. Red, green and blue without primaries are taken for it, as by every program that reads skies."""
     if header.format == XYZE:  # Radiance's white has X = Y = Z, and a grey is to stay a grey
         return np.asarray(np.linalg.inv(to_xyz(RADIANCE)))
@@ -184,16 +184,16 @@ def _matrix(header: Header, census: Census) -> Matrix | None:
     return to_rec709(header.primaries)
 
 
-_EQUAL: Point = (1 / 3, 1 / 3)
+_EQUAL: Chromaticity = (1 / 3, 1 / 3)
 
 
-def _source(header: Header) -> str:
+def _source(header: HdrHeader) -> str:
     if header.format == XYZE:
         return "CIE XYZ"
     return name_of(header.primaries or REC_709)
 
 
-def _findings(header: Header) -> list[str]:
+def _findings(header: HdrHeader) -> list[str]:
     found = []
     if header.format is None:
         found.append(f"The header names no FORMAT; {RGBE} was assumed.")
@@ -217,7 +217,7 @@ def _findings(header: Header) -> list[str]:
     return found
 
 
-def _with_old_runs_expanded(body: bytes, order: Order) -> bytes:
+def _with_old_runs_expanded(body: bytes, order: PixelOrder) -> bytes:
     """Pixels, their run-length encoding from before 1991 undone, where a pixel of bytes 1, 1, 1, n repeats the one
     before it n times, and one right after it 256 n times; other pictures as they are."""
     if 8 <= order.fast <= 0x7FFF and body[:2] == b"\2\2":

@@ -19,7 +19,7 @@ from culet.rendering.device import Device, Real
 from culet.rendering.features import FRESNEL
 from culet.rendering.layout import constants, struct
 from culet.rendering.light.light_map import ABOUT, LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.light.solids import Solids, takes_beams
 from culet.rendering.placed_stone import PlacedStone, placed_stones
 from culet.scene.model import Scene
@@ -42,7 +42,7 @@ NO_WAIT = 1e-4
 
 
 @dataclass(frozen=True)
-class Tally:
+class BeamTally:
     """What was counted, as `tally_t` has it: fluxes in R^2 times irradiance over pi, mean of the channels."""
 
     incident: float
@@ -71,7 +71,7 @@ class Beams:
         programs this one uses, too."""
         self.device, self.real = device, real
         self.items = items or device.units
-        self.tally: Tally | None = None
+        self.tally: BeamTally | None = None
         """Of the last pass."""
         self._programs: dict[tuple[int, ...], Any] = {} if like is None else like._programs
         self._paces: dict[_Kind, float] = {} if like is None else like._paces
@@ -82,7 +82,7 @@ class Beams:
     def make(
         self,
         stage: Stage,
-        rays: Sequence[Ray],
+        rays: Sequence[LightRay],
         frame: MapFrame,
         target: Any,  # noqa: ANN401 - pyopencl has no types
         *,
@@ -107,7 +107,7 @@ class Beams:
     def pieces(
         self,
         stage: Stage,
-        rays: Sequence[Ray],
+        rays: Sequence[LightRay],
         frame: MapFrame,
         target: Any,  # noqa: ANN401
         *,
@@ -180,10 +180,10 @@ class Beams:
         self._sum(self._upload(room), point_lights, scratch, target, keep, gain)
         cl.enqueue_copy(queue, tallies, tally_buffer)
         self._clean = True
-        self.tally = Tally(**{name: float(tallies[name].sum()) for name in tally_type.names or ()})
+        self.tally = BeamTally(**{name: float(tallies[name].sum()) for name in tally_type.names or ()})
         return self._figures(self.tally, frame, cutoff, time.perf_counter() - began)
 
-    def _figures(self, tally: Tally, frame: MapFrame, cutoff: float, seconds: float) -> Figures:
+    def _figures(self, tally: BeamTally, frame: MapFrame, cutoff: float, seconds: float) -> Figures:
         area = max(1, len(frame.matte)) * (2 * frame.halves[0]) ** 2
         return Figures(
             incident=tally.incident,
@@ -317,7 +317,7 @@ def _room(scene: Scene, frame: MapFrame, origin: NDArray[np.float64], real: Real
     return room
 
 
-def _brightness(rays: Sequence[Ray]) -> dict[int, float]:
+def _brightness(rays: Sequence[LightRay]) -> dict[int, float]:
     """Of each emitter that is followed, over that of the brightest."""
     sums: dict[int, float] = {}
     for ray in rays:
@@ -334,7 +334,7 @@ FAINTEST = 1e-9
 
 
 def _lights(
-    rays: Sequence[Ray],
+    rays: Sequence[LightRay],
     brightness: dict[int, float],
     gauged: Sequence[int],
     stones: Sequence[PlacedStone],

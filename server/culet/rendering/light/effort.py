@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum, auto
 
 
-class Effort(Enum):
+class LightEffort(Enum):
     """Of a picture, on its light map."""
 
     MOVING = auto()

@@ -29,7 +29,7 @@ COARSER = 4.0
 
 
 @dataclass(frozen=True)
-class Surface:
+class MappedSurface:
     """A surface of the room as a plane with two axes: u along it, v across (of a wall: up)."""
 
     normal: tuple[float, float, float]
@@ -49,12 +49,12 @@ class Surface:
 
 
 @cache
-def surfaces() -> tuple[Surface, ...]:
+def surfaces() -> tuple[MappedSurface, ...]:
     """Of the room, in the world: (x, z) on the floor; along the wall and y on a wall, as checkers are counted."""
     found = []
     for number, (x, y, z, offset) in enumerate(room_surfaces(np.zeros(3))):
         along, across = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if number == 0 else ((z, 0.0, -x), (0.0, 1.0, 0.0))
-        found.append(Surface((x, y, z), offset, along, across))
+        found.append(MappedSurface((x, y, z), offset, along, across))
     return tuple(found)
 
 

@@ -18,11 +18,11 @@ from culet.rendering.chains import band_count, is_spectral
 from culet.rendering.compiling import compiling
 from culet.rendering.device import Device
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.effort import Effort
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
 from culet.rendering.light.panorama_light import is_summed, panorama_light
 from culet.rendering.light.photons import PhotonMaps, Photons
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.light.solids import FEW, takes_beams
 from culet.rendering.light.sources import mapped_surfaces, rays_of
 from culet.rendering.surfaces import shown
@@ -88,7 +88,7 @@ class Lighting:
         """That are at no pass."""
         self._first: Beams | None = None
         """Whose programs the others share."""
-        self._under_way: dict[Effort, Illumination] = {}
+        self._under_way: dict[LightEffort, Illumination] = {}
         """Whose pass has begun and is not done yet. Of each effort there is one at a time: a pass holds 8 MiB a surface
         for each core, and ten pictures would hold that ten times."""
         self._warm: set[tuple[bool, bool, bool]] = set()
@@ -145,14 +145,14 @@ class Lighting:
         """All maps; pictures that are being made of them go on."""
         self._kept.clear()
 
-    def others_end(self, effort: Effort) -> Iterator[object]:
+    def others_end(self, effort: LightEffort) -> Iterator[object]:
         """Let the pass of such an effort that is under way end, whoever it is for, or give it up if nobody waits for
         it; yields between its launches."""
         while (other := self._under_way.get(effort)) is not None:
             yield from other.end_pass()
 
     @contextmanager
-    def under_way(self, effort: Effort, illumination: Illumination) -> Iterator[None]:
+    def under_way(self, effort: LightEffort, illumination: Illumination) -> Iterator[None]:
         """For as long as a pass takes."""
         self._under_way[effort] = illumination
         try:
@@ -277,7 +277,7 @@ class Illumination:
     def pieces(
         self,
         cutoff: float,
-        effort: Effort,
+        effort: LightEffort,
         seconds: float,
         *,
         first: bool = False,
@@ -290,9 +290,9 @@ class Illumination:
         takes one pass, or whatever there is already, so that there is soon something to see. `meanwhile` may be called
         while a launch for a moving picture is under way: of what the picture needs besides.
         """
-        if effort is Effort.RESTING and first and self.passes > 0:
+        if effort is LightEffort.RESTING and first and self.passes > 0:
             return
-        if effort is Effort.MOVING:
+        if effort is LightEffort.MOVING:
             if self.passes == 0 or (self.provisional and self.cutoff > cutoff):
                 if self._running is None or (self.provisional and self._start > cutoff):
                     self._begin(cutoff, provisional=True)
@@ -302,7 +302,7 @@ class Illumination:
             if self.provisional or self._start != cutoff:
                 self._begin(cutoff, provisional=False)
             yield from self._advance(cutoff, effort, seconds)
-        if effort is Effort.RESTING and first:
+        if effort is LightEffort.RESTING and first:
             return
         while not self.good_enough:
             least = LEAST_CUTOFF
@@ -325,7 +325,7 @@ class Illumination:
         self._spread.clear()
 
     def _advance(
-        self, cutoff: float, effort: Effort, seconds: float, meanwhile: Callable[[], None] | None = None
+        self, cutoff: float, effort: LightEffort, seconds: float, meanwhile: Callable[[], None] | None = None
     ) -> Iterator[object]:
         """Go on with the pass under way, or else with a new one; if another picture begins anew, with that one's. A new
         pass waits for the one of another stage, or is spared if a picture of this stage has made one meanwhile."""
@@ -367,17 +367,17 @@ class Illumination:
                 yield piece
 
     def _pass(
-        self, cutoff: float, effort: Effort, seconds: float, meanwhile: Callable[[], None] | None
+        self, cutoff: float, effort: LightEffort, seconds: float, meanwhile: Callable[[], None] | None
     ) -> Generator[object, None, None]:
         """One pass more, the only one of such an effort."""
         with self._of.under_way(effort, self):
             yield from self._made(cutoff, effort, seconds, meanwhile)
 
     def _made(
-        self, cutoff: float, effort: Effort, seconds: float, meanwhile: Callable[[], None] | None
+        self, cutoff: float, effort: LightEffort, seconds: float, meanwhile: Callable[[], None] | None
     ) -> Generator[object, None, None]:
         number, started, scene = self.passes, time.perf_counter(), self.stage.scene
-        rays = rays_of(self.stage, number, moving=effort is Effort.MOVING)
+        rays = rays_of(self.stage, number, moving=effort is LightEffort.MOVING)
         follows = scene.optics.caustics == "on"
         if self._by_beams:
             weight = cutoff**-0.5  # the error that lamps' directions make does not fall with the cut-off
@@ -395,7 +395,7 @@ class Illumination:
             if self._photons is None:
                 self._photons = self._of.photons.maps(self.stage, self.bound.frame)
             photons = min(PHOTONS / cutoff, FIRST_PHOTONS * 2.0**number)
-            if effort is Effort.MOVING:
+            if effort is LightEffort.MOVING:
                 photons = min(photons, MOVING_PHOTON_SECONDS / self._photons.photon_seconds)
                 follows = follows and photons >= LEAST_PHOTONS
             maker, bias, weight = Maker.PHOTONS if follows else Maker.NOTHING, 0.0, photons
@@ -445,7 +445,7 @@ class Illumination:
         return found
 
 
-def _whole(rays: Sequence[Ray]) -> Iterator[float]:
+def _whole(rays: Sequence[LightRay]) -> Iterator[float]:
     """Brightness of each emitter."""
     sums: dict[int, float] = {}
     for ray in rays:

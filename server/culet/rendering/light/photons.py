@@ -27,7 +27,7 @@ from culet.rendering.footprint import REACH
 from culet.rendering.inputs import Inputs
 from culet.rendering.layout import buffers, constants, struct
 from culet.rendering.light.light_map import LEVELS, SIZE, Figures, MapFrame, surfaces
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.making import alone
 from culet.rendering.placed_stone import PlacedStone, origin_of, placed_stones
 from culet.rendering.stone_table import grouped
@@ -160,7 +160,7 @@ class PhotonMaps:
     def pieces(
         self,
         target: Any,  # noqa: ANN401 - pyopencl has no types
-        rays: Sequence[Ray],
+        rays: Sequence[LightRay],
         *,
         number: int,
         photons: int,
@@ -321,7 +321,7 @@ def frame_struct(frame: MapFrame, origin: Array) -> NDArray[np.void]:
 class Bundle:
     """Light of one ray at one stone."""
 
-    ray: Ray
+    ray: LightRay
     stone: int
     """Its place in the kernels' table."""
     centre: Array
@@ -336,7 +336,7 @@ class Bundle:
     growth: float
 
 
-def bundles_of(ray: Ray, scene: Scene, stones: Sequence[PlacedStone], frame: MapFrame) -> Iterator[Bundle]:
+def bundles_of(ray: LightRay, scene: Scene, stones: Sequence[PlacedStone], frame: MapFrame) -> Iterator[Bundle]:
     """What of a ray's light may meet stones. A point light has the irradiance of its colour at the stones' middle."""
     colour = np.array(ray.colour)
     for number, stone in enumerate(stones):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Ray:
+class LightRay:
     """A lamp is several of them, which share its light."""
 
     colour: tuple[float, float, float]

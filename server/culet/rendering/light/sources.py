@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from culet.rendering.light.lamp_field import Lamp, lamp_field, normals
 from culet.rendering.light.of_room import of_room
 from culet.rendering.light.panorama_light import panorama_light, turned
-from culet.rendering.light.ray import Ray
+from culet.rendering.light.ray import LightRay
 from culet.rendering.light.unshaded import lamp_light, lamps_of, sky_light
 from culet.rendering.surfaces import shown
 from culet.scene.emitters import BoxLamp, PointLight, RoundLamp
@@ -77,18 +77,20 @@ class Source:
         whose light differs from place to place, 0."""
         return np.zeros((4, 3)) if isinstance(self.light, PointLight) else lamp_light(self.light, self.shown)
 
-    def rays(self, number: int, shadows: int, *, caustics: bool) -> list[Ray]:
+    def rays(self, number: int, shadows: int, *, caustics: bool) -> list[LightRay]:
         """Those of a pass of that number. The mean over passes is the source's light. A lamp that makes no flecks is
         taken apart into `shadows` rays of equal light."""
         if isinstance(self.light, PointLight):
-            return [Ray(self.colour, position=self.light.position, follows=caustics, emitter=self.emitter)]
+            return [LightRay(self.colour, position=self.light.position, follows=caustics, emitter=self.emitter)]
         if self.compact:
-            return [Ray(self.colour, _towards(self.light, self.shown, number), follows=caustics, emitter=self.emitter)]
+            return [
+                LightRay(self.colour, _towards(self.light, self.shown, number), follows=caustics, emitter=self.emitter)
+            ]
         red, green, blue = self.colour
         share = red / shadows, green / shadows, blue / shadows
         first = number * shadows + 1
         return [
-            Ray(
+            LightRay(
                 share, _towards(self.light, self.shown, each), follows=False, gauges=caustics and each == first,
                 emitter=self.emitter,
             )
@@ -161,7 +163,7 @@ def _throws_sharp_shadows_alone(stage: Stage, sources: tuple[Source, ...]) -> bo
     return stage.scene.optics.caustics == "off" and len(stage.shapes) == 1 and points and not studio
 
 
-def rays_of(stage: Stage, number: int, *, moving: bool = False) -> list[Ray]:
+def rays_of(stage: Stage, number: int, *, moving: bool = False) -> list[LightRay]:
     """All rays of a pass, of all sources; as many of a wide lamp as are fitting for so many stones."""
     caustics = stage.scene.optics.caustics == "on"
     sources, stones = sources_of(stage), max(1, len(stage.scene.stones))

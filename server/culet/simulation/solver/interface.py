@@ -16,7 +16,7 @@ Doubles = POINTER(c_double)
 Integers = POINTER(c_int32)
 
 
-class Law(Structure):
+class CuletLaw(Structure):
     """CuletLaw."""
 
     _fields_ = (
@@ -30,7 +30,7 @@ class Law(Structure):
     )
 
 
-class Hull(Structure):
+class CuletHull(Structure):
     """CuletHull."""
 
     _fields_ = (
@@ -59,7 +59,7 @@ class Properties(Structure):
     )
 
 
-class State(Structure):
+class CuletState(Structure):
     """CuletState."""
 
     _fields_ = (
@@ -73,7 +73,7 @@ class State(Structure):
     )
 
 
-class Touch(Structure):
+class CuletTouch(Structure):
     """CuletTouch."""
 
     _fields_ = (("contacts", c_int32), ("penetration", c_double))
@@ -83,18 +83,18 @@ _FUNCTIONS: dict[str, tuple[object, tuple[object, ...]]] = {
     "culet_interface": (c_int32, ()),
     "culet_world_new": (c_void_p, (c_int32,)),
     "culet_world_free": (None, (c_void_p,)),
-    "culet_world_set_law": (None, (c_void_p, POINTER(Law))),
+    "culet_world_set_law": (None, (c_void_p, POINTER(CuletLaw))),
     "culet_world_set_surfaces": (None, (c_void_p, c_int32, Doubles)),
-    "culet_world_add": (c_int32, (c_void_p, POINTER(Hull), POINTER(Properties), POINTER(State))),
+    "culet_world_add": (c_int32, (c_void_p, POINTER(CuletHull), POINTER(Properties), POINTER(CuletState))),
     "culet_world_remove": (None, (c_void_p, c_int32)),
     "culet_world_set_body": (None, (c_void_p, c_int32, POINTER(Properties))),
-    "culet_world_set_state": (None, (c_void_p, c_int32, POINTER(State))),
+    "culet_world_set_state": (None, (c_void_p, c_int32, POINTER(CuletState))),
     "culet_world_hold": (None, (c_void_p, c_int32, c_int32)),
     "culet_world_push": (None, (c_void_p, c_int32, Doubles, Doubles)),
     "culet_world_wake": (None, (c_void_p,)),
     "culet_world_step": (c_int32, (c_void_p, c_double)),
-    "culet_world_states": (None, (c_void_p, POINTER(State))),
-    "culet_world_touches": (None, (c_void_p, POINTER(Touch))),
+    "culet_world_states": (None, (c_void_p, POINTER(CuletState))),
+    "culet_world_touches": (None, (c_void_p, POINTER(CuletTouch))),
     "culet_world_size": (c_size_t, (c_void_p,)),
     "culet_world_save": (None, (c_void_p, c_void_p)),
     "culet_world_load": (c_int32, (c_void_p, c_void_p, c_size_t)),

@@ -20,7 +20,7 @@ Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Polyhedron:
+class SolverHull:
     """Convex, about the stone's centre of mass, R = 1."""
 
     vertices: Points
@@ -62,14 +62,14 @@ class Polyhedron:
         )
 
 
-_POLYHEDRA: WeakKeyDictionary[Shape, Polyhedron] = WeakKeyDictionary()
+_POLYHEDRA: WeakKeyDictionary[Shape, SolverHull] = WeakKeyDictionary()
 
 
-def polyhedron_of(shape: Shape) -> Polyhedron:
+def polyhedron_of(shape: Shape) -> SolverHull:
     """The stone's, computed once."""
     found = _POLYHEDRA.get(shape)
     if found is None:
-        found = _POLYHEDRA[shape] = Polyhedron.of(np.array(hull_of(shape).points))
+        found = _POLYHEDRA[shape] = SolverHull.of(np.array(hull_of(shape).points))
     return found
 
 

@@ -28,7 +28,7 @@ Stones = Callable[[np.random.Generator], Sequence[Body]]
 
 
 @dataclass(frozen=True)
-class Extreme:
+class ContactExtreme:
     """One case."""
 
     name: str
@@ -136,8 +136,8 @@ AWAY = (30.0, 0.0, 0.0)
 ROOM = (FLOOR, *WALLS)
 
 EXTREMES = (
-    Extreme("gravity x 1000", few(), {"gravity": 9810}, 2.0),
-    Extreme(
+    ContactExtreme("gravity x 1000", few(), {"gravity": 9810}, 2.0),
+    ContactExtreme(
         "gravity 1e6, steps of 0.25 s",
         few(),
         {"gravity": 1e6, "time_step": 0.25},
@@ -146,51 +146,51 @@ EXTREMES = (
         final=5e-2,
         rise=1e-2,
     ),
-    Extreme("gravity 0, thrown", pair((0.0, 2.0, 0.0), (0.2, 5.0, 0.0), (0.0, 3.0, 0.0)), {"gravity": 0}),
-    Extreme("mass 1e4 on 1", heavy, seconds=6.0, overlap=1e-1),
-    Extreme("sizes 1 to 20", sizes, seconds=6.0),
-    Extreme("spin of 100 rad/s", pair((0.0, 0.5, 0.0), AWAY, spin=(60.0, 60.0, -53.0))),
-    Extreme("spin of 100 rad/s, at a stone", pair((0.2, 3.0, 0.0), (0.0, 0.5, 0.0), spin=(100.0, 0.0, 0.0))),
-    Extreme("50 R/s at the floor", pair((0.0, 3.0, 0.0), AWAY, (5.0, -50.0, 0.0)), seconds=2.0),
-    Extreme(
+    ContactExtreme("gravity 0, thrown", pair((0.0, 2.0, 0.0), (0.2, 5.0, 0.0), (0.0, 3.0, 0.0)), {"gravity": 0}),
+    ContactExtreme("mass 1e4 on 1", heavy, seconds=6.0, overlap=1e-1),
+    ContactExtreme("sizes 1 to 20", sizes, seconds=6.0),
+    ContactExtreme("spin of 100 rad/s", pair((0.0, 0.5, 0.0), AWAY, spin=(60.0, 60.0, -53.0))),
+    ContactExtreme("spin of 100 rad/s, at a stone", pair((0.2, 3.0, 0.0), (0.0, 0.5, 0.0), spin=(100.0, 0.0, 0.0))),
+    ContactExtreme("50 R/s at the floor", pair((0.0, 3.0, 0.0), AWAY, (5.0, -50.0, 0.0)), seconds=2.0),
+    ContactExtreme(
         "50 R/s at a stone",
         pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (50.0, 0.0, 0.0)),
         {"gravity": 0},
         2.0,
         thrown_at=True,
     ),
-    Extreme("400 R/s at the floor", pair((0.0, 3.0, 0.0), AWAY, (5.0, -400.0, 0.0)), seconds=2.0),
-    Extreme(
+    ContactExtreme("400 R/s at the floor", pair((0.0, 3.0, 0.0), AWAY, (5.0, -400.0, 0.0)), seconds=2.0),
+    ContactExtreme(
         "400 R/s at a stone",
         pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (400.0, 0.0, 0.0)),
         {"gravity": 0},
         2.0,
         thrown_at=True,
     ),
-    Extreme(
+    ContactExtreme(
         "2000 R/s at a wall", pair((0.0, 3.0, 0.0), (3.0, 0.0, 3.0), (0.0, 0.0, -2000.0)), seconds=1.0, surfaces=ROOM
     ),
-    Extreme(
+    ContactExtreme(
         "2000 R/s at a stone",
         pair((-6.0, 0.5, 0.0), (0.0, 0.5, 0.0), (2000.0, 0.0, 0.0)),
         {"gravity": 0},
         1.0,
         thrown_at=True,
     ),
-    Extreme("needles 20 : 1", few(4, box(1, 0.05, 0.05)), seconds=6.0),
-    Extreme("needles 1000 : 1", few(2, box(1, 1e-3, 1e-3))),
-    Extreme("wafers 20 : 1", few(4, box(1, 0.05, 1)), seconds=6.0),
-    Extreme("wafers 1000 : 1", few(2, box(1, 1e-3, 1))),
-    Extreme("300 facets", few(4, ball(300)), seconds=5.0),
-    Extreme("doubled corners", few(3, doubled), seconds=5.0),
-    Extreme("tetrahedra", few(5, tetrahedron), seconds=5.0),
-    Extreme("start 0.3 R in each other", pair((0.0, 0.3, 0.0), (0.3, 1.3, 0.0)), overlap=1.0, rise=None),
-    Extreme("start in one place", coincident, overlap=2.0, rise=None),
-    Extreme("start 0.5 R in the floor", pair((0.0, -0.6, 0.0), AWAY), seconds=3.0, overlap=1.0, rise=None),
-    Extreme("steps of 1/30 s", few(4), {"time_step": 1 / 30}, 6.0, overlap=1e-1),
-    Extreme("steps of 1/30 s, heap of 12", column, {"time_step": 1 / 30}, 8.0, BOWL, overlap=1e-1),
-    Extreme("friction 10, restitution 1", few(), {"friction": 10, "restitution": 1}, 6.0),
-    Extreme("restitution 1, heap of 6", few(6), {"friction": 0, "restitution": 1}, 8.0, BOWL, rise=2e-3),
+    ContactExtreme("needles 20 : 1", few(4, box(1, 0.05, 0.05)), seconds=6.0),
+    ContactExtreme("needles 1000 : 1", few(2, box(1, 1e-3, 1e-3))),
+    ContactExtreme("wafers 20 : 1", few(4, box(1, 0.05, 1)), seconds=6.0),
+    ContactExtreme("wafers 1000 : 1", few(2, box(1, 1e-3, 1))),
+    ContactExtreme("300 facets", few(4, ball(300)), seconds=5.0),
+    ContactExtreme("doubled corners", few(3, doubled), seconds=5.0),
+    ContactExtreme("tetrahedra", few(5, tetrahedron), seconds=5.0),
+    ContactExtreme("start 0.3 R in each other", pair((0.0, 0.3, 0.0), (0.3, 1.3, 0.0)), overlap=1.0, rise=None),
+    ContactExtreme("start in one place", coincident, overlap=2.0, rise=None),
+    ContactExtreme("start 0.5 R in the floor", pair((0.0, -0.6, 0.0), AWAY), seconds=3.0, overlap=1.0, rise=None),
+    ContactExtreme("steps of 1/30 s", few(4), {"time_step": 1 / 30}, 6.0, overlap=1e-1),
+    ContactExtreme("steps of 1/30 s, heap of 12", column, {"time_step": 1 / 30}, 8.0, BOWL, overlap=1e-1),
+    ContactExtreme("friction 10, restitution 1", few(), {"friction": 10, "restitution": 1}, 6.0),
+    ContactExtreme("restitution 1, heap of 6", few(6), {"friction": 0, "restitution": 1}, 8.0, BOWL, rise=2e-3),
 )
 
 

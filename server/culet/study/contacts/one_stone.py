@@ -10,7 +10,7 @@ import numpy as np
 from culet.simulation.bodies import Body, BodyState
 from culet.simulation.rotation import product, rotate_back
 from culet.simulation.surfaces import FLOOR
-from culet.simulation.together import Effort, angular_momentum_by
+from culet.simulation.together import SolverEffort, angular_momentum_by
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import (
@@ -188,7 +188,7 @@ def parted(seed: int, rolling: float) -> float:
     rng, given = np.random.default_rng(seed), law(rolling_resistance=rolling)
     body = Body("one", brilliant(), (0.0, 1.5, 0.0), turned(rng), spin=triple(2 * rng.normal(size=3)))
     alone = World([body], law=given)
-    several = beside_another(body, given, effort=Effort(substeps=16, sweeps=60))
+    several = beside_another(body, given, effort=SolverEffort(substeps=16, sweeps=60))
     after, falling = None, 0.0
     while after is None or alone.state.time < after + 0.05:
         alone.step()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from culet.study.contacts import extreme, heaps, one_stone, pairs
 from culet.study.contacts.finding import Finding
-from culet.study.journal import Journal
+from culet.study.journal import PointJournal
 from culet.study.provenance import SIMULATION_STUDY, code_digest, commit, processor
 from culet.study.report import Point
 
@@ -46,7 +46,7 @@ def measured(folder: Path, tell: Callable[[str], object], *, quick: bool, fresh:
     """Run what an earlier run has not left in the folder. InputError if the folder holds another study."""
     identity: dict[str, object] = {"study": "contacts", "code": code_digest(SIMULATION_STUDY), "quick": quick}
     found: list[Finding] = []
-    with Journal(folder / "contacts.jsonl", identity, fresh=fresh) as journal:
+    with PointJournal(folder / "contacts.jsonl", identity, fresh=fresh) as journal:
         for name, trial in trials(quick=quick).items():
             if not any(point.group == name for point in journal.points.values()):
                 journal.add(*(_point(name, finding) for finding in trial()))

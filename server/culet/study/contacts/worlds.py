@@ -12,12 +12,12 @@ from scipy.spatial import ConvexHull
 
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.shape import Shape
-from culet.scene.motion import Simulation as Law
+from culet.scene.motion import MotionLaws
 from culet.simulation.bodies import Body, BodyState
 from culet.simulation.rotation import IDENTITY, normalised, rotate
 from culet.simulation.state import Quaternion, Triple
 from culet.simulation.surfaces import FLOOR, Surface
-from culet.simulation.together import Effort, angular_momentum_by
+from culet.simulation.together import SolverEffort, angular_momentum_by
 from culet.simulation.world import World
 
 Floats = NDArray[np.float64]
@@ -30,13 +30,13 @@ BOWL = (
 """Three slanted walls about the origin: what falls there comes to lie in a heap."""
 
 
-def law(**settings: object) -> Law:
+def law(**settings: object) -> MotionLaws:
     """Of the scene's default, without rolling resistance; each trial says what else."""
-    return Law.model_validate({"rolling_resistance": 0, "time_step": STEP} | settings)
+    return MotionLaws.model_validate({"rolling_resistance": 0, "time_step": STEP} | settings)
 
 
 def beside_another(
-    body: Body, given: Law, surfaces: Sequence[Surface] = (FLOOR,), effort: Effort | None = None
+    body: Body, given: MotionLaws, surfaces: Sequence[Surface] = (FLOOR,), effort: SolverEffort | None = None
 ) -> World:
     """The stone, and one far away that is held: the solver of several stones moves it, and nothing disturbs it."""
     moving = World([body, Body("far", body.shape, (500.0, 500.0, 0.0), IDENTITY)], surfaces, given, effort)
