@@ -19,9 +19,9 @@ import numpy as np
 import pyopencl as cl
 
 import culet_kernels
-from culet.rendering.build import FLAGS, Variant
-from culet.rendering.device import Device, open_device
 from culet.rendering.features import ESTIMATOR, FRESNEL, SKY, SURFACE, Features, Geometry, StoneCount
+from culet.rendering.opencl.device import Device, open_device
+from culet.rendering.programs.build import FLAGS, Variant
 
 # Pragmas, since PoCL refuses -W as an option. A file does not use all of what it includes; and where a packet has one
 # lane, the lanes' `&` is one of scalars.

@@ -12,7 +12,7 @@ from hypothesis import settings
 
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
-from culet.rendering.device import Device, open_device
+from culet.rendering.opencl.device import Device, open_device
 from culet.rendering.renderer import Renderer
 from culet.scene.stone import StoneSettings
 

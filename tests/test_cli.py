@@ -23,7 +23,7 @@ from command_line import Run, culet, invoke
 from culet.geometry.stone_file import shape_from_file
 from culet.rendering.features import RUNTIME, features_of
 from culet.scene import PRESETS
-from culet.study.cases import CASES, FEATURE_CASES, stage_of
+from culet.study.bench.cases import CASES, FEATURE_CASES, stage_of
 from culet_protocol.watch import watch_id
 from engine.peer import TETRAHEDRON, connected, running_engine
 from gateway.running import announced, eventually

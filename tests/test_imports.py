@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from graphlib import CycleError, TopologicalSorter
 from importlib.util import find_spec
 from pathlib import Path
@@ -111,17 +111,23 @@ def graph() -> dict[str, set[str]]:
     return needs
 
 
-def room(module: str) -> str:
+def part(module: str) -> str:
     """The part of the server that a module belongs to, such as `culet.rendering`; of other packages, all of it."""
     name, *rest = module.split(".")
-    return f"{name}.{rest[0]}" if name == "culet" and rest else name
+    return ".".join((name, *rest[:1])) if name == "culet" else name
 
 
-def rooms() -> dict[str, set[str]]:
-    """What each part imports."""
+def room(module: str) -> str:
+    """The room of a part, such as `culet.rendering.film`, or else the module itself; of other packages, all of it."""
+    name, *rest = module.split(".")
+    return ".".join((name, *rest[:2])) if name == "culet" else name
+
+
+def imports_of(place: Callable[[str], str]) -> dict[str, set[str]]:
+    """What each part or room imports."""
     needs: dict[str, set[str]] = {}
     for module, modules in graph().items():
-        needs.setdefault(room(module), set()).update({room(other) for other in modules} - {room(module)})
+        needs.setdefault(place(module), set()).update({place(other) for other in modules} - {place(module)})
     return needs
 
 
@@ -142,9 +148,23 @@ def test_no_module_needs_what_needs_it() -> None:
 
 
 def test_no_part_needs_what_needs_it() -> None:
-    needs = rooms()
+    needs = imports_of(part)
     assert {"culet.rendering", "culet.gateway", "culet.engine"} <= needs.keys()
     assert circle(needs) == []
+
+
+def test_no_room_needs_what_needs_it() -> None:
+    needs = imports_of(room)
+    assert {"culet.rendering.film", "culet.gateway.routes", "culet.engine.session"} <= needs.keys()
+    assert circle(needs) == []
+
+
+def test_every_room_says_what_it_is_for() -> None:
+    folders = {file.parent for package in PACKAGES for file in sources(package).values()}
+    silent = [
+        folder for folder in folders if not ast.get_docstring(ast.parse((folder / "__init__.py").read_text("utf-8")))
+    ]
+    assert silent == []
 
 
 def test_no_module_of_the_page_needs_what_needs_it() -> None:
@@ -157,8 +177,8 @@ def test_no_module_of_the_page_needs_what_needs_it() -> None:
 
 def test_a_circle_is_found_wherever_it_is_closed() -> None:
     assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": set()})) == {"a", "b", "c"}
-    inside = "def late():\n    from culet.rendering import program\n"
-    assert list(imported(inside)) == [("culet.rendering", "program")]
+    inside = "def late():\n    from culet.rendering.programs import program\n"
+    assert list(imported(inside)) == [("culet.rendering.programs", "program")]
 
 
 def declared(requirements: list[str]) -> set[str]:
@@ -183,7 +203,7 @@ def test_whatever_is_imported_is_declared() -> None:
     distributions = importlib.metadata.packages_distributions()
     missing = set()
     for module, file in [item for package in PACKAGES for item in sources(package).items()]:
-        allowed = for_studies if room(module) == "culet.study" else for_video if module in OF_VIDEO else always
+        allowed = for_studies if part(module) == "culet.study" else for_video if module in OF_VIDEO else always
         allowed = for_workers if module in OF_WORKERS else allowed
         for name in {of.partition(".")[0] for of, _ in imported(file.read_text(encoding="utf-8"))} - own:
             if not declared(distributions.get(name, [name])) & allowed:

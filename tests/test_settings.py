@@ -12,7 +12,7 @@ import typer.main
 from command_line import culet, invoke
 from culet.cli import app
 from culet.command.config import read_config
-from culet.engine.process.limits import Limits
+from culet.engine.capacity.limits import Limits
 from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
 from culet.settings import Settings, option, variable

@@ -16,7 +16,7 @@ from culet.scene.camera import Camera
 from culet.scene.motion import MotionLaws
 from culet.scene.room import Plane
 from culet.simulation import Simulation, record
-from culet.simulation.plot import plot
+from culet.simulation.recording.plot import plot
 from culet.stage import Stage
 
 HERE = Path(__file__).parent

@@ -27,7 +27,7 @@ static inline vec3L refract_outward(vec3L direction, realL cos_a, realL cos_s, c
 }
 
 // The direction of what stays inside. Where light comes back to the same directions for thousands of reflections, they are
-// made in double precision: rounded at each step, directions drift past the critical angle (rendering/mirrors.py).
+// made in double precision: rounded at each step, directions drift past the critical angle (rendering/stones/mirrors.py).
 static inline vec3L reflect_inside(__constant const stone_t *stone, vec3L direction, realL cos_s, vec3L normal) {
   if (FEW_MIRRORS == 0 ? 1 : STONES == MANY ? !stone->few_mirrors : 0)
     return renormalise(reflect3(direction, cos_s, normal));

@@ -2,7 +2,7 @@
 //
 // Light inside is followed in axes of the stone in which most facets are images of each other: eight are (+-x, y, +-z) and
 // (+-z, y, +-x), four are (+-x, y, +-z), two are (x, y, z) and (-x, y, -z), or (+-x, y, z). Of two of them, signs tell which a
-// ray reaches first, and so of all. A row stands for eight facets, for four, two or one (rendering/facet_rows.py).
+// ray reaches first, and so of all. A row stands for eight facets, for four, two or one (rendering/stones/facet_rows.py).
 #ifndef CULET_FACET_ROWS
 #define CULET_FACET_ROWS
 #include "hull.cl"

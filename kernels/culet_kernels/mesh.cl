@@ -2,7 +2,7 @@
 //
 // Rays inside such a stone scatter, so a packet of them shares no way through the tree. The packet is of boxes instead:
 // one ray is tested against all children of a node at once, and against all triangles of a leaf. The host makes the tree
-// (rendering/tree.py) and sees to it that there is room for all that waits.
+// (rendering/stones/tree.py) and sees to it that there is room for all that waits.
 #ifndef CULET_MESH
 #define CULET_MESH
 #include "hull.cl"
@@ -101,7 +101,7 @@ static inline vec3L turned(turnL turn, vec3L v) {
   return vec3(blend(turn.swaps, y, x), blend(turn.swaps, x, y), z);
 }
 
-// Boxes are a little larger than what they hold, by more than these operations round (rendering/tree.py).
+// Boxes are a little larger than what they hold, by more than these operations round (rendering/stones/tree.py).
 static inline void aim(vec3L origin, vec3L direction, probes_t *probes) {
   const real side = probes->side, widening = probes->widening;
   store3(origin, probes->origin);

@@ -1,5 +1,5 @@
 // What a scene's quantities are: arguments, never compiled in. The host finds each field here by its name
-// (rendering/layout.py). Positions are relative to the frame's origin, in the world's axes, in units of R. One stone of
+// (rendering/opencl/layout.py). Positions are relative to the frame's origin, in the world's axes, in units of R. One stone of
 // scale 1 has its centre there, so that its own measure is the frame's.
 #ifndef CULET_PARAMETERS
 #define CULET_PARAMETERS

@@ -7,7 +7,7 @@
 #include "record.cl"
 
 // The buffers that make a scene, in the order in which they are the kernel's first arguments. This is the only list of them:
-// the host passes them by these names (rendering/layout.py).
+// the host passes them by these names (rendering/opencl/layout.py).
 #define WORLD_BUFFERS(BUFFER)                                                                                          \
   BUFFER(__constant const parameters_t, scene)                                                                         \
   BUFFER(__constant const stone_t, stones)                                                                             \

@@ -194,7 +194,7 @@ class Measure(Message):
 class ListTiers(Message):
     """The tiers of a convex stone of a scene, or of what a session shows, the first if none is named, with their angles
     and between which ends these may be; of the tier `reach` the ends at which meets are still kept. The reply's result
-    is a `culet.geometry.tier_angles.Tiers`."""
+    is a `culet.geometry.cutting.tier_angles.Tiers`."""
 
     type: Literal["list_tiers"] = "list_tiers"
     scene: dict[str, Any] | None = None

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from culet.errors import InputError
 from culet.places import check_place
 from culet.scene import Scene
-from culet.simulation.paths import ENDINGS, Progress, StonePath, record, write
-from culet.simulation.several_paths import SeveralPaths, record_several
+from culet.simulation.recording.paths import ENDINGS, Progress, StonePath, record, write
+from culet.simulation.recording.several_paths import SeveralPaths, record_several
 from culet.simulation.staged import dropped
 from culet.sources import load_scene, load_stage
 from culet.stage import Stage

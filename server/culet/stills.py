@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.errors import InputError
-from culet.rendering import files
 from culet.rendering.cut_out import CuttingRenderer
+from culet.rendering.film import files
+from culet.rendering.film.target import Target
 from culet.rendering.renderer import DevicePicture
-from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.scene.film import MOST_SAMPLES
 from culet.sources import load_scene, load_stage

@@ -18,8 +18,8 @@ from culet.batch.metrics import light_sums
 from culet.batch.search import NO_STONE, divide, search_ratios
 from culet.errors import MeshError
 from culet.geometry.cuts.cut import shape_of_cut
+from culet.geometry.cutting.recut import OF_A_SHAPE, recut_shape
 from culet.geometry.half_spaces import shape_from_half_spaces
-from culet.geometry.recut import OF_A_SHAPE, recut_shape
 from culet.geometry.shape import FacetName, Shape
 from culet.grading.grades import grade
 from culet.grading.number import Number

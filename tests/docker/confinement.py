@@ -10,7 +10,7 @@ from docker.containers import Container
 LIMITS = {"pids": ("pids.max", "pids/pids.max"), "memory": ("memory.max", "memory/memory.limit_in_bytes")}
 """Files below /sys/fs/cgroup, by version 2 and 1 of control groups."""
 LOG_BYTES = {"10m": 10 << 20}
-MEMORY = "from culet.engine.process.machine import memory_of_machine; print(memory_of_machine())"
+MEMORY = "from culet.engine.capacity.machine import memory_of_machine; print(memory_of_machine())"
 
 
 async def check_confined(container: Container, name: str, *, culet: bool = True) -> None:

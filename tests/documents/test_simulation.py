@@ -7,7 +7,7 @@ from pathlib import Path
 
 from culet.geometry.shape import Shape
 from culet.scene import Scene
-from culet.simulation.paths import record
+from culet.simulation.recording.paths import record
 from shared.stages import staged
 
 PAGE = (Path(__file__).parents[2] / "docs/explanation/simulation.md").read_text(encoding="utf-8")

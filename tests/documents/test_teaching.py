@@ -16,7 +16,7 @@ from culet.paths.answer import Path as RayPath
 from culet.paths.answer import Step
 from culet.paths.asked import Pixel, answered
 from culet.paths.recorder import PathRecorder
-from culet.rendering.device import Device
+from culet.rendering.opencl.device import Device
 from culet.scene import Scene
 from culet.stage import Stage
 from documents.pages import ROOT, read

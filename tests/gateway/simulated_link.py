@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from culet.gateway.credit import Credit
+from culet.gateway.viewers.credit import Credit
 
 STEP = 0.002
 """s; of the clock."""

@@ -11,8 +11,8 @@ import pytest
 import zmq.asyncio
 
 from culet.errors import EngineUnavailableError
-from culet.gateway import link as links
-from culet.gateway.link import EngineEvents, EngineLink
+from culet.gateway.engine import link as links
+from culet.gateway.engine.link import EngineEvents, EngineLink
 from culet.gateway.settings import GatewaySettings
 from culet_protocol.engine import REQUEST_NUMBER, Heartbeat
 from gateway.running import PATIENCE, Endpoints, Gateway, gateway_alone

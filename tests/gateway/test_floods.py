@@ -12,14 +12,14 @@ from typing import Any
 
 import pytest
 
-from culet.gateway.allowance import FREE
-from culet.gateway.bucket import BURST_SECONDS
-from culet.gateway.link import EngineLink
-from culet.gateway.session_record import SessionRecord
-from culet.gateway.sessions import TICK_SECONDS, Sessions
+from culet.gateway.admission.allowance import FREE
+from culet.gateway.engine.link import EngineLink
+from culet.gateway.limits.bucket import BURST_SECONDS
+from culet.gateway.routes.stream import BYTES_PER_COST, EVENT_COST, MAX_CONTROL_BYTES
+from culet.gateway.sessions.session_record import SessionRecord
+from culet.gateway.sessions.sessions import TICK_SECONDS, Sessions
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.stream import BYTES_PER_COST, EVENT_COST, MAX_CONTROL_BYTES
-from culet.gateway.uploads import Uploads
+from culet.gateway.uploads.uploads import Uploads
 from culet_protocol.engine import Demand
 from culet_protocol.messages import Message, Orbit, Ping, Resize
 from gateway.running import Endpoints, Gateway, eventually, gateway_before

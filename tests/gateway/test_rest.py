@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from culet.gateway.uploads import Uploads
+from culet.gateway.uploads.uploads import Uploads
 from culet.scene import PRESETS
 from culet.scene.cuts import CUTS
 from culet.scene.motion import MotionLaws

@@ -11,7 +11,7 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from culet.gateway import session_places
+from culet.gateway.sessions import session_places
 from culet_protocol.close import CloseCode
 from gateway.running import PATIENCE, Endpoints, Gateway, Viewer, eventually, gateway_before
 

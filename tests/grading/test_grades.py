@@ -19,7 +19,7 @@ from culet.grading.optics import StoneOptics, optics_of
 from culet.grading.report import reports_of
 from culet.grading.rules import GEMRAY, Glare, Rules, rules_of
 from culet.grading.sums import FIRE_DEGREES, KERNEL, DomeView, LightSums
-from culet.rendering.device import Device
+from culet.rendering.opencl.device import Device
 from culet.scene import Scene
 from culet.scene.cuts import BrilliantCut, HeartCut, OvalCut, PrincessCut
 from culet.scene.stone import StoneSettings

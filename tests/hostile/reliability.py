@@ -23,8 +23,8 @@ from pathlib import Path
 
 import psutil
 
-from culet.rendering import kernel_cache
-from culet.rendering.device import open_device
+from culet.rendering.opencl import kernel_cache
+from culet.rendering.opencl.device import open_device
 from hostile import faults, inputs, shares
 from hostile.finding import Finding, Group
 from hostile.forms import SHAPES

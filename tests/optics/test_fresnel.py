@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 import culet_kernels
-from culet.rendering.build import FLAGS
-from culet.rendering.device import Device
+from culet.rendering.opencl.device import Device
+from culet.rendering.programs.build import FLAGS
 from optics.closed_forms import DIAMOND, fresnel
 
 PROBE = """

@@ -13,9 +13,9 @@ from culet.errors import SceneError
 from culet.paths.asked import Pixel, Ray, answered
 from culet.paths.recorder import GivenUpError, PathRecorder
 from culet.rendering.chains import first_sample
-from culet.rendering.device import Device
 from culet.rendering.features import features_of
 from culet.rendering.light.effort import LightEffort
+from culet.rendering.opencl.device import Device
 from culet.scene import Scene
 from culet.scene.presets import preset
 from culet.stage import Stage

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.rendering.light.unshaded import sky_light
+from culet.rendering.emitters.unshaded import sky_light
 from culet.scene import Scene
 from culet.scene.emitters import BoxLamp, PointLight, RoundLamp, Sun
 from culet.scene.room import Floor, Plane

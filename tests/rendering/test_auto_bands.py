@@ -12,12 +12,12 @@ import pytest
 
 from culet.rendering.chains import AUTO_BANDS, band_count, bands_seen, first_sample, is_spectral
 from culet.rendering.features import features_of
-from culet.rendering.inputs import Inputs
+from culet.rendering.film.target import Target
+from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.renderer import Renderer
-from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
-from culet.study.resting import as_shown
+from culet.study.renderer.resting import as_shown
 from pictures import compared
 from rendering.views import Array
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from culet.rendering import build
 from culet.rendering.bounds import largest_radiance
+from culet.rendering.programs import build
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS
 from culet.scene.legacy import legacy

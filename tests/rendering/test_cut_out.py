@@ -13,9 +13,9 @@ import PIL.Image
 import pytest
 
 from culet.rendering.cut_out import CutOut
-from culet.rendering.files import encode
+from culet.rendering.film.files import encode
+from culet.rendering.film.target import Target
 from culet.rendering.renderer import Renderer
-from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from rendering.views import take

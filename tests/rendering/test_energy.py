@@ -12,7 +12,7 @@ from culet.geometry.shape import Shape
 from culet.rendering.renderer import Renderer
 from culet.scene import Scene
 from culet.scene.legacy import legacy
-from culet.study.cases import ring as finer_ring
+from culet.study.bench.cases import ring as finer_ring
 from geometry.shapes import obj, star_outline
 from geometry.shapes import prism as extruded
 from rendering.views import BARE, UPRIGHT, radiance, take

@@ -11,8 +11,8 @@ import pytest
 
 from culet.optics.gamut import into_gamut
 from culet.optics.tone import tone_map
+from culet.rendering.film.target import Target
 from culet.rendering.renderer import DevicePicture, Renderer
-from culet.rendering.target import Target
 from culet.scene import preset
 from culet.scene.film import Film
 from culet.scene.legacy import LEGACY_DEFAULT, legacy

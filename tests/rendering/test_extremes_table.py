@@ -11,7 +11,7 @@ import pytest
 from culet.rendering.features import Features
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
-from culet.study.extremes import EXTREMES, MODES, ROUNDING, SceneExtreme, _judged, count
+from culet.study.renderer.extremes import EXTREMES, MODES, ROUNDING, SceneExtreme, _judged, count
 from rendering.views import program_between_few_mirrors
 
 MANY = (

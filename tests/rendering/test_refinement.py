@@ -12,10 +12,10 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.geometry.load import shape_of
+from culet.rendering.film.target import Target
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.pace import KernelPace
 from culet.rendering.renderer import Renderer, jitter
-from culet.rendering.target import Target
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from culet.stage import Stage
 from pictures import compared

@@ -9,7 +9,7 @@ import pytest
 
 from culet.rendering.renderer import Renderer
 from culet.scene.legacy import legacy
-from culet.study.precision import FARTHER, PERTURBATION, SCENES, SIZE, is_step, judge
+from culet.study.renderer.precision import FARTHER, PERTURBATION, SCENES, SIZE, is_step, judge
 
 MOST = {
     "legacy default": (0.002, 0.02),  # measured 0.00155, 0.016

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
+from culet.rendering.emitters.light_map import BoundMap
 from culet.rendering.features import Features, features_of
-from culet.rendering.light.light_map import BoundMap
 from culet.rendering.renderer import DevicePicture, Renderer
 from culet.scene import Scene
 from shared.stages import staged

@@ -11,7 +11,7 @@ import pytest
 
 from culet.errors import SceneError
 from culet.rendering.chains import absorption, chain_table
-from culet.rendering.sky_colours import sky_colours
+from culet.rendering.room.sky_colours import sky_colours
 from culet.scene import PRESETS, Scene
 from culet.scene.emitters import boxes, discs
 from culet.scene.optics import SPECTRAL_AT_REST, Optics

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from culet.cli import app
 from culet.endpoints import check_trusted
 from culet.errors import InputError
-from culet.gateway.engine_door import check_one_engine
+from culet.gateway.engine.engine_door import check_one_engine
 from culet.service.command_lines import engine_command
 from culet_client import ClientError, FrameSubscription, SilenceError, connect
 from culet_protocol.keys import ClientKeys, EngineKeys, KeysError, make_keys

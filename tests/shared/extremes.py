@@ -1,6 +1,7 @@
 """Scenes and stones at the ends of what is allowed, for every claim that must hold there too.
 
-Those of the table in docs/explanation/accuracy.md, with what counts as wrong in them, are `culet.study.extremes`.
+Those of the table in docs/explanation/accuracy.md, with what counts as wrong in them, are
+`culet.study.renderer.extremes`.
 """
 
 from __future__ import annotations

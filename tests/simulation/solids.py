@@ -9,13 +9,13 @@ import struct
 import numpy as np
 
 from culet.geometry.shape import Shape
-from culet.simulation.body import RigidBody
-from culet.simulation.motion import BodyMotion, gaps
-from culet.simulation.rotation import IDENTITY, normalised
-from culet.simulation.settings import SimulationSettings
-from culet.simulation.simulation import Simulation
-from culet.simulation.state import Quaternion, RigidState, Triple
-from culet.simulation.surfaces import FLOOR, Surface
+from culet.simulation.one_stone.simulation import Simulation
+from culet.simulation.rigid_body.body import RigidBody
+from culet.simulation.rigid_body.motion import BodyMotion, gaps
+from culet.simulation.rigid_body.rotation import IDENTITY, normalised
+from culet.simulation.rigid_body.settings import SimulationSettings
+from culet.simulation.rigid_body.state import Quaternion, RigidState, Triple
+from culet.simulation.rigid_body.surfaces import FLOOR, Surface
 
 G = 9.81
 UPRIGHT = IDENTITY

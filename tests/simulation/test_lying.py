@@ -24,9 +24,9 @@ from culet.simulation.lying import (
     resting_height,
     slope_degrees,
 )
-from culet.simulation.rotation import rotate
-from culet.simulation.settings import SimulationSettings
-from culet.simulation.state import Quaternion, Triple
+from culet.simulation.rigid_body.rotation import rotate
+from culet.simulation.rigid_body.settings import SimulationSettings
+from culet.simulation.rigid_body.state import Quaternion, Triple
 from shared import stones
 
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)

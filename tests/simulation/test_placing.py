@@ -13,8 +13,8 @@ from culet.scene.room import FLOOR_Y
 from culet.simulation.bodies import Body
 from culet.simulation.lying import resting_height
 from culet.simulation.placing import OVERLAP, moved_by_hand
-from culet.simulation.state import Quaternion, Triple
-from culet.simulation.surfaces import FLOOR, WALLS, Surface
+from culet.simulation.rigid_body.state import Quaternion, Triple
+from culet.simulation.rigid_body.surfaces import FLOOR, WALLS, Surface
 from culet.simulation.together import Together
 from culet.simulation.world import World
 from shared.stones import box, brilliant, ring

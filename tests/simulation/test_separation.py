@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull
 
 from culet.geometry.shape import Shape
 from culet.simulation.bodies import Body
-from culet.simulation.rotation import IDENTITY
+from culet.simulation.rigid_body.rotation import IDENTITY
 from culet.simulation.solver.polyhedron import SolverHull, polyhedron_of
 from culet.study.contacts.worlds import corners, triple, turned
 from culet.study.solids import ball, box, brilliant, tetrahedron

@@ -16,12 +16,12 @@ from culet.errors import InputError, TooLargeError
 from culet.geometry.shape import Shape
 from culet.simulation import together
 from culet.simulation.bodies import Body
-from culet.simulation.body import inertia_of
-from culet.simulation.rotation import IDENTITY
-from culet.simulation.settings import SimulationSettings
-from culet.simulation.simulation import Simulation
-from culet.simulation.state import RigidState
-from culet.simulation.surfaces import FLOOR, WALLS
+from culet.simulation.one_stone.simulation import Simulation
+from culet.simulation.rigid_body.body import inertia_of
+from culet.simulation.rigid_body.rotation import IDENTITY
+from culet.simulation.rigid_body.settings import SimulationSettings
+from culet.simulation.rigid_body.state import RigidState
+from culet.simulation.rigid_body.surfaces import FLOOR, WALLS
 from culet.simulation.world import World
 from culet.study.contacts.heaps import scattered
 from culet.study.contacts.worlds import BOWL, advance, beside_another, corners, law, overlap, solid, standing

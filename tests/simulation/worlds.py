@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from culet.simulation.bodies import Body
-from culet.simulation.surfaces import FLOOR, Surface
+from culet.simulation.rigid_body.surfaces import FLOOR, Surface
 from culet.simulation.world import World
 from culet.study.contacts.worlds import law
 

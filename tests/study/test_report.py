@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from culet.errors import InputError
-from culet.study.headline import BEGIN, END, headline_markdown, write_into
-from culet.study.page import page
+from culet.study.findings.headline import BEGIN, END, headline_markdown, write_into
+from culet.study.pages.page import page
 from culet.study.report import Report, csv_text
 from study.reports import report
 

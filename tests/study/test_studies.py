@@ -12,15 +12,16 @@ import pytest
 
 from culet.errors import InputError
 from culet.optics.panoramas import Panorama, light_box
-from culet.rendering.device import Device
+from culet.rendering.opencl.device import Device
 from culet.scene import Scene
 from culet.scene.legacy import legacy
-from culet.study import race, studies
-from culet.study.journal import PointJournal
-from culet.study.knobs import base_knobs
-from culet.study.renderers import Renderers
+from culet.study import studies
+from culet.study.findings.journal import PointJournal
+from culet.study.renderer import race
+from culet.study.renderer.knobs import base_knobs
+from culet.study.renderer.renderers import Renderers
+from culet.study.renderer.shot import Shot
 from culet.study.report import Report
-from culet.study.shot import Shot
 from culet.study.studies import StudyEffort, study_rendering
 from shared.stages import staged
 

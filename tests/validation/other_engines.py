@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.simulation.bodies import Body
-from culet.simulation.surfaces import Surface
+from culet.simulation.rigid_body.surfaces import Surface
 from culet.study.contacts.worlds import STEP, turning
 
 MISSING = "the comparison needs {}, which is not installed: pip install -e '.[validation]'"

@@ -16,7 +16,7 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 from culet.geometry.shape import Shape
-from culet.rendering.placed_stone import PlacedStone
+from culet.rendering.stones.placed_stone import PlacedStone
 from culet.scene.room import FLOOR_Y
 from validation.mitsuba_reference import Array, mitsuba
 

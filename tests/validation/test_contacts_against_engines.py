@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from culet.simulation.bodies import Body
-from culet.simulation.rotation import rotate
-from culet.simulation.surfaces import FLOOR, Surface
+from culet.simulation.rigid_body.rotation import rotate
+from culet.simulation.rigid_body.surfaces import FLOOR, Surface
 from culet.simulation.world import World
 from culet.study.contacts.heaps import scattered
 from culet.study.contacts.worlds import BOWL, advance, law, level, standing, step_cut, triple, turned

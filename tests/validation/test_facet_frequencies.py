@@ -15,8 +15,8 @@ import pytest
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
 from culet.scene.stone import StoneSettings
-from culet.simulation.rotation import normalised, rotate, rotate_back
-from culet.simulation.state import Quaternion, Triple
+from culet.simulation.rigid_body.rotation import normalised, rotate, rotate_back
+from culet.simulation.rigid_body.state import Quaternion, Triple
 from simulation.solids import rigid
 
 pytestmark = pytest.mark.validation

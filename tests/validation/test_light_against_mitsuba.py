@@ -16,11 +16,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from culet.geometry.shape import Shape
-from culet.rendering.device import Device
+from culet.rendering.emitters.light_map import MapFrame, frame_of
+from culet.rendering.emitters.ray import LightRay
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.light_map import MapFrame, frame_of
-from culet.rendering.light.ray import LightRay
-from culet.rendering.placed_stone import placed_stones
+from culet.rendering.opencl.device import Device
+from culet.rendering.stones.placed_stone import placed_stones
 from culet.scene import Scene
 from culet.stage import Stage
 from shared.stages import staged

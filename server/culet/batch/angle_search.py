@@ -25,8 +25,8 @@ from culet.batch.candidates import (
     TrialDesign,
 )
 from culet.errors import MeshError
-from culet.geometry.meets import LEAST_DEGREES, MOST_DEGREES, angle_of_tiers, independent_tiers
-from culet.geometry.recut import OF_A_SHAPE, recut_shape
+from culet.geometry.cutting.meets import LEAST_DEGREES, MOST_DEGREES, angle_of_tiers, independent_tiers
+from culet.geometry.cutting.recut import OF_A_SHAPE, recut_shape
 from culet.geometry.shape import Shape
 
 FIRST_STEP = 0.5

@@ -17,7 +17,7 @@ from culet.errors import InputError
 from culet.falls import simulate_stage
 from culet.journal import Journal
 from culet.places import write_whole
-from culet.rendering.files import FORMATS
+from culet.rendering.film.files import FORMATS
 from culet.scene import Scene
 from culet.scene.turntable import around
 from culet.stage import Stage

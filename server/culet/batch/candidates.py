@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from culet.batch.crew import IN_PROCESS, Crew, in_turn
 from culet.batch.metrics import light_sums
 from culet.errors import MeshError
-from culet.geometry.recut import recut_shape
+from culet.geometry.cutting.recut import recut_shape
 from culet.geometry.shape import Shape
 from culet.grading.grades import grade
 from culet.grading.metrics import number_of

@@ -31,7 +31,7 @@ from culet.batch.crew import Done, Item, More, Result, Task
 from culet.batch.edition import edition
 from culet.endpoints import is_loopback
 from culet.errors import CuletError, InputError, WorkersError
-from culet.rendering.processors import limit_threads_to
+from culet.rendering.opencl.processors import limit_threads_to
 
 PATIENCE_SECONDS = 30
 """For the scheduler to answer, and for its first worker to come."""

@@ -18,7 +18,7 @@ from culet.grading.optics import optics_of
 from culet.grading.report import place_of
 from culet.grading.rules import Rules
 from culet.grading.sums import LightSums
-from culet.rendering.device import open_device
+from culet.rendering.opencl.device import open_device
 from culet.stage import Stage
 from culet.stills import render_stage
 

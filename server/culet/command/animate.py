@@ -77,7 +77,7 @@ def animate(
     """
     from culet.batch.animation import Animation, times_of
     from culet.batch.film import check_film, write_film
-    from culet.rendering.files import FORMATS
+    from culet.rendering.film.files import FORMATS
 
     with errors_in_one_line():
         if turntable + fall + (path is not None) != 1:

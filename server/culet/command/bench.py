@@ -51,12 +51,12 @@ def bench(
     from rich.console import Console
 
     from culet.rendering.renderer import Renderer
-    from culet.study.baseline import doubts, last_line
-    from culet.study.bench import measure_cases, measure_features
-    from culet.study.bench import record as record_line
-    from culet.study.cases import FEATURE_CASES
-    from culet.study.light_bench import measure_light
-    from culet.study.tables import case_table, feature_table, light_table, print_comparison
+    from culet.study.bench.baseline import doubts, last_line
+    from culet.study.bench.bench import measure_cases, measure_features
+    from culet.study.bench.bench import record as record_line
+    from culet.study.bench.cases import FEATURE_CASES
+    from culet.study.bench.light_bench import measure_light
+    from culet.study.bench.tables import case_table, feature_table, light_table, print_comparison
 
     console = report_console()
     if profile:
@@ -91,9 +91,9 @@ def bench(
 
 def _profile(console: Console, width: int, height: int, repeats: int, *, alone: bool) -> None:
     from culet.rendering.renderer import Renderer
-    from culet.study.cases import CASES
-    from culet.study.profile import FLOPS_PER_INSTRUCTION, PROFILED, measure_profile
-    from culet.study.tables import profile_table
+    from culet.study.bench.cases import CASES
+    from culet.study.bench.profile import FLOPS_PER_INSTRUCTION, PROFILED, measure_profile
+    from culet.study.bench.tables import profile_table
 
     if not alone:
         raise CuletError("expected --profile by itself, or with --width, --height and --repeats")

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from culet.engine.process.limits import Limits
+from culet.engine.capacity.limits import Limits
 from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
 from culet.settings import Settings, variable

@@ -82,9 +82,9 @@ def convert(
 
     With ratios, a girdle, a table or angles the design is cut anew, and a heading says so.
     """
+    from culet.geometry.cutting.recut_design import angles_of, angles_that_followed, recut_design
     from culet.geometry.designs.asc import read_asc
     from culet.geometry.designs.asc_writer import asc_of, planes_apart
-    from culet.geometry.designs.recut import angles_of, angles_that_followed, recut_design
 
     with errors_in_one_line():
         check_place(out, "out", ["asc"])

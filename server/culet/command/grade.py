@@ -50,7 +50,7 @@ def grade(
     """Grade a stone's brightness, leak, contrast and fire face up, and as it tilts; each number with its error."""
     from culet.grading.report import reports_of
     from culet.grading.sums import LightSums
-    from culet.rendering.device import open_device
+    from culet.rendering.opencl.device import open_device
 
     with errors_in_one_line():
         if out is not None:

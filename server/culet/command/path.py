@@ -70,7 +70,7 @@ def path(
     from culet.paths.answer import MOST_WAVELENGTHS, WAVELENGTHS
     from culet.paths.asked import Pixel, Ray, answered
     from culet.paths.recorder import PathRecorder
-    from culet.rendering.device import open_device
+    from culet.rendering.opencl.device import open_device
 
     with errors_in_one_line():
         if pixel is not None and ray is not None:

@@ -58,13 +58,13 @@ def render(
     cut: CutText = None,
 ) -> None:
     """Render a still picture into a file."""
-    from culet.rendering.files import FORMATS
+    from culet.rendering.film.files import FORMATS
 
     with errors_in_one_line():
         check_place(out, "out", FORMATS)
         if legend and out.suffix.lower() in (".exr", ".npy"):
             raise InputError(f"legend: expected a picture for a screen, got {out.name!r} of radiance", "legend")
-        from culet.rendering.device import open_in_advance
+        from culet.rendering.opencl.device import open_in_advance
 
         open_in_advance()
         from culet.legend import legend_for

@@ -11,7 +11,7 @@ from culet.command.settings import options_of
 from culet.command.single import single_command
 from culet.command.terminal import errors_in_one_line
 from culet.endpoints import check_trusted
-from culet.engine.process.limits import Limits
+from culet.engine.capacity.limits import Limits
 from culet.engine.process.strangers import engine_keys
 from culet.gateway.settings import GatewaySettings
 from culet.logs import configure

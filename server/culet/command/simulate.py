@@ -34,7 +34,7 @@ def simulate(
     A stone that stands on the floor is lifted to y = 1.5 first, several stones all together.
     """
     from culet.falls import simulate_stage
-    from culet.simulation.paths import ENDINGS
+    from culet.simulation.recording.paths import ENDINGS
 
     with errors_in_one_line():
         check_place(out, "out", ENDINGS)
@@ -45,7 +45,7 @@ def simulate(
             motion = simulate_stage(stage, seconds, progress=advance)
         motion.save(out)
         if plot is not None:
-            from culet.simulation.plot import plot as draw
+            from culet.simulation.recording.plot import plot as draw
 
             draw(motion.path, plot)
         typer.echo(f"{out}: {len(motion.time)} states, {motion.time[-1]:g} s")

@@ -19,7 +19,7 @@ from culet.errors import SceneError
 from culet.scene.film import MOST_SAMPLES
 
 if TYPE_CHECKING:
-    from culet.study.comparison import Difference
+    from culet.study.findings.comparison import Difference
     from culet.study.measuring import Study
     from culet.study.report import Report
 
@@ -124,8 +124,8 @@ def light(
     cost of the frame with shadows alone. Without a scene a diamond over a matte floor, under two points and a sun."""
     from culet.rendering.renderer import Renderer
     from culet.stage import Stage
-    from culet.study.light_bench import LIT
-    from culet.study.live_light import CUTOFFS, measure, table
+    from culet.study.bench.light_bench import LIT
+    from culet.study.light.live_light import CUTOFFS, measure, table
 
     with errors_in_one_line():
         named = scene is not None or preset is not None or mesh is not None
@@ -157,10 +157,10 @@ def resting(
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every picture.")] = None,
 ) -> None:
     """Refine a picture at rest as the engine does: how soon is it how good, and is its estimated error right?"""
-    from culet.engine.process.limits import REST_LEAST
-    from culet.rendering.target import Target
+    from culet.engine.capacity.limits import REST_LEAST
+    from culet.rendering.film.target import Target
     from culet.scene.patch import read_patched
-    from culet.study.resting import described, measure, table
+    from culet.study.renderer.resting import described, measure, table
 
     with errors_in_one_line():
         stage = read_stage(scene, preset, None, None)
@@ -195,7 +195,7 @@ def motion(
 ) -> None:
     """Judge what a viewer sees of a recorded fall against the converged pictures, by FLIP: filtered and not, at equal
     frame rates. Without a scene the preset `falling`."""
-    from culet.study.moving_pictures import measure, table
+    from culet.study.stream.moving_pictures import measure, table
 
     with errors_in_one_line():
         stage = read_stage(scene, preset or (None if scene else "falling"), None, None)
@@ -225,7 +225,7 @@ def video(
 
     with _errors():
         from culet.rendering.renderer import Renderer
-        from culet.study.video_study import described, measure, table
+        from culet.study.stream.video_study import described, measure, table
 
         stage = read_stage(scene, preset, None, None)
         with opened(out) as file:
@@ -263,9 +263,9 @@ def gallery(
 ) -> None:
     """Draw every preset, and measure whether it looks as it should; fails if one does not."""
     from culet.rendering.renderer import Renderer
-    from culet.study.gallery import ShownPreset, make_thumbnails
-    from culet.study.gallery import gallery as all_presets
-    from culet.study.gallery_page import write_gallery
+    from culet.study.galleries.gallery import ShownPreset, make_thumbnails
+    from culet.study.galleries.gallery import gallery as all_presets
+    from culet.study.galleries.gallery_page import write_gallery
 
     with errors_in_one_line():
         renderer, seen = Renderer(), list[ShownPreset]()
@@ -288,7 +288,7 @@ def cuts(
 ) -> None:
     """Draw every cut, and list its proportions."""
     from culet.rendering.renderer import Renderer
-    from culet.study.cut_pages import write_cuts
+    from culet.study.galleries.cut_pages import write_cuts
 
     with errors_in_one_line():
         for file in write_cuts(out, Renderer()):
@@ -309,7 +309,7 @@ def contacts(
     Fails if they do not keep to a limit. Stopped with Ctrl-C it goes on where it was when it is started again.
     """
     from culet.study.contacts.table import MARKS, measured, written
-    from culet.study.headline import write_into
+    from culet.study.findings.headline import write_into
 
     with _errors(), _interruptible(out):
         found = measured(out, typer.echo, quick=quick, fresh=fresh)
@@ -336,7 +336,7 @@ def governor(
     ] = None,
 ) -> None:
     """Let all stones fall again and again, then change things around them: what does a viewer get, and how soon."""
-    from culet.study.governor_study import described, document, measure, rate_of
+    from culet.study.serving.governor_study import described, document, measure, rate_of
 
     with errors_in_one_line():
         stage, size = read_stage(scene, preset, None, None), (width, height)
@@ -353,7 +353,7 @@ def governor(
 @app.command()
 def diff(before: ReportFile, after: ReportFile) -> None:
     """Compare two reports of the same study, as ratios after / before."""
-    from culet.study.comparison import compare_reports
+    from culet.study.findings.comparison import compare_reports
     from culet.study.report import Report
 
     with _errors():
@@ -363,8 +363,8 @@ def diff(before: ReportFile, after: ReportFile) -> None:
 @app.command("compare-bench")
 def compare_bench(before: BenchFile, after: BenchFile) -> None:
     """Compare the last lines of two files of `culet bench -o`, as ratios after / before. Fails on no ratio."""
-    from culet.study.baseline import last_line
-    from culet.study.tables import print_comparison
+    from culet.study.bench.baseline import last_line
+    from culet.study.bench.tables import print_comparison
 
     with _errors():
         print_comparison(report_console(), last_line(before), last_line(after))
@@ -378,7 +378,7 @@ def headline(
     ] = None,
 ) -> None:
     """Print a report's numbers in short, as a table of a document."""
-    from culet.study.headline import headline_markdown, write_into
+    from culet.study.findings.headline import headline_markdown, write_into
     from culet.study.report import Report
 
     with _errors():
@@ -456,7 +456,7 @@ def _tell(report: Report, out: Path) -> None:
 
 
 def _print_difference(difference: Difference) -> None:
-    from culet.study.comparison import medians
+    from culet.study.findings.comparison import medians
 
     for warning in difference.warnings:
         typer.echo(f"note: {warning}", err=True)

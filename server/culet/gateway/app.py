@@ -13,14 +13,28 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 
-from culet.gateway import (
+from culet.gateway.admission.access import Access
+from culet.gateway.admission.admission import Admission
+from culet.gateway.admission.allowance import RequestAllowance
+from culet.gateway.answers import problems
+from culet.gateway.answers.methods import Methods
+from culet.gateway.answers.openapi import Application
+from culet.gateway.answers.page_files import PageFiles
+from culet.gateway.answers.quality import QUALITY_HEADERS
+from culet.gateway.answers.security_headers import SecurityHeaders
+from culet.gateway.engine.link import EngineLink
+from culet.gateway.identity.paths import InFolder
+from culet.gateway.limits.bucket import ClientBuckets
+from culet.gateway.limits.still_places import StillPlaces
+from culet.gateway.operation.access_log import AccessLog
+from culet.gateway.operation.metrics import Metrics
+from culet.gateway.routes import (
     beside_routes,
     catalogue,
     drain_routes,
     health,
     login_routes,
     path_routes,
-    problems,
     session_list,
     session_routes,
     stills,
@@ -28,24 +42,10 @@ from culet.gateway import (
     turntables,
     upload_routes,
 )
-from culet.gateway.access import Access
-from culet.gateway.access_log import AccessLog
-from culet.gateway.admission import Admission
-from culet.gateway.allowance import RequestAllowance
-from culet.gateway.bucket import ClientBuckets
-from culet.gateway.link import EngineLink
-from culet.gateway.methods import Methods
-from culet.gateway.metrics import Metrics
-from culet.gateway.openapi import Application
-from culet.gateway.page_files import PageFiles
-from culet.gateway.paths import InFolder
-from culet.gateway.quality import QUALITY_HEADERS
-from culet.gateway.security_headers import SecurityHeaders
-from culet.gateway.sessions import Sessions
+from culet.gateway.sessions.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
-from culet.gateway.still_places import StillPlaces
-from culet.gateway.uploads import Uploads
+from culet.gateway.uploads.uploads import Uploads
 from culet.version import __version__
 
 log = logging.getLogger(__name__)

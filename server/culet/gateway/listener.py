@@ -13,11 +13,11 @@ from typing import Self
 
 import uvicorn
 
-from culet.gateway.address import BACKLOG, listening_socket, url_of
 from culet.gateway.app import create_app
-from culet.gateway.client_address import read_proxies, trusted_hosts
-from culet.gateway.connection_guard import Guard
-from culet.gateway.guarded_http import GuardedConfig
+from culet.gateway.connections.connection_guard import Guard
+from culet.gateway.connections.guarded_http import GuardedConfig
+from culet.gateway.identity.address import BACKLOG, listening_socket, url_of
+from culet.gateway.identity.client_address import read_proxies, trusted_hosts
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.state import Gateway
 from culet.notify import ServiceNotice, notify

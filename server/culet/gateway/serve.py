@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from culet.endpoints import reachable
-from culet.gateway.address import entrance
-from culet.gateway.engine_door import check_one_engine
+from culet.gateway.engine.engine_door import check_one_engine
+from culet.gateway.identity.address import entrance
 from culet.gateway.listener import Listener
 from culet.gateway.settings import settings_of, with_token
 from culet.gateway.token_file import token_kept

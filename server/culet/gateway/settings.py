@@ -11,10 +11,10 @@ from typing import Any
 from pydantic import ByteSize, Field, field_validator
 
 from culet.errors import InputError
-from culet.gateway.client_address import read_proxies
-from culet.gateway.origins import Hosts, read_origin
-from culet.gateway.paths import FOLDER
-from culet.gateway.server_token import PATTERN, is_own_machine, made_token
+from culet.gateway.identity.client_address import read_proxies
+from culet.gateway.identity.origins import Hosts, read_origin
+from culet.gateway.identity.paths import FOLDER
+from culet.gateway.identity.server_token import PATTERN, is_own_machine, made_token
 from culet.settings import MEBIBYTE, Settings, Words, option, variable
 
 log = logging.getLogger(__name__)

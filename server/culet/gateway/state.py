@@ -6,16 +6,16 @@ import asyncio
 from dataclasses import dataclass, field
 
 from culet.client_turns import ClientTurns
-from culet.gateway.bucket import ClientBuckets
-from culet.gateway.link import EngineLink
-from culet.gateway.metrics import Metrics
-from culet.gateway.sessions import Sessions
+from culet.gateway.engine.link import EngineLink
+from culet.gateway.limits.bucket import ClientBuckets
+from culet.gateway.limits.still_places import StillPlaces
+from culet.gateway.operation.metrics import Metrics
+from culet.gateway.sessions.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
-from culet.gateway.still_places import StillPlaces
-from culet.gateway.uploads import Uploads
+from culet.gateway.uploads.uploads import Uploads
 
 MOST_TURNTABLES = 4
-"""Being made for all clients together: the gateway holds their frames, as `culet.gateway.turntables` says."""
+"""Being made for all clients together: the gateway holds their frames, as `culet.gateway.routes.turntables` says."""
 CLIENT_TURNTABLES = 2
 """Of one client, so that others can have theirs."""
 

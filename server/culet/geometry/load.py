@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from culet.errors import MeshError, SceneError
 from culet.geometry.cuts.cut import shape_of_cut
+from culet.geometry.cutting.recut import recut_shape
 from culet.geometry.designs.shipped import SHIPPED, shipped_shape
-from culet.geometry.recut import recut_shape
 from culet.geometry.shape import Shape
 from culet.scene.cuts import proportions
 from culet.scene.stone import StoneSettings

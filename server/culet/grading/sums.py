@@ -14,11 +14,11 @@ from culet.errors import MeshError
 from culet.geometry.shape import Shape
 from culet.grading.optics import StoneOptics
 from culet.grading.rules import Rules
-from culet.rendering.build import Variant, build
-from culet.rendering.device import Device, Real
-from culet.rendering.facet_rows import facet_rows
 from culet.rendering.features import by_half_spaces
-from culet.rendering.layout import constants
+from culet.rendering.opencl.device import Device, Real
+from culet.rendering.opencl.layout import constants
+from culet.rendering.programs.build import Variant, build
+from culet.rendering.stones.facet_rows import facet_rows
 
 Array = NDArray[np.float64]
 

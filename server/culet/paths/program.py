@@ -9,14 +9,14 @@ import numpy as np
 import pyopencl as cl
 
 import culet_kernels
-from culet.rendering import kernel_cache
-from culet.rendering.build import Variant, build
-from culet.rendering.compiling import compiling
-from culet.rendering.device import Device, open_device
 from culet.rendering.features import Features
-from culet.rendering.layout import buffers, struct
-from culet.rendering.making import alone
-from culet.rendering.precompile import in_a_process, ordered
+from culet.rendering.opencl import kernel_cache
+from culet.rendering.opencl.compiling import compiling
+from culet.rendering.opencl.device import Device, open_device
+from culet.rendering.opencl.layout import buffers, struct
+from culet.rendering.opencl.making import alone
+from culet.rendering.programs.build import Variant, build
+from culet.rendering.programs.precompile import in_a_process, ordered
 
 COMMAND = (sys.executable, "-m", __name__)
 """The process that makes one, which takes the order as its argument."""

@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 
 from culet.errors import CuletError, SceneError
 from culet.paths.program import PathKernel, make_path, precompile_path
-from culet.rendering.build import Variant
 from culet.rendering.chains import GROUPS, first_sample, is_spectral, wavelengths_of
-from culet.rendering.device import Device, Real
 from culet.rendering.features import ESTIMATOR, Features, features_of
-from culet.rendering.inputs import Inputs
-from culet.rendering.layout import buffers, constants, struct
+from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.lighting import Lighting
-from culet.rendering.placed_stone import PlacedStone
+from culet.rendering.opencl.device import Device, Real
+from culet.rendering.opencl.layout import buffers, constants, struct
+from culet.rendering.programs.build import Variant
 from culet.rendering.projection import Projection
 from culet.rendering.renderer import jitter
+from culet.rendering.stones.placed_stone import PlacedStone
 from culet.stage import Stage
 
 EVENTS = 4096

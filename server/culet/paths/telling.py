@@ -15,8 +15,8 @@ from culet.paths.recorder import KINDS, PixelRecord
 from culet.paths.surface_optics import cosine_in_air, cosine_in_stone, critical_degrees, degrees, reflectance
 from culet.paths.surroundings import WALLS, RaySurroundings, side_of
 from culet.rendering.chains import GROUPS, chains_of_stones
-from culet.rendering.placed_stone import PlacedStone
 from culet.rendering.renderer import jitter
+from culet.rendering.stones.placed_stone import PlacedStone
 from culet.scene.emitters import PointLight
 
 Array = NDArray[np.float64]

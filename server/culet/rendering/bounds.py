@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from culet.rendering.light.unshaded import sky_light
-from culet.rendering.sky_colours import sky_colours
+from culet.rendering.emitters.unshaded import sky_light
+from culet.rendering.room.sky_colours import sky_colours
 from culet.scene.emitters import boxes, discs
 from culet.scene.room import Plane, StudioFloor
 from culet.scene.sky import ImageEnvironment

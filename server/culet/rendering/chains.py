@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from culet.optics.bands import bands
 from culet.optics.dispersion import channel_indices
 from culet.optics.materials import material_of
-from culet.rendering.device import Real
-from culet.rendering.layout import constants, struct
+from culet.rendering.opencl.device import Real
+from culet.rendering.opencl.layout import constants, struct
 from culet.scene.model import Scene
 from culet.scene.stone import StoneSettings
 from culet.stage import Stage

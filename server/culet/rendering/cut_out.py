@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from culet.optics.gamut import desaturate
 from culet.optics.tone import tone_map
 from culet.rendering.chains import is_spectral
+from culet.rendering.film.target import Target
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import DevicePicture, Renderer
-from culet.rendering.target import Target
 from culet.scene.backdrop import PlainBackdrop
 from culet.stage import Stage
 

@@ -9,9 +9,9 @@ from enum import IntEnum
 from culet.errors import SceneError
 from culet.geometry.shape import Shape
 from culet.rendering.chains import disperses, is_coloured, is_spectral
-from culet.rendering.light.sources import mapped_surfaces
-from culet.rendering.mirrors import makes_finite_group
-from culet.rendering.placed_stone import camera_stone, placed_stones
+from culet.rendering.emitters.sources import mapped_surfaces
+from culet.rendering.stones.mirrors import makes_finite_group
+from culet.rendering.stones.placed_stone import camera_stone, placed_stones
 from culet.scene.emitters import boxes, discs
 from culet.scene.model import Scene
 from culet.scene.room import Floor, Plane

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from culet.rendering.placed_stone import PlacedStone, extent_of, origin_of
+from culet.rendering.stones.placed_stone import PlacedStone, extent_of, origin_of
 from culet.scene.model import Scene
 
 Array = NDArray[np.float64]

@@ -15,24 +15,24 @@ from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
 from culet.rendering.bounds import largest_radiance
-from culet.rendering.build import OF_ITEMS, TILES_DEALT, Kernel, Variant, build, progress_size, tile_of
-from culet.rendering.device import Device, Real, open_device
-from culet.rendering.facet_rows import facet_rows, has_facet_rows
+from culet.rendering.emitters.light_map import BoundMap
 from culet.rendering.features import Features, by_half_spaces, features_of
-from culet.rendering.fireflies import Fireflies, FireflyKernels
-from culet.rendering.inputs import Inputs
-from culet.rendering.layout import constants
+from culet.rendering.film.fireflies import Fireflies, FireflyKernels
+from culet.rendering.film.shown_difference import ShownDifference, film_arguments
+from culet.rendering.film.softening import Softening
+from culet.rendering.film.sums import Fold, Sums
+from culet.rendering.film.target import Target
+from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.light_map import BoundMap
 from culet.rendering.light.lighting import Lighting, Maker
+from culet.rendering.opencl.device import Device, Real, open_device
+from culet.rendering.opencl.layout import constants
 from culet.rendering.pace import KernelPace
-from culet.rendering.program import Programs
-from culet.rendering.shown_difference import ShownDifference, film_arguments
-from culet.rendering.softening import Softening
-from culet.rendering.sums import Fold, Sums
-from culet.rendering.target import Target
+from culet.rendering.programs.build import OF_ITEMS, TILES_DEALT, Kernel, Variant, build, progress_size, tile_of
+from culet.rendering.programs.program import Programs
+from culet.rendering.stones.facet_rows import facet_rows, has_facet_rows
+from culet.rendering.stones.tree import has_tree, tree_of
 from culet.rendering.tracing import Tracing, Tracings, needed_features
-from culet.rendering.tree import has_tree, tree_of
 from culet.scene.model import Scene
 from culet.stage import Stage
 

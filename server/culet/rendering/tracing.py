@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from culet.rendering.build import Kernel
 from culet.rendering.chains import first_sample
 from culet.rendering.features import Features, features_of
-from culet.rendering.inputs import Inputs
+from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.pace import KernelPace
+from culet.rendering.programs.build import Kernel
 from culet.stage import Stage
 
 

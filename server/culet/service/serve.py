@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from culet.endpoints import check_free, reachable
-from culet.gateway.address import entrance, listening_socket, local_url_of, url_of
-from culet.gateway.engine_door import check_one_engine
+from culet.gateway.engine.engine_door import check_one_engine
+from culet.gateway.identity.address import entrance, listening_socket, local_url_of, url_of
 from culet.gateway.settings import GatewaySettings, settings_of, with_token
 from culet.gateway.token_file import token_kept
 from culet.service.keeping import keep

@@ -1,10 +1,10 @@
 """Rigid bodies: state, integrators, contact."""
 
 from culet.simulation.clock import Allowance, FixedStepClock, Pace
-from culet.simulation.paths import StonePath, record, write
-from culet.simulation.simulation import Simulation
-from culet.simulation.state import RigidState
-from culet.simulation.surfaces import Surface, surfaces_of
+from culet.simulation.one_stone.simulation import Simulation
+from culet.simulation.recording.paths import StonePath, record, write
+from culet.simulation.rigid_body.state import RigidState
+from culet.simulation.rigid_body.surfaces import Surface, surfaces_of
 
 __all__ = [
     "Allowance",

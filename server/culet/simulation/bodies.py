@@ -9,8 +9,8 @@ from typing import Self
 from culet.errors import InputError
 from culet.geometry.shape import Shape
 from culet.scene.motion import MotionLaws
-from culet.simulation.rotation import normalised
-from culet.simulation.state import Quaternion, Triple
+from culet.simulation.rigid_body.rotation import normalised
+from culet.simulation.rigid_body.state import Quaternion, Triple
 
 REST: Triple = (0.0, 0.0, 0.0)
 

@@ -13,9 +13,9 @@ from culet.scene.cuts import proportions
 from culet.scene.fields import Pose
 from culet.scene.room import FLOOR_Y
 from culet.scene.stone import StoneSettings
-from culet.simulation.drop import STANDING
-from culet.simulation.rotation import normalised, product, rotate, rotate_back
-from culet.simulation.state import Quaternion, Triple
+from culet.simulation.one_stone.drop import STANDING
+from culet.simulation.rigid_body.rotation import normalised, product, rotate, rotate_back
+from culet.simulation.rigid_body.state import Quaternion, Triple
 from culet.stage import Stage
 
 LYING_DEGREES = 10.0

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from culet.scene.fields import Pose
 from culet.simulation.bodies import BodyState
-from culet.simulation.drop import STANDING
-from culet.simulation.hull import hull_of
 from culet.simulation.lying import resting_height
-from culet.simulation.rotation import normalised, product, rotate_back
-from culet.simulation.state import Quaternion, Triple
+from culet.simulation.one_stone.drop import STANDING
+from culet.simulation.rigid_body.hull import hull_of
+from culet.simulation.rigid_body.rotation import normalised, product, rotate_back
+from culet.simulation.rigid_body.state import Quaternion, Triple
 from culet.simulation.together import Together
 from culet.simulation.world import World
 

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from culet.errors import InputError
 from culet.scene.refusal import scene_error
 from culet.simulation.bodies import BodyState
-from culet.simulation.state import RigidState
+from culet.simulation.rigid_body.state import RigidState
 
 BoundedNumber = Annotated[float, Field(strict=True, ge=-1e30, le=1e30)]
 """No scene reaches 1e30, and the square of what 1e30 leads to is still a double."""

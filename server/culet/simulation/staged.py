@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from culet.simulation.bodies import Body
-from culet.simulation.drop import drop_position
-from culet.simulation.settings import mass_of
-from culet.simulation.surfaces import surfaces_of
+from culet.simulation.one_stone.drop import drop_position
+from culet.simulation.rigid_body.settings import mass_of
+from culet.simulation.rigid_body.surfaces import surfaces_of
 from culet.simulation.world import World
 from culet.stage import Stage
 

@@ -16,14 +16,14 @@ import numpy as np
 from culet.errors import InputError, TooLargeError
 from culet.scene.motion import MotionLaws
 from culet.simulation.bodies import Body, BodyState
-from culet.simulation.body import angular_momentum_of, inertia_of
-from culet.simulation.principal_axes import principal_axes
-from culet.simulation.simulation import MAX_SPEED
+from culet.simulation.one_stone.simulation import MAX_SPEED
+from culet.simulation.rigid_body.body import angular_momentum_of, inertia_of
+from culet.simulation.rigid_body.principal_axes import principal_axes
+from culet.simulation.rigid_body.state import Touch, Triple
+from culet.simulation.rigid_body.surfaces import Surface
 from culet.simulation.solver import interface
 from culet.simulation.solver.library import library
 from culet.simulation.solver.polyhedron import polyhedron_of
-from culet.simulation.state import Touch, Triple
-from culet.simulation.surfaces import Surface
 
 MAX_BODIES = 64
 

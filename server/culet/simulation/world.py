@@ -13,13 +13,13 @@ from typing import Any, TypeVar, assert_never
 
 from culet.errors import InputError
 from culet.scene.motion import MotionLaws
-from culet.simulation.alone import Alone
 from culet.simulation.bodies import Body, BodyState, Pose, WorldState
-from culet.simulation.drop import DROP_HEIGHT, STANDING
-from culet.simulation.rotation import normalised, rotate_back, slerp
+from culet.simulation.one_stone.alone import Alone
+from culet.simulation.one_stone.drop import DROP_HEIGHT, STANDING
+from culet.simulation.rigid_body.rotation import normalised, rotate_back, slerp
+from culet.simulation.rigid_body.state import Quaternion, Touch, Triple
+from culet.simulation.rigid_body.surfaces import FLOOR, Surface
 from culet.simulation.solver.polyhedron import polyhedron_of
-from culet.simulation.state import Quaternion, Touch, Triple
-from culet.simulation.surfaces import FLOOR, Surface
 from culet.simulation.together import SolverEffort, Together, angular_momentum_by
 from culet.simulation.world_snapshot import read_world_snapshot, write_world_snapshot
 

@@ -7,14 +7,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from culet.errors import InputError
-from culet.rendering.device import Device
-from culet.study import caustics, growth, race, rendering, simulation, streaming
-from culet.study.knobs import Knobs
-from culet.study.page import page
-from culet.study.pareto import frontier
-from culet.study.provenance import provenance
+from culet.rendering.opencl.device import Device
+from culet.study.bench.roofline import Roofline, counted_flops
+from culet.study.findings.pareto import frontier
+from culet.study.findings.provenance import provenance
+from culet.study.light import caustics
+from culet.study.motion import simulation
+from culet.study.pages.page import page
+from culet.study.renderer import race, rendering
+from culet.study.renderer.knobs import Knobs
 from culet.study.report import Frontier, Headline, Knob, Point, Race, Report, csv_text
-from culet.study.roofline import Roofline, counted_flops
+from culet.study.serving import growth
+from culet.study.stream import streaming
 
 RACE_HEADLINE = "0.005"
 """RMSE of the race that is told first."""

@@ -9,25 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from culet.rendering.device import Device, open_device
+from culet.rendering.opencl.device import Device, open_device
 from culet.rendering.renderer import Renderer
 from culet.scene.model import Scene
 from culet.stage import Stage
-from culet.study import caustics, growth, race, rendering, simulation, streaming
-from culet.study.journal import PointJournal
-from culet.study.knobs import base_knobs, settings_of
-from culet.study.mitsuba import SAMPLERS, find_llvm
-from culet.study.outcome import (
-    caustics_report,
-    device_facts,
-    growth_report,
-    rendering_report,
-    simulation_report,
-    streaming_report,
-    write,
-)
-from culet.study.pictures import write_pictures
-from culet.study.provenance import (
+from culet.study.bench.roofline import measure_roofline
+from culet.study.findings.journal import PointJournal
+from culet.study.findings.provenance import (
     CAUSTICS_STUDY,
     GROWTH_STUDY,
     RENDERING_STUDY,
@@ -37,11 +25,27 @@ from culet.study.provenance import (
     peer_versions,
     processor,
 )
-from culet.study.reference import Reference, make_reference, reference_knobs
-from culet.study.renderers import Renderers
+from culet.study.light import caustics
+from culet.study.likeness.pictures import write_pictures
+from culet.study.motion import simulation
+from culet.study.outcome import (
+    caustics_report,
+    device_facts,
+    growth_report,
+    rendering_report,
+    simulation_report,
+    streaming_report,
+    write,
+)
+from culet.study.renderer import race, rendering
+from culet.study.renderer.knobs import base_knobs, settings_of
+from culet.study.renderer.mitsuba import SAMPLERS, find_llvm
+from culet.study.renderer.reference import Reference, make_reference, reference_knobs
+from culet.study.renderer.renderers import Renderers
+from culet.study.renderer.shot import Shot
 from culet.study.report import Knob, Report
-from culet.study.roofline import measure_roofline
-from culet.study.shot import Shot
+from culet.study.serving import growth
+from culet.study.stream import streaming
 
 JOURNAL = "journal.jsonl"
 

@@ -12,10 +12,10 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from culet.engine.capacity.limits import Limits
 from culet.engine.library import upload_process
 from culet.engine.library.upload_answer import TooLittleMemoryError
 from culet.engine.library.upload_process import ReadingRoom, read_upload
-from culet.engine.process.limits import Limits
 from culet.errors import InputError, MeshError, TooLargeError
 from culet.optics.sky_files.picture import SkyPicture
 from engine.peer import TETRAHEDRON

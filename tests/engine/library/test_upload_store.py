@@ -6,11 +6,11 @@ import io
 import pytest
 from PIL import Image
 
+from culet.engine.capacity.limits import Limits
+from culet.engine.capacity.memory import Memory
 from culet.engine.library import upload_store
 from culet.engine.library.upload_process import ReadingRoom
 from culet.engine.library.upload_store import LEAST_TO_READ, MESH, SKY, WAITING, UploadStore, mesh_size
-from culet.engine.process.limits import Limits
-from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape

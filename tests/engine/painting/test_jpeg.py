@@ -12,7 +12,7 @@ from culet.engine.painting.coded import Coded
 from culet.engine.painting.quality import Quality
 from culet.rendering.renderer import Renderer
 from culet.scene.presets import preset
-from culet.study.falling_frames import falling
+from culet.study.stream.falling_frames import falling
 from culet_protocol.messages import Balance
 
 # A saturated red and blue checker of single pixels: what chroma subsampling would turn to purple.

@@ -20,7 +20,7 @@ from culet.engine.painting.painter import Painter
 from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.errors import CuletError
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 from culet_protocol.frame import Codec, Flags
 from culet_protocol.watch import LESSER, topic_of
 from engine.painting.test_frame_sender import VIDEO_TOPIC, WATCH, Desk

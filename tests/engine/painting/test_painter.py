@@ -34,9 +34,9 @@ from culet.engine.session.stepper import Stepper, Stepping
 from culet.engine.session.viewpoint import orbit
 from culet.errors import TooLargeError
 from culet.optics.panoramas import Panorama
+from culet.rendering.film.target import Target
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import SOON
-from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.frame import Flags, Frame

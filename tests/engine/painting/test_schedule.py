@@ -10,8 +10,8 @@ from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
 from culet.geometry.mesh import shape_from_mesh
+from culet.rendering.film.target import Target
 from culet.rendering.renderer import Renderer
-from culet.rendering.target import Target
 from culet.scene import PointLight, Scene
 from engine.peer import TETRAHEDRON
 from shared.stages import staged

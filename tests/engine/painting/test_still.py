@@ -2,7 +2,7 @@ import pytest
 
 from culet.engine.painting.still import Still, StillQueue
 from culet.errors import BusyError
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.engine.painting.video import VideoEncoder, VideoError, luma_and_chroma, video_codecs
-from culet.study import trial_frames
+from culet.study.stream import trial_frames
 from culet_client.video import VideoDecoder
 from culet_protocol.frame import Codec, Flags, Frame
 from video_extra import needs_av

@@ -430,7 +430,7 @@ import sys, threading, time
 from pathlib import Path
 import pyopencl as cl
 from culet.engine.process.serve import run
-from culet.rendering.device import open_device
+from culet.rendering.opencl.device import open_device
 
 device = open_device()
 

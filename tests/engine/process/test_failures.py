@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 import zmq.asyncio
 
+from culet.engine.capacity.limits import Limits
 from culet.engine.painting.renderer import AnyPicture
 from culet.engine.process.engine import EngineServer
-from culet.engine.process.limits import Limits
 from culet.engine.process.serve import encode_still
 from culet.engine.session import events
 from culet.engine.session.session import Session
@@ -23,8 +23,8 @@ from culet.errors import DeviceError
 from culet.optics.panoramas import Panorama
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import Renderer
-from culet.simulation.models import MODELS
-from culet.simulation.state import RigidState
+from culet.simulation.one_stone.models import MODELS
+from culet.simulation.rigid_body.state import RigidState
 from culet.stage import Library, Stage
 from culet_protocol.frame import Flags
 from culet_protocol.messages import SessionEvent

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 import zmq.asyncio
 
+from culet.engine.capacity.limits import Limits
 from culet.engine.process.engine import EngineServer
-from culet.engine.process.limits import Limits
 from culet.engine.process.serve import encode_still
 from engine.peer import PATIENCE, Peer
 from engine.process.test_failures import FailingRenderer

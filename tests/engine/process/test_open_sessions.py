@@ -8,9 +8,9 @@ from typing import cast
 
 import pytest
 
+from culet.engine.capacity.limits import Limits
+from culet.engine.capacity.memory import Memory
 from culet.engine.painting.painter import Painter
-from culet.engine.process.limits import Limits
-from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.staging import Staging
 from culet.errors import NotFoundError

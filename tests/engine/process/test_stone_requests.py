@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import pytest
 
-from culet.engine.process.limits import Limits
+from culet.engine.capacity.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.staging import Staging
 from culet.engine.process.stone_requests import StoneRequests

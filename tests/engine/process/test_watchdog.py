@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from culet.engine.process import watchdog
-from culet.rendering.compiling import compiling
+from culet.rendering.opencl.compiling import compiling
 from gateway.running import eventually
 from shared.patience import PATIENCE
 

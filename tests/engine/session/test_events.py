@@ -13,7 +13,7 @@ from culet.optics.sky_files.picture import SkyPicture
 from culet.scene import Scene
 from culet.scene.legacy import LEGACY_DEFAULT, legacy
 from culet.scene.room import FLOOR_Y
-from culet.simulation.rotation import rotate
+from culet.simulation.rigid_body.rotation import rotate
 from culet.stage import Library, Sky, Stage
 from culet_protocol import messages
 from culet_protocol.messages import SessionEvent

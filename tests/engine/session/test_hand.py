@@ -14,7 +14,7 @@ from culet.errors import InputError
 from culet.scene import Scene
 from culet.scene.room import FLOOR_Y
 from culet.simulation.overlaps import overlaps
-from culet.simulation.rotation import rotate, rotate_back
+from culet.simulation.rigid_body.rotation import rotate, rotate_back
 from culet.stage import NOTHING, Stage
 from culet_protocol.messages import DragStone, MoveStone, PatchScene, Redo, SessionEvent, ToggleFall, TurnStone, Undo
 

@@ -12,7 +12,7 @@ from culet.engine.session.picking import Placed, corners, placed, struck
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of
 from culet.scene import Camera, Scene, StoneSettings, Vector
-from culet.simulation.rotation import rotate
+from culet.simulation.rigid_body.rotation import rotate
 from culet.stage import Stage
 
 STONE = shape_of(StoneSettings(), {})

@@ -19,7 +19,7 @@ from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.cuts.outlines import ellipse
 from culet.geometry.polygons import edges_of_facets
 from culet.geometry.shape import Shape
-from culet.rendering.facet_rows import facet_rows
+from culet.rendering.stones.facet_rows import facet_rows
 from culet.scene.cuts import CUTS, AnyCut, BrilliantCut, EmeraldCut, HeartCut, OvalCut, TrillionCut, usual_range
 
 CHECK_VALUES = json.loads(Path(__file__).with_name("check_values.json").read_text())

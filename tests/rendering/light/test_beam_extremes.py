@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import Shape
-from culet.rendering.device import Device
+from culet.rendering.emitters.ray import LightRay
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.ray import LightRay
+from culet.rendering.opencl.device import Device
 from rendering.light.throwing import UPRIGHT, Array, Thrown, lamp, sun, thrown
 from shared.stones import needle, prism, skew_block, slab
 from shared.trimesh_stones import exact_box

@@ -10,10 +10,10 @@ import pyopencl as cl
 import pytest
 
 from culet.geometry.shape import Shape
-from culet.rendering.device import Device
+from culet.rendering.emitters.light_map import frame_of
 from culet.rendering.light.beams import FIRST_JOBS, Beams
-from culet.rendering.light.light_map import frame_of
-from culet.rendering.placed_stone import rotation_matrix
+from culet.rendering.opencl.device import Device
+from culet.rendering.stones.placed_stone import rotation_matrix
 from culet.scene import Scene
 from optics.closed_forms import fresnel
 from optics.closed_forms import slab as plate

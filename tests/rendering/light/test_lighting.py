@@ -18,19 +18,19 @@ from numpy.typing import NDArray
 from culet.errors import DeviceError
 from culet.geometry.shape import Shape
 from culet.rendering.chains import AUTO_BANDS, CHANNELS
-from culet.rendering.device import Device
-from culet.rendering.inputs import Inputs
+from culet.rendering.emitters.light_map import frame_of
+from culet.rendering.emitters.panorama_light import is_summed
+from culet.rendering.emitters.ray import LightRay
+from culet.rendering.emitters.sources import rays_of
+from culet.rendering.film.target import Target
+from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light import beams
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.light_map import frame_of
 from culet.rendering.light.lighting import Illumination, Maker
-from culet.rendering.light.panorama_light import is_summed
-from culet.rendering.light.ray import LightRay
-from culet.rendering.light.sources import rays_of
+from culet.rendering.opencl.device import Device
 from culet.rendering.pace import KernelPace
 from culet.rendering.renderer import MIXED, DevicePicture, Renderer
-from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from shared.stages import staged

@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.geometry.load import shape_of
+from culet.rendering.emitters.light_map import BoundMap, frame_of, surfaces
+from culet.rendering.emitters.sources import mapped_surfaces, sources_of, studio_light
 from culet.rendering.features import RUNTIME, Features, features_of
-from culet.rendering.light.light_map import BoundMap, frame_of, surfaces
-from culet.rendering.light.sources import mapped_surfaces, sources_of, studio_light
 from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS, Scene
 from culet.scene.legacy import LEGACY_LAMPS, legacy

@@ -13,11 +13,11 @@ import pytest
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.rendering.device import Device
+from culet.rendering.emitters.light_map import MapFrame, frame_of
+from culet.rendering.emitters.ray import LightRay
 from culet.rendering.light.beams import Beams
-from culet.rendering.light.light_map import MapFrame, frame_of
 from culet.rendering.light.photons import PhotonMaps, Photons
-from culet.rendering.light.ray import LightRay
+from culet.rendering.opencl.device import Device
 from culet.scene import Scene
 from optics.closed_forms import fresnel
 from shared.stages import staged

@@ -11,9 +11,9 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
+from culet.rendering.emitters.light_map import Figures, MapFrame, frame_of
+from culet.rendering.emitters.ray import LightRay
 from culet.rendering.light.beams import Beams, BeamTally
-from culet.rendering.light.light_map import Figures, MapFrame, frame_of
-from culet.rendering.light.ray import LightRay
 from culet.scene import Scene
 from shared.stages import staged
 

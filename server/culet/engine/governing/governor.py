@@ -1,9 +1,9 @@
 """The governor: how good a frame may be while things move, so that the frame rate asked for is held.
 
 It chooses from a ladder of settings: the best, and below it the front of least error for each cost, which
-`python -m culet.study.ladder` has measured. Down at once when a frame has taken too long, up only after a run of frames
-that would have had time to spare, and then as far as there is time. The session's balance says which frame rate is
-asked for, or pins a setting. At rest nothing is chosen: the picture is refined as the scene has it.
+`python -m culet.study.serving.ladder` has measured. Down at once when a frame has taken too long, up only after a run
+of frames that would have had time to spare, and then as far as there is time. The session's balance says which frame
+rate is asked for, or pins a setting. At rest nothing is chosen: the picture is refined as the scene has it.
 """
 
 from __future__ import annotations

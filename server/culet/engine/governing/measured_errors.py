@@ -1,4 +1,4 @@
-"""What the picture of a setting misses, as `python -m culet.study.ladder` has measured it over a grid of settings."""
+"""What the picture of a setting misses, as `python -m culet.study.serving.ladder` has measured it over a grid."""
 
 from __future__ import annotations
 

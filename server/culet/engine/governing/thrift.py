@@ -1,8 +1,8 @@
 """How large a moving frame may be, and how well encoded, so that a viewer's link carries it in time.
 
 Beside the governor, which has time in mind: both choose the best that there is room for. What frames of each size and
-JPEG quality have in bytes, and what they miss, `python -m culet.study.bytes_ladder` has measured on the default scene,
-and `python -m culet.study.video_ladder` the same of video by its rate factor.
+JPEG quality have in bytes, and what they miss, `python -m culet.study.stream.bytes_ladder` has measured on the default
+scene, and `python -m culet.study.stream.video_ladder` the same of video by its rate factor.
 Another scene's frames have other bytes: how many times the measured ones, the last frames tell.
 """
 

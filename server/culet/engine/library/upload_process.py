@@ -11,9 +11,9 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from culet.engine.capacity.limits import Limits
 from culet.engine.library.upload_answer import AnswerError, TooLittleMemoryError, taken
 from culet.engine.library.upload_reader import NAME, ReadingOrder
-from culet.engine.process.limits import Limits
 from culet.errors import InputError
 from culet.geometry.shape import Shape
 from culet.memory_file import memory_file

@@ -11,10 +11,10 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
+from culet.engine.capacity.limits import Limits
+from culet.engine.capacity.memory import Memory
 from culet.engine.library.upload_answer import TooLittleMemoryError
 from culet.engine.library.upload_process import Buffer, ReadingRoom, read_upload
-from culet.engine.process.limits import Limits
-from culet.engine.process.memory import Memory
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.shape import Shape
 from culet.optics.sky_files.picture import SkyPicture

@@ -16,9 +16,9 @@ from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.renderer import PIECE_SECONDS, AnyPicture, AnyRenderer
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import ShownScene
-from culet.rendering.behind import before_its_colour
+from culet.rendering.film.behind import before_its_colour
+from culet.rendering.film.target import Target
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.target import Target
 from culet.stage import Stage
 
 REFRESH_SECONDS = 0.35

@@ -14,7 +14,7 @@ RESTING_QUALITY = 92
 """A picture at rest is looked at for long and sent once: 1.5x the bytes of quality 85."""
 
 LEAST_QUALITY = 30
-"""Below it a frame of half the size has as few bytes and less error (`culet.study.bytes_ladder`)."""
+"""Below it a frame of half the size has as few bytes and less error (`culet.study.stream.bytes_ladder`)."""
 
 LOWER_QUALITIES = 85, 75, 65, 50, 40, LEAST_QUALITY
 """3 ms each at 1280x720; each has some 0.83 times the bytes of the one before it."""

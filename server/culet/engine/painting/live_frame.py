@@ -19,7 +19,7 @@ from culet.engine.painting.video_track import TrackedPacket
 from culet.engine.painting.whereabouts import Ball, whereabouts
 from culet.engine.session.session import Session, ShownScene
 from culet.rendering.chains import bands_seen
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 from culet.scene.optics import Optics
 from culet_protocol.frame import Codec, Flags, Frame
 

@@ -27,7 +27,7 @@ from culet.engine.painting.shares import Account, Shares
 from culet.engine.session.motion import StonesMotion
 from culet.engine.session.session import Session, ShownScene
 from culet.errors import CuletError
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 
 
 class Stepping(Protocol):

@@ -25,7 +25,7 @@ from culet.engine.painting.still_painter import StillPainter
 from culet.engine.session.session import Session
 from culet.engine.session.stepper import Stepper
 from culet.errors import CuletError
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 from culet.stage import Stage
 from culet_protocol.frame import Codec
 from culet_protocol.watch import LESSER, Stream

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.optics.panoramas import Panorama
+from culet.rendering.film.target import Target
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 

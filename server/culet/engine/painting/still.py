@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from culet.engine.painting.renderer import PIECE_SECONDS, AnyPicture, AnyRenderer
 from culet.engine.painting.shares import Account, Shares
 from culet.errors import BusyError
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.engine import Format

@@ -9,13 +9,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import zmq.asyncio
 
+from culet.engine.capacity.limits import Limits
+from culet.engine.capacity.machine import budget
+from culet.engine.capacity.memory import Memory
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.engine.painting.video import video_codecs
-from culet.engine.process.limits import Limits
-from culet.engine.process.machine import budget
-from culet.engine.process.memory import Memory
 from culet.engine.process.messages import encoded, read_request, refusal, refusal_by_session
 from culet.engine.process.motion_news import MotionNews
 from culet.engine.process.requests import Requests

@@ -11,10 +11,10 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
+from culet.engine.capacity.limits import Limits
+from culet.engine.capacity.memory import Memory
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
-from culet.engine.process.limits import Limits
-from culet.engine.process.memory import Memory
 from culet.engine.process.staging import CHANGE_SECONDS, Staging
 from culet.engine.session import events
 from culet.engine.session.session import Session

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from culet.engine.capacity.memory import Memory
 from culet.engine.painting.live_picture import LivePicture
-from culet.engine.process.memory import Memory
 from culet.scene.film import Film
 
 LEAST_LIVE_SIZE = (160, 90)

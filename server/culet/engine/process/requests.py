@@ -11,6 +11,8 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, assert_never
 
+from culet.engine.capacity.limits import Limits, live_size
+from culet.engine.capacity.memory import Memory
 from culet.engine.governing.thrift import ByteAllowance
 from culet.engine.library.upload_process import Buffer
 from culet.engine.library.upload_store import MESH, SKY, UploadStore
@@ -18,8 +20,6 @@ from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.process.in_use import sky_bytes, uploads_in_use
-from culet.engine.process.limits import Limits, live_size
-from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
 from culet.engine.process.staging import CHANGE_SECONDS, ShapesNeededError, Staging, to_its_end, without_shapes

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import zmq.asyncio
 
+from culet.engine.capacity.heap import return_large_blocks
+from culet.engine.capacity.limits import Limits
 from culet.engine.painting.renderer import AnyPicture, AnyRenderer
 from culet.engine.painting.still import EncodeStill
 from culet.engine.process.engine import EngineServer
-from culet.engine.process.heap import return_large_blocks
-from culet.engine.process.limits import Limits
 from culet.engine.process.strangers import engine_keys, letting_in
 from culet.errors import CuletError
 
@@ -83,9 +83,9 @@ def open_renderer(*, special_programs: bool) -> AnyRenderer:
 
     It is imported here, so that whatever only speaks to an engine never loads it.
     """
-    import culet.rendering.files  # so that the first still needs not wait for it  # noqa: F401
-    from culet.rendering import kernel_cache
+    import culet.rendering.film.files  # so that the first still needs not wait for it  # noqa: F401
     from culet.rendering.cut_out import CuttingRenderer
+    from culet.rendering.opencl import kernel_cache
 
     if not kernel_cache.has_plenty_of_room() and (fault := kernel_cache.complaint()):
         log.error("%s", fault)  # said first: the compiler may end this process
@@ -99,7 +99,7 @@ def open_renderer(*, special_programs: bool) -> AnyRenderer:
 
 def encode_still(picture: AnyPicture, file_format: str, legend: Sequence[Line] = ()) -> bytes:
     """A still in its file format, with those lines in a corner."""
-    from culet.rendering.files import encode
+    from culet.rendering.film.files import encode
     from culet.rendering.renderer import DevicePicture
 
     assert isinstance(picture, DevicePicture)  # noqa: S101 - made by `open_renderer`

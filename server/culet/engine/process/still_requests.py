@@ -9,17 +9,17 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from culet.engine.capacity.limits import Limits, check_still_size, check_still_work, most_samples
+from culet.engine.capacity.memory import Memory
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import LINEAR_FORMATS, Still, StillQueue, pictures_of
-from culet.engine.process.limits import Limits, check_still_size, check_still_work, most_samples
-from culet.engine.process.memory import Memory
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.picture_memory import picture_bytes
 from culet.engine.process.staging import Staging, Work
 from culet.engine.session import events
 from culet.errors import InputError, SceneError
 from culet.rendering.chains import band_count
-from culet.rendering.target import Target
+from culet.rendering.film.target import Target
 from culet.scene import Scene
 from culet.scene.patch import read_patched
 from culet.stage import Stage

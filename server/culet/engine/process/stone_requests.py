@@ -13,18 +13,18 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter
 
-from culet.engine.process.limits import Limits
+from culet.engine.capacity.limits import Limits
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.staging import Staging
 from culet.engine.session import events
 from culet.errors import InputError, MeshError
 from culet.geometry.cuts.wording import headings_of
+from culet.geometry.cutting.tier_angles import tiers_of
 from culet.geometry.designs.diagram import diagram_of
 from culet.geometry.designs.measures import proportions_of
 from culet.geometry.designs.of_shape import design_of
 from culet.geometry.designs.solid import Solid
 from culet.geometry.shape import Shape
-from culet.geometry.tier_angles import tiers_of
 from culet.grading.answer import GradeReport
 from culet.grading.report import place_of, reports_of
 from culet.grading.rules import rules_of
@@ -33,9 +33,9 @@ from culet.grading.sums import LightSums
 from culet.paths.answer import Path
 from culet.paths.asked import Pixel, Ray, answered
 from culet.paths.recorder import PathRecorder
-from culet.rendering.device import open_device
 from culet.rendering.features import MOST_HALF_SPACES
 from culet.rendering.light.effort import LightEffort
+from culet.rendering.opencl.device import open_device
 from culet.scene import Scene
 from culet.stage import Library, Stage
 from culet_protocol.engine import DrawDiagram, Grade, ListTiers, Measure, TracePath

@@ -12,7 +12,7 @@ import threading
 from concurrent.futures import Executor
 
 from culet.notify import ServiceNotice, notify, notify_patience
-from culet.rendering import compiling
+from culet.rendering.opencl import compiling
 
 HANG_SECONDS = 20.0
 """Of standing still. Pieces of rendering take 0.1 s, on a loaded machine some more; shorter, and a machine that is busy

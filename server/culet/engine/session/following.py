@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from culet.simulation.bodies import Body, BodyState
-from culet.simulation.surfaces import surfaces_of
+from culet.simulation.rigid_body.surfaces import surfaces_of
 from culet.simulation.world import World
 from culet.stage import Stage
 

@@ -13,7 +13,7 @@ from culet.engine.session.viewpoint import axes, half_height
 from culet.errors import InputError
 from culet.scene import Camera
 from culet.simulation.placing import moved_by_hand
-from culet.simulation.state import Triple
+from culet.simulation.rigid_body.state import Triple
 from culet_protocol.messages import DragStone, MoveStone, TurnStone
 
 Array = NDArray[np.float64]

@@ -21,8 +21,8 @@ from culet.errors import CuletError, InputError
 from culet.simulation import Allowance, FixedStepClock, Pace
 from culet.simulation.bodies import Body, BodyState
 from culet.simulation.clock import MAX_CATCH_UP
+from culet.simulation.rigid_body.state import Triple
 from culet.simulation.staged import bodies_of, world_of
-from culet.simulation.state import Triple
 from culet.simulation.world import World, between
 from culet.stage import Stage
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from culet.engine.session.viewpoint import axes, half_height
 from culet.geometry.shape import Shape
 from culet.scene import Camera, Vector
-from culet.simulation.rotation import rotate, rotate_back
-from culet.simulation.state import Quaternion, Triple
+from culet.simulation.rigid_body.rotation import rotate, rotate_back
+from culet.simulation.rigid_body.state import Quaternion, Triple
 from culet.stage import Stage
 
 Array = NDArray[np.float64]

@@ -13,15 +13,15 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from culet.rendering.build import build
 from culet.rendering.chains import GROUPS, chain_table, chains_of_stones, is_coloured, is_spectral
-from culet.rendering.device import Device, Real
+from culet.rendering.emitters.light_map import ABOUT, LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
+from culet.rendering.emitters.ray import LightRay
 from culet.rendering.features import FRESNEL
-from culet.rendering.layout import constants, struct
-from culet.rendering.light.light_map import ABOUT, LEVELS, SIZE, SURFACES, Figures, MapFrame, surfaces
-from culet.rendering.light.ray import LightRay
 from culet.rendering.light.solids import Solids, takes_beams
-from culet.rendering.placed_stone import PlacedStone, placed_stones
+from culet.rendering.opencl.device import Device, Real
+from culet.rendering.opencl.layout import constants, struct
+from culet.rendering.programs.build import build
+from culet.rendering.stones.placed_stone import PlacedStone, placed_stones
 from culet.scene.model import Scene
 from culet.stage import Stage
 

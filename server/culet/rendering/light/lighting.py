@@ -15,17 +15,17 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.rendering.chains import band_count, is_spectral
-from culet.rendering.compiling import compiling
-from culet.rendering.device import Device
+from culet.rendering.emitters.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
+from culet.rendering.emitters.panorama_light import is_summed, panorama_light
+from culet.rendering.emitters.ray import LightRay
+from culet.rendering.emitters.sources import mapped_surfaces, rays_of
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
-from culet.rendering.light.panorama_light import is_summed, panorama_light
 from culet.rendering.light.photons import PhotonMaps, Photons
-from culet.rendering.light.ray import LightRay
 from culet.rendering.light.solids import FEW, takes_beams
-from culet.rendering.light.sources import mapped_surfaces, rays_of
-from culet.rendering.surfaces import shown
+from culet.rendering.opencl.compiling import compiling
+from culet.rendering.opencl.device import Device
+from culet.rendering.room.surfaces import shown
 from culet.stage import Stage
 
 KEPT = 4

@@ -19,18 +19,18 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 import culet_kernels
-from culet.rendering import kernel_cache
-from culet.rendering.build import Variant, build
-from culet.rendering.device import Device
+from culet.rendering.emitters.light_map import LEVELS, SIZE, Figures, MapFrame, surfaces
+from culet.rendering.emitters.ray import LightRay
 from culet.rendering.features import END, Features, features_of
-from culet.rendering.footprint import REACH
-from culet.rendering.inputs import Inputs
-from culet.rendering.layout import buffers, constants, struct
-from culet.rendering.light.light_map import LEVELS, SIZE, Figures, MapFrame, surfaces
-from culet.rendering.light.ray import LightRay
-from culet.rendering.making import alone
-from culet.rendering.placed_stone import PlacedStone, origin_of, placed_stones
-from culet.rendering.stone_table import grouped
+from culet.rendering.kernel_inputs.footprint import REACH
+from culet.rendering.kernel_inputs.inputs import Inputs
+from culet.rendering.kernel_inputs.stone_table import grouped
+from culet.rendering.opencl import kernel_cache
+from culet.rendering.opencl.device import Device
+from culet.rendering.opencl.layout import buffers, constants, struct
+from culet.rendering.opencl.making import alone
+from culet.rendering.programs.build import Variant, build
+from culet.rendering.stones.placed_stone import PlacedStone, origin_of, placed_stones
 from culet.scene.model import Scene
 from culet.stage import Stage
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
-from culet.rendering.device import Real
-from culet.rendering.layout import struct
 from culet.rendering.light.facet_loops import facet_loops
-from culet.rendering.placed_stone import PlacedStone
+from culet.rendering.opencl.device import Real
+from culet.rendering.opencl.layout import struct
+from culet.rendering.stones.placed_stone import PlacedStone
 
 ABREAST = 16
 """Planes that are looked at at a time: each stone's number is filled up to a multiple."""

@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from culet.geometry.facets import FLATNESS, facets_of, planes_of
 from culet.geometry.polygons import loops
 from culet.geometry.shape import Shape
-from culet.simulation.hull import hull_of
+from culet.simulation.rigid_body.hull import hull_of
 from culet.simulation.solver.interface import MAX_VERTICES
 
 Points = NDArray[np.float64]

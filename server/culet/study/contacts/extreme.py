@@ -11,9 +11,9 @@ import numpy as np
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
 from culet.simulation.bodies import Body
-from culet.simulation.rotation import IDENTITY
-from culet.simulation.state import Triple
-from culet.simulation.surfaces import FLOOR, WALLS, Surface
+from culet.simulation.rigid_body.rotation import IDENTITY
+from culet.simulation.rigid_body.state import Triple
+from culet.simulation.rigid_body.surfaces import FLOOR, WALLS, Surface
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import BOWL, Course, law, triple, turned, watch

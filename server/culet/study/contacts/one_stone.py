@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from culet.simulation.bodies import Body, BodyState
-from culet.simulation.rotation import product, rotate_back
-from culet.simulation.surfaces import FLOOR
+from culet.simulation.rigid_body.rotation import product, rotate_back
+from culet.simulation.rigid_body.surfaces import FLOOR
 from culet.simulation.together import SolverEffort, angular_momentum_by
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding

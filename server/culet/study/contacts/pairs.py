@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from culet.simulation.bodies import Body
-from culet.simulation.rotation import IDENTITY
+from culet.simulation.rigid_body.rotation import IDENTITY
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import about, advance, angle_between, law, level, momenta, overlap, standing, step_cut

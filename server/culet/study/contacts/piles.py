@@ -17,10 +17,10 @@ import culet.scene
 from culet.scene import Scene
 from culet.scene.cuts import BrilliantCut
 from culet.scene.room import FLOOR_Y
-from culet.simulation.rotation import product, rotate_back
+from culet.simulation.rigid_body.rotation import product, rotate_back
+from culet.simulation.rigid_body.state import Quaternion
+from culet.simulation.rigid_body.surfaces import Surface, surfaces_of
 from culet.simulation.staged import world_of
-from culet.simulation.state import Quaternion
-from culet.simulation.surfaces import Surface, surfaces_of
 from culet.simulation.world import World
 from culet.stage import Stage
 from culet.study.contacts.worlds import about, turned

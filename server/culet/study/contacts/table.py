@@ -9,8 +9,8 @@ from pathlib import Path
 
 from culet.study.contacts import extreme, heaps, one_stone, pairs
 from culet.study.contacts.finding import Finding
-from culet.study.journal import PointJournal
-from culet.study.provenance import SIMULATION_STUDY, code_digest, commit, processor
+from culet.study.findings.journal import PointJournal
+from culet.study.findings.provenance import SIMULATION_STUDY, code_digest, commit, processor
 from culet.study.report import Point
 
 MARKS = "<!-- culet study contacts: begin -->", "<!-- culet study contacts: end -->"

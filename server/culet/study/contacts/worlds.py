@@ -14,9 +14,9 @@ from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.shape import Shape
 from culet.scene.motion import MotionLaws
 from culet.simulation.bodies import Body, BodyState
-from culet.simulation.rotation import IDENTITY, normalised, rotate
-from culet.simulation.state import Quaternion, Triple
-from culet.simulation.surfaces import FLOOR, Surface
+from culet.simulation.rigid_body.rotation import IDENTITY, normalised, rotate
+from culet.simulation.rigid_body.state import Quaternion, Triple
+from culet.simulation.rigid_body.surfaces import FLOOR, Surface
 from culet.simulation.together import SolverEffort, angular_momentum_by
 from culet.simulation.world import World
 

@@ -1,0 +1,1 @@
+"""What answers are made of, whatever they answer: problem documents, pictures, the page's files, and headers."""

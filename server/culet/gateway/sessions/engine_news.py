@@ -1,0 +1,142 @@
+"""What the engine tells unasked, put into the records of the sessions and told to their viewers."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+
+from culet.errors import CuletError
+from culet.gateway.engine.link import EngineEvents, EngineLink
+from culet.gateway.identity.client_address import UNKNOWN
+from culet.gateway.sessions.session_record import SessionRecord
+from culet_protocol.engine import GetSession, ListSessions, SessionChange, SessionMotion, SessionProblem
+from culet_protocol.frame import Codec, Frame
+from culet_protocol.messages import Engine, Problem
+from culet_protocol.watch import LESSER, VIDEO
+
+log = logging.getLogger(__name__)
+
+REOPENED_AT_ONCE = 4
+"""Sessions, in a new engine: some of them need files that are read by processes."""
+
+
+class EngineNews(EngineEvents):
+    """Listens to a link."""
+
+    def __init__(
+        self,
+        link: EngineLink,
+        records: dict[str, SessionRecord],
+        reopen: Callable[[SessionRecord], Awaitable[None]],
+        offered: Callable[[SessionRecord], None],
+    ) -> None:
+        """`reopen` gives a session to an engine that does not know it; `offered` is called when a frame came."""
+        self.taken_over = asyncio.Event()
+        """Set once this gateway knows the sessions that the engine had when it came."""
+        self._link = link
+        self._records = records
+        self._catching_up: dict[str, asyncio.Task[None]] = {}
+        """By session."""
+        self._by_topic: dict[bytes, SessionRecord] = {}
+        self._reopen = reopen
+        self._offered = offered
+
+    def frame_came(self, frame: Frame, message: bytes) -> None:
+        """The session's latest frame."""
+        session = self._shown_by(frame.watch)
+        if session is None:
+            return
+        stream = next(codec for codec, topic in session.topics.items() if topic == frame.watch)
+        if stream is not Codec.JPEG:  # a viewer knows the session by its watch id alone
+            frame, message = replace(frame, watch=session.topic), session.topic + message[len(session.topic) :]
+        if stream is not LESSER:
+            session.latest = None if frame.codec in VIDEO else (frame, message)
+        now = time.monotonic()
+        session.tiers.came(stream, len(message), now)
+        for viewer in session.viewers:
+            viewer.offer(frame, message, now, stream)
+        self._offered(session)
+
+    def _shown_by(self, topic: bytes) -> SessionRecord | None:
+        found = self._by_topic.get(topic)
+        if found is None or self._records.get(found.id) is not found:  # sessions came, or went
+            self._by_topic = {topic: record for record in self._records.values() for topic in record.topics.values()}
+            found = self._by_topic.get(topic)
+        return found
+
+    def session_changed(self, change: SessionChange) -> None:
+        """Somebody edited the session, or its stones fell asleep or were woken."""
+        session = self._records.get(change.session)
+        if session is None or session.revision is None:  # it is being opened, and the answer will say all
+            return
+        told = session.condition
+        if change.revision <= session.revision:  # an answer that said so already was faster
+            session.tell(session.state())
+        elif session.hear(change):
+            if change.edited or session.condition != told:
+                session.tell(session.state())
+        elif session.id not in self._catching_up:  # or else the answer, which comes after this, will say it too
+            self._catching_up[session.id] = asyncio.create_task(self._catch_up(session))
+
+    async def _catch_up(self, session: SessionRecord) -> None:
+        """Ask for all of a session of which something was missed."""
+        try:
+            described, _ = await self._link.request(GetSession(session=session.id))
+            session.learn(described)
+            session.tell(session.state())
+        except CuletError:
+            pass  # it is gone, or the engine is: then it will be given to the next one
+        finally:
+            del self._catching_up[session.id]
+
+    def session_moved(self, motion: SessionMotion) -> None:
+        """The session's stone moved, or its picture was refined."""
+        session = self._records.get(motion.session)
+        if session and session.snapshot:
+            session.snapshot = session.snapshot | motion.moved
+
+    def session_failed(self, problem: SessionProblem) -> None:
+        """What the session shows could not be rendered, or not be moved."""
+        session = self._records.get(problem.session)
+        if session:
+            session.tell(Problem(code="render_failed", message=f"{problem.title}: {problem.detail}"))
+
+    def engine_down(self) -> None:
+        """The engine does not answer any more."""
+        for session in self._records.values():
+            session.tell(Engine(status="down"))
+
+    async def engine_up(self, new_process: bool) -> None:
+        """The engine answers again, maybe as another process, which knows nothing of the sessions."""
+        if not self.taken_over.is_set():
+            await self._take_over()
+        elif new_process:
+            watched_first = sorted(self._records.values(), key=lambda session: not session.viewers)
+            turn = asyncio.Semaphore(REOPENED_AT_ONCE)
+            await asyncio.gather(*(self._try_to_reopen(session, turn) for session in watched_first))
+        for session in self._records.values():
+            session.tell(Engine(status="up"))
+
+    async def _take_over(self) -> None:
+        """Know the sessions that the engine has: a gateway before this one may have died."""
+        answer, _ = await self._link.request(ListSessions())
+        for described in answer["sessions"]:
+            session = SessionRecord(described["session"], described["scene"], described["client"] or UNKNOWN)
+            session.learn(described)
+            session.watched = True  # or so it may have been, and its page may be about to come back
+            session.viewer_left = time.monotonic()
+            self._records.setdefault(session.id, session)
+        if answer["sessions"]:
+            log.info("took over %d sessions", len(answer["sessions"]))
+        self.taken_over.set()
+
+    async def _try_to_reopen(self, session: SessionRecord, turn: asyncio.Semaphore) -> None:
+        try:
+            async with turn:
+                await self._reopen(session)
+        except CuletError as error:
+            session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
+            log.warning("a session could not be opened again: %s", error)

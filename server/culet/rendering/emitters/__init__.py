@@ -1,0 +1,1 @@
+"""What throws light on floor and walls: lamps, skies and panoramas, unshaded, and where a light map's texels lie."""

@@ -1,0 +1,1 @@
+"""A scene as the kernels read it: parameters, tables of stones, the light of the room."""

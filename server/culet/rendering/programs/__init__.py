@@ -1,0 +1,1 @@
+"""Programs by their features: built once, made in the background, kept."""

@@ -1,0 +1,1 @@
+"""One stone by itself: the motion models `rigid` and `classic`, step by step."""

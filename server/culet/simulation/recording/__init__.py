@@ -1,0 +1,1 @@
+"""The ways that stones take, recorded, written to files and drawn."""

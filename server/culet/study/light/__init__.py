@@ -1,0 +1,1 @@
+"""The light that stones throw: its error and its cost."""

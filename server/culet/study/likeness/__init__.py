@@ -1,0 +1,1 @@
+"""How far a picture is from what it should be: in radiance, and to the eye."""

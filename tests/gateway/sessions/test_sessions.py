@@ -1,0 +1,158 @@
+"""What the gateway remembers of a session, without an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from culet.gateway.engine.link import EngineLink
+from culet.gateway.sessions.session_places import SessionPlaces
+from culet.gateway.sessions.session_record import NO_DEMAND, SessionRecord
+from culet.gateway.sessions.sessions import Sessions
+from culet.gateway.settings import GatewaySettings
+from culet.gateway.uploads.uploads import Uploads, words
+from culet_protocol.engine import CloseSession, GetSession
+from culet_protocol.frame import Codec, Flags, Frame
+from culet_protocol.messages import Engine, Message, State, Viewers
+
+SETTINGS = GatewaySettings(control="ipc://unused", frames="ipc://unused")
+
+
+@pytest.fixture
+def sessions() -> Sessions:
+    link = EngineLink(SETTINGS)
+    return Sessions(SETTINGS, link, Uploads(link, 0))
+
+
+def test_a_viewer_that_joins_has_the_latest_frame_at_once(sessions: Sessions) -> None:
+    session = SessionRecord("ab" * 16, {})
+    frame = Frame(session.topic, Codec.JPEG, Flags.FINAL, 7, 1, 1, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"picture")
+    session.latest = (frame, frame.pack())
+    assert sessions.join(session).next_frame(0) == frame.pack()
+
+
+def test_a_viewer_that_joins_is_told_the_state_the_viewers_and_that_the_engine_is_down(sessions: Sessions) -> None:
+    session = SessionRecord("ab" * 16, {"floor": {}})
+    viewer = sessions.join(session)
+    notices = [viewer.next_notice(0) for _ in range(4)]
+    assert notices == [
+        State(revision=0, scene={"floor": {}}, falling=False),
+        Viewers(count=1),
+        Engine(status="down"),
+        None,
+    ]
+
+
+def test_the_demand_is_the_fastest_viewers_rate_at_the_size_of_the_one_who_has_watched_longest(
+    sessions: Sessions,
+) -> None:
+    session = SessionRecord("ab" * 16, {})
+    assert session.wanted(0) == NO_DEMAND
+    desk, phone = sessions.join(session), sessions.join(session)
+    now = phone.watching_since
+
+    def wanted(time: float) -> tuple[float, int, int]:
+        asked = session.wanted(time)
+        return asked.frames_per_second, *asked.size
+
+    desk.resize(1280, 720)
+    phone.resize(390, 844)
+    assert wanted(now) == (60, 1280, 720), "whoever said it last"
+    desk.resize(1920, 1080)
+    assert wanted(now) == (60, 1920, 1080)
+    desk.show(False, now + 1)
+    assert wanted(now + 1) == (60, 390, 844), "a hidden viewer's size does not count"
+    desk.show(True, now + 2)
+    assert wanted(now + 2) == (60, 390, 844), "who comes back has watched for less long"
+    session.viewers.remove(phone)
+    assert wanted(now + 3) == (60, 1920, 1080)
+    desk.show(False, now + 4)
+    assert session.wanted(now + 4) == NO_DEMAND
+
+
+def test_the_bytes_that_frames_may_have_are_those_of_the_link_of_whoever_decides_their_size(sessions: Sessions) -> None:
+    session = SessionRecord("ab" * 16, {})
+    desk, phone = sessions.join(session), sessions.join(session)
+    for viewer, size, seconds in ((desk, (1280, 720), 0.1), (phone, (390, 844), 1.0)):
+        viewer.resize(*size)
+        viewer.credit.take(1, 30_000, 0)
+        viewer.credit.acknowledge(1, seconds)
+    asked = session.wanted(phone.watching_since)
+    assert (asked.bytes_per_frame, asked.bytes_at_rest) == (10_000, 225_000), "300 kB/s, at 30 frames a second"
+    desk.show(False, 1)
+    assert session.wanted(phone.watching_since + 2).bytes_per_frame == 1_000
+
+
+def test_the_words_of_a_document_are_all_its_texts() -> None:
+    scene = {"stones": [{"mesh": "a"}, {"mesh": None}, {}], "environment": {"kind": "image", "image": "b"}}
+    assert words((scene, None, 3)) == {"a", "b", "image"}
+
+
+def asked_about(_: Sessions, session: SessionRecord) -> None:
+    session.asked += 1
+
+
+def used(sessions: Sessions, session: SessionRecord) -> None:
+    sessions.get(session.id)
+    session.used += 1  # however coarse the clock is
+
+
+def joined(sessions: Sessions, session: SessionRecord) -> None:
+    sessions.join(session)
+
+
+def left_alone(*_: object) -> None:
+    pass
+
+
+@pytest.mark.parametrize("meanwhile", [left_alone, used, asked_about, joined])
+async def test_a_session_that_is_used_while_the_engine_says_who_watches_does_not_expire(
+    sessions: Sessions, monkeypatch: pytest.MonkeyPatch, meanwhile: Callable[[Sessions, SessionRecord], None]
+) -> None:
+    session = sessions._sessions["ab" * 16] = SessionRecord("ab" * 16, {})
+    told: list[type[Message]] = []
+
+    async def request(_: EngineLink, message: Message) -> tuple[dict[str, Any], bytes]:
+        told.append(type(message))
+        meanwhile(sessions, session)
+        return {"watched": False}, b""
+
+    monkeypatch.setattr(EngineLink, "request", request)
+    await sessions._expire(session)
+    assert told == ([GetSession, CloseSession] if meanwhile is left_alone else [GetSession])
+    assert (session.id in sessions) is (meanwhile is not left_alone)
+
+
+def test_waiting_for_an_answer_about_a_session_is_using_it_until_then() -> None:
+    session = SessionRecord("ab" * 16, {})
+    with session.awaited():
+        with session.awaited():
+            pass
+        assert session.asked == 1
+        session.used = 0
+    assert session.asked == 0
+    assert session.used > 0
+
+
+@pytest.mark.parametrize("meanwhile", [False, True], ids=["before", "while the engine says who watches"])
+async def test_a_session_about_which_somebody_waits_for_an_answer_makes_no_room(*, meanwhile: bool) -> None:
+    """Though it was used longest ago."""
+    asked, idle, new = (SessionRecord(name * 32, {}, owner) for name, owner in zip("abc", ("x", "x", "y"), strict=True))
+    records, closed = {session.id: session for session in (asked, idle, new)}, list[SessionRecord]()
+
+    async def close(session: SessionRecord, _: str) -> None:
+        closed.append(records.pop(session.id))
+
+    async def watched_elsewhere(session: SessionRecord) -> bool:
+        if session is asked:
+            assert meanwhile, "the engine is not even asked"
+            asked.asked += 1
+        return False
+
+    if not meanwhile:
+        asked.asked += 1
+    places = SessionPlaces(SETTINGS.model_copy(update={"max_sessions": 2}), records, close, watched_elsewhere)
+    await places.make_room(new)
+    assert closed == [idle]

@@ -1,0 +1,76 @@
+"""Which program a picture gets while the special one is made, or cannot be: no device, nothing is compiled."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from typing import Any
+
+import pytest
+
+from culet.errors import DeviceError
+from culet.rendering.features import Features
+from culet.rendering.programs import precompile, program
+from culet.rendering.programs.build import Variant
+from culet.rendering.programs.program import Programs
+
+GENERAL = Features()
+SPECIAL = Features(floor=0)
+
+
+class Bench(Programs):
+    """Kernels are the features they are for."""
+
+    def __init__(self, *, broken: Features | None = None) -> None:
+        super().__init__(None)  # type: ignore[arg-type]
+        self.broken = broken
+        self.made: list[Features] = []
+
+    def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401 - as it is of Programs
+        self.made.append(features)
+        if features == self.broken:
+            raise DeviceError("it does not build")
+        return features
+
+
+def ask(programs: Programs, times: int) -> list[Any]:
+    """What frames get, one after the other, each after all compilers have come to an end."""
+    got = []
+    for _ in range(times):
+        got.append(programs.best(SPECIAL, Variant()))
+        for thread in threading.enumerate():
+            if thread.name == "culet-compile":
+                thread.join()
+    return got
+
+
+@pytest.fixture(autouse=True)
+def compiled_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(program, "precompile", lambda _features, _variant, **_how: True)
+
+
+def test_the_general_program_serves_until_the_special_one_is_ready() -> None:
+    programs = Bench()
+    assert ask(programs, 3) == [GENERAL, SPECIAL, SPECIAL]
+    assert programs.made == [GENERAL, SPECIAL]
+
+
+def test_a_special_program_that_cannot_be_made_is_not_tried_again_with_every_frame(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    programs = Bench(broken=SPECIAL)
+    assert ask(programs, 3) == [GENERAL] * 3
+    assert programs.made == [GENERAL, SPECIAL]
+    assert "it does not build" in caplog.text
+
+
+def test_a_compiler_that_never_ends_is_ended_and_the_general_program_goes_on(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.undo()
+    monkeypatch.setattr(precompile, "MOST_SECONDS", 0.1)
+    monkeypatch.setattr(precompile, "COMMAND", (sys.executable, "-c", "import time; time.sleep(600)"))
+    programs = Bench()
+    assert ask(programs, 2) == [GENERAL] * 2
+    assert programs.made == [GENERAL], "the driver that hung there would hang here too, and frames with it"
+    assert "did not end" in caplog.text

@@ -1,0 +1,43 @@
+"""What the ladder's study makes of measured settings, on ones made by hand."""
+
+from __future__ import annotations
+
+from itertools import pairwise, product
+
+import numpy as np
+
+from culet.engine.governing.governor import Setting
+from culet.engine.governing.measured_errors import SettingErrors
+from culet.study.serving.ladder import BOUNCES, CUTOFFS, SCALES, MeasuredSetting, errors_of, ladder_of
+
+
+def error(scale: float, cutoff: float, bounces: int) -> float:
+    """A smaller picture, a higher cut-off and fewer bounces each add to it, but full size has noise of its own."""
+    return (1.1 - scale) / 20 + cutoff / 10 + 0.1 / bounces + (0.02 if scale == 1 else 0)
+
+
+MEASURED = [
+    MeasuredSetting(
+        Setting(scale, cutoff, bounces, scale**2 * (0.01 / cutoff) ** 0.5 * (bounces / 256) ** 0.2, shown), 2 * shown
+    )
+    for scale, cutoff, bounces in product(SCALES, CUTOFFS, BOUNCES)
+    for shown in [error(scale, cutoff, bounces)]
+]
+
+
+def test_the_ladder_is_the_best_setting_and_the_frontier_of_the_cheaper_ones() -> None:
+    best, *others = ladder_of(MEASURED)
+    assert (best.scale, best.cutoff, best.max_bounces, best.cost) == (1.0, 0.01, 256, 1.0)
+    assert best.error > others[0].error, "its noise"
+    assert all(after.cost < before.cost and after.error > before.error for before, after in pairwise(others))
+    assert len(others) > 5
+
+
+def test_the_engine_reads_the_errors_as_they_were_measured() -> None:
+    written = errors_of(MEASURED)
+    shown, radiance = np.array(written.pop("shown")), np.array(written.pop("radiance"))
+    read = SettingErrors(shown_errors=shown, radiance_errors=radiance, **written)
+    for each in MEASURED:
+        place = each.setting.scale, each.setting.cutoff, each.setting.max_bounces
+        assert read.shown(*place) == round(each.setting.error, 4)
+        assert read.radiance(*place) == round(each.radiance_error, 4)
