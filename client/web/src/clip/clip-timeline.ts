@@ -1,6 +1,6 @@
 /** What a clip shows when: pictures came as they could, and a film has one size and a picture every thirtieth of a second. */
 
-import { pictureSize, type PictureSize } from "../picture/picture-size";
+import { type PictureSize, pictureSize } from "../picture/picture-size";
 import type { ClipFrame } from "./clip-frames";
 
 /** Pictures a second: what films on the web have, and as many as the server sends at most where it is balanced. */

@@ -61,7 +61,10 @@ export function materialFacts([red, green, blue]: MaterialChoice["indices"]): st
 }
 
 /** The indices of the stone's material, by its name or as the scene says them; null if they are not known. */
-export function indicesOf(scene: JsonObject | null, materials: readonly MaterialChoice[]): MaterialChoice["indices"] | null {
+export function indicesOf(
+  scene: JsonObject | null,
+  materials: readonly MaterialChoice[],
+): MaterialChoice["indices"] | null {
   const { material } = stoneOf(scene);
   if (typeof material === "string") return materials.find(({ name }) => name === material)?.indices ?? null;
   const { ior, sellmeier } = object(material);

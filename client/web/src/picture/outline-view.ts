@@ -1,12 +1,17 @@
 /** The outline of the chosen stone, over the picture. */
 
-import { type Fit, placed, type PictureSize } from "./picture-size";
+import { type Fit, type PictureSize, placed } from "./picture-size";
 
 /**
  * The corners of an SVG polygon, in pixels of the canvas that shows a picture of that shape. `points` are x and y in turn:
  * right and up from the picture's centre, in halves of its height.
  */
-export function polygonOf(points: readonly number[], picture: PictureSize, canvas: PictureSize, fit: Fit = "whole"): string {
+export function polygonOf(
+  points: readonly number[],
+  picture: PictureSize,
+  canvas: PictureSize,
+  fit: Fit = "whole",
+): string {
   const { x, y, width, height } = placed(picture, canvas, fit);
   const half = height / 2;
   const corners: string[] = [];

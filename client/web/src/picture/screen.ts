@@ -5,11 +5,11 @@ import {
   deviceLength,
   type Fit,
   letterbox,
+  type PictureSize,
   pictureSize,
   placed,
   type Rectangle,
   SHARP,
-  type PictureSize,
 } from "./picture-size";
 import { Settling } from "./settling";
 

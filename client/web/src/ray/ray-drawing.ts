@@ -38,7 +38,10 @@ export class RayDrawing {
   ): void {
     const { x, y, width, height } = letterbox(picture, canvas);
     this.drawing.setAttribute("viewBox", `0 0 ${canvas.width} ${canvas.height}`);
-    const at = ([right, up]: PicturePoint) => [x + width / 2 + (height / 2) * right, y + height / 2 - (height / 2) * up];
+    const at = ([right, up]: PicturePoint) => [
+      x + width / 2 + (height / 2) * right,
+      y + height / 2 - (height / 2) * up,
+    ];
     const ground: SVGElement[] = [];
     const light: SVGElement[] = [];
     const marks: SVGElement[] = [];

@@ -56,7 +56,12 @@ export class Stream {
    * `jitter` spreads the viewers of a restarted gateway: each pause is multiplied by it. `watch`: the watch id of a
    * session that is only looked at, where the address does not name it.
    */
-  constructor(url: string, listener: StreamListener, jitter = () => 0.75 + 0.5 * Math.random(), watch: string | null = null) {
+  constructor(
+    url: string,
+    listener: StreamListener,
+    jitter = () => 0.75 + 0.5 * Math.random(),
+    watch: string | null = null,
+  ) {
     this.url = url;
     this.protocols = watch === null ? [SUBPROTOCOL] : [SUBPROTOCOL, WATCH_SUBPROTOCOL + watch];
     this.listener = listener;
