@@ -11,6 +11,9 @@ WEB_BUILD := $(WEB)/dist/index.html
 SOLVER := server/culet/simulation/solver
 WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/element $(WEB)/docs protocol/typescript -type f) $(addprefix $(WEB)/,index.html tsconfig.json vite.config.ts vite.element.config.ts)
 
+# Or each of hundreds of processes compiles its modules, and each of pytest's workers its tests, anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Node.js from the Python index, if the system's is missing or too old (.ci/node).
 export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 
@@ -67,9 +70,10 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 	$(BIN)/python -m culet.gateway.document | node $(WEB)/rest-types.mjs
 	cd $(WEB) && npm run format
 
-# pytest ends with 5 if it has found no test.
+# Without ARGS only the files that have such tests are read. pytest ends with 5 if it has found no test.
 validate: $(DONE)/validation opencl $(DONE)/solver compilers
-	$(BIN)/pytest -m "validation and not soak" --numprocesses 2 --dist loadfile --no-loadscope-reorder $(ARGS) || [ $$? -eq 5 ]
+	$(BIN)/pytest -m "validation and not soak" --numprocesses 2 --dist loadfile --no-loadscope-reorder \
+	$(or $(ARGS),$$(grep -rlE 'mark\.validation|video_extra' tests --include='test_*.py')) || [ $$? -eq 5 ]
 
 # What is long by nature, and bounded: load, chaos, whole searches. Not part of .ci/run.
 soak: $(DONE)/soak opencl $(DONE)/solver

@@ -22,6 +22,7 @@ import culet.stills as culet_stills
 from command_line import Run, culet, invoke
 from culet.geometry.stone_file import shape_from_file
 from culet.rendering.features import RUNTIME, features_of
+from culet.rendering.renderer import Renderer
 from culet.scene import PRESETS
 from culet.study.bench.cases import CASES, FEATURE_CASES, stage_of
 from culet_protocol.watch import watch_id
@@ -260,7 +261,7 @@ def test_a_process_ends_as_its_command_does() -> None:
     ("cases", "features"),
     [
         pytest.param(("default",), ("floor",), id="some"),
-        pytest.param(tuple(CASES), MEASURED_FEATURES, id="all", marks=pytest.mark.validation),
+        pytest.param(tuple(CASES), MEASURED_FEATURES, id="all", marks=pytest.mark.soak),
     ],
 )
 def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(
@@ -285,6 +286,14 @@ def test_a_benchmark_prints_every_scene_and_feature_and_keeps_the_figures(
     for feature in {"floor", "walls", "sky"} & set(features):
         without, idle = map(int, rows[feature][-2:])
         assert without < idle, "a program without the feature is smaller"
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_scene_of_a_benchmark_renders(renderer: Renderer, name: str) -> None:
+    picture = renderer.picture(stage_of(CASES[name]), 16, 9)
+    picture.refine(1)
+    assert np.isfinite(picture.linear()).all()
+    assert picture.segments() > 0
 
 
 @contextmanager

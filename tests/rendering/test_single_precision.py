@@ -37,8 +37,12 @@ def test_every_pixel_that_differs_is_where_the_picture_is_steep(renderer: Render
     assert_explained(renderer, exact, "legacy default", (160, 90))
 
 
+LIKE_OTHERS = "legacy default", "matte floor, no lights", "stone alone, gradient"
+"""What they show, smaller pictures or scenes with more in them show too."""
+
+
 @pytest.mark.validation
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.soak] * (n in LIKE_OTHERS)) for n in SCENES])
 def test_every_pixel_that_differs_at_full_size_is_where_the_picture_is_steep(
     renderer: Renderer, exact: Renderer, name: str
 ) -> None:

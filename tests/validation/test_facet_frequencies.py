@@ -11,6 +11,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from culet.geometry.load import shape_of
 from culet.geometry.shape import Shape
@@ -18,9 +19,9 @@ from culet.scene.stone import StoneSettings
 from culet.simulation.rigid_body.rotation import normalised, rotate, rotate_back
 from culet.simulation.rigid_body.state import Quaternion, Triple
 from simulation.solids import rigid
+from simulation.test_rest import check_rest, stable_normals
 
 pytestmark = pytest.mark.validation
-DROPS = 500
 MISSING = "the comparison needs MuJoCo, which is not installed: pip install -e '.[validation]'"
 FRICTION = 0.3
 
@@ -44,7 +45,8 @@ def facet(stone: Shape, down: Triple) -> str:
     return "table" if height > 0.99 else "crown" if height > 0.05 else "girdle" if height > -0.05 else "pavilion"
 
 
-def rest_here(stone: Shape, drop: Drop) -> str:
+def rest_here(stone: Shape, drop: Drop, stable: NDArray[np.float64]) -> str:
+    """It sleeps there as `simulation/test_rest.py` asks of it."""
     height, orientation, spin = drop
     moving = rigid(
         stone, (0.0, height, 0.0), orientation, spin=rotate(orientation, spin), restitution=0, friction=FRICTION,
@@ -52,6 +54,7 @@ def rest_here(stone: Shape, drop: Drop) -> str:
     )  # fmt: skip
     while not moving.state.asleep and moving.state.time < 60:
         moving.step()
+    check_rest(moving, stone, stable)
     return facet(stone, rotate_back(moving.state.orientation, (0.0, -1.0, 0.0)))
 
 
@@ -80,11 +83,14 @@ def rests_in_mujoco(stone: Shape, tried: list[Drop]) -> list[str]:
     return found
 
 
-def test_the_facets_are_those_of_mujoco_as_often() -> None:
-    stone, tried = shape_of(StoneSettings(), {}), drops(DROPS)
-    theirs, ours = Counter(rests_in_mujoco(stone, tried)), Counter(rest_here(stone, drop) for drop in tried)
+@pytest.mark.parametrize("count", [200, pytest.param(500, marks=pytest.mark.soak)])
+def test_the_facets_are_those_of_mujoco_as_often(count: int) -> None:
+    """200 tell shares apart that differ by 0.15, 500 by 0.09. Measured of 500: 228 and 229 on the table."""
+    stone, tried = shape_of(StoneSettings(), {}), drops(count)
+    stable = stable_normals(stone)
+    theirs, ours = Counter(rests_in_mujoco(stone, tried)), Counter(rest_here(stone, drop, stable) for drop in tried)
     print(f"here {dict(ours)}, MuJoCo {dict(theirs)}")
     assert set(ours) <= {"table", "pavilion"}
-    share, other = ours["table"] / DROPS, theirs["table"] / DROPS
-    spread = math.sqrt((share * (1 - share) + other * (1 - other)) / DROPS)
+    share, other = ours["table"] / count, theirs["table"] / count
+    spread = math.sqrt((share * (1 - share) + other * (1 - other)) / count)
     assert abs(share - other) < 3 * spread

@@ -6,7 +6,7 @@ test is the one that serves. `python -m pytest -m validation -rP tests/validatio
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -20,13 +20,14 @@ from culet.scene.legacy import legacy
 from culet.simulation.staged import world_of
 from culet.stage import Stage
 from rendering.views import BARE, UPRIGHT
-from shared.stones import brilliant, ring, skew_block, step_cut
+from shared.stones import brilliant, ring, step_cut
 from validation.comparison import Seen, Verdict, compare, seen
 from validation.mitsuba_reference import Array, reference
 
 pytestmark = pytest.mark.validation
 
-SIZE = 320, 180
+SIZE = 160, 90
+"""Enough to see an index that is off by 0.2 %, with p of 1e-9. Four times as many do not show one of 0.1 % either."""
 SAMPLES = 512
 OUR_SAMPLES = 64
 """Each of culet's follows all parts of the light: they are noisy at edges only."""
@@ -39,12 +40,6 @@ VIEWS: dict[str, dict[str, Any]] = {
 }
 HEIGHT = np.broadcast_to(directions(64)[..., 1], (64, 128))
 SKIES: dict[str, Array] = {"half": np.where(HEIGHT > 0, 1.0, 0.0), "gradient": (1 + HEIGHT) / 2}
-LAMPS = np.where(np.random.default_rng(5).random((8, 16)) < 0.5, 0.1, 1.0).repeat(8, axis=0).repeat(8, axis=1)
-"""Patches of 22 degrees, bright or dim: no symmetry in which an error could hide. None is black: between black and
-white Mitsuba's spectral variants interpolate otherwise."""
-UPSAMPLED = 3e-4
-"""They turn a grey of the panorama into a smooth spectrum, which is off by 1e-4."""
-
 
 ONE: list[dict[str, Any]] = [{**UPRIGHT, "material": {"ior": INDICES}}]
 
@@ -75,38 +70,19 @@ def test_both_look_the_panorama_up_alike(renderer: Renderer, polarised: bool) ->
         assert abs(verdict.mean) < 3e-4
 
 
-@pytest.mark.parametrize("sky", SKIES)
+def sky_of(*place: int) -> str:
+    """By turns: each stone and each view is seen under both, which show what is wrong as well."""
+    return list(SKIES)[sum(place) % len(SKIES)]
+
+
 @pytest.mark.parametrize("number", range(3), ids=list(VIEWS))
 @pytest.mark.parametrize("stone", STONES)
-def test_unpolarised_light(renderer: Renderer, stone: str, number: int, sky: str) -> None:
+def test_unpolarised_light(renderer: Renderer, stone: str, number: int) -> None:
+    sky = sky_of(list(STONES).index(stone), number)
     scene, solid, panorama = scene_of(list(VIEWS.values())[number]), STONES[stone](), SKIES[sky]
     ours = seen(renderer, scene, [solid], panorama, SIZE, OUR_SAMPLES)
     theirs = reference(scene, [solid], [INDICES[number]], panorama.astype(np.float32), SIZE, SAMPLES)
     assert_same(f"{stone}, {list(VIEWS)[number]}, {sky}", ours, compare(ours, number, theirs), bias=0)
-
-
-@pytest.mark.parametrize("number", range(3), ids=list(VIEWS))
-def test_polarised_light_in_a_brilliant(renderer: Renderer, number: int) -> None:
-    compare_polarised_stone(renderer, brilliant(), number, SIZE, SAMPLES)
-
-
-@pytest.mark.parametrize("number", range(3), ids=list(VIEWS))
-def test_polarised_light_whose_plane_of_incidence_turns(renderer: Renderer, number: int) -> None:
-    """In the skew block every reflection turns it, and total reflections shift phases between: wrong signs or frames
-    cannot cancel. With a sixteenth of the pixels, as many paths are enough to tell averaged polarisation apart."""
-    polarised, averaged = compare_polarised_stone(
-        renderer, skew_block(), number, (SIZE[0] // 4, SIZE[1] // 4), 16 * SAMPLES
-    )
-    # measured 3.8, 7.8 and 10.6 times as many; 5e-16 is the lowest p
-    assert averaged.beyond_two_sigma > 3 * polarised.beyond_two_sigma
-
-
-def compare_polarised_stone(
-    renderer: Renderer, stone: Shape, number: int, size: tuple[int, int], samples: int
-) -> tuple[Verdict, Verdict]:
-    view = list(VIEWS.values())[number]
-    scenes, name = (scene_of(view, polarised=True), scene_of(view)), f"{stone.name}, {list(VIEWS)[number]}"
-    return compare_polarised(renderer, name, scenes, [stone], [INDICES[number]], number, size, samples)
 
 
 TRIO = PRESETS["trio"].scene.stones
@@ -135,47 +111,14 @@ def test_the_stones_of_the_trio_touch() -> None:
     assert [abs(world.separation(one, other)) < 1e-5 for other in others] == [True, True]
 
 
-@pytest.mark.parametrize("sky", SKIES)
 @pytest.mark.parametrize("number", range(3), ids=list(AROUND_TRIO))
-def test_light_among_three_stones_that_touch(renderer: Renderer, number: int, sky: str) -> None:
+def test_light_among_three_stones_that_touch(renderer: Renderer, number: int) -> None:
+    sky = sky_of(number)
     scene, panorama, shapes = trio(number), SKIES[sky], [brilliant()] * len(TRIO)
     etas = [indices[number] for indices in TRIOS_INDICES]
     ours = seen(renderer, scene, shapes, panorama, TRIOS_SIZE, OUR_SAMPLES)
     theirs = reference(scene, shapes, etas, panorama.astype(np.float32), TRIOS_SIZE, SAMPLES)
     assert_same(f"trio, {list(AROUND_TRIO)[number]}, {sky}", ours, compare(ours, number, theirs), bias=0)
-
-
-@pytest.mark.parametrize("number", range(3), ids=list(AROUND_TRIO))
-def test_polarised_light_among_three_stones_that_touch(renderer: Renderer, number: int) -> None:
-    scenes, shapes = (trio(number, polarised=True), trio(number)), [brilliant()] * len(TRIO)
-    etas = [indices[number] for indices in TRIOS_INDICES]
-    polarised, averaged = compare_polarised(
-        renderer, f"trio, {list(AROUND_TRIO)[number]}", scenes, shapes, etas, number, (80, 45), 8 * SAMPLES
-    )
-    if list(AROUND_TRIO)[number] == "through one at the others":  # measured 10 times as many
-        assert averaged.beyond_two_sigma > 2 * polarised.beyond_two_sigma
-
-
-def compare_polarised(
-    renderer: Renderer,
-    name: str,
-    scenes: tuple[Scene, Scene],
-    shapes: Sequence[Shape],
-    etas: Sequence[float],
-    number: int,
-    size: tuple[int, int],
-    samples: int,
-) -> tuple[Verdict, Verdict]:
-    """Of a scene, polarised and averaged, judges the polarised mode, and returns the verdicts on both."""
-    scene, without = scenes
-    our_samples = OUR_SAMPLES * samples // SAMPLES
-    ours = seen(renderer, scene, shapes, LAMPS, size, our_samples)
-    theirs = reference(scene, shapes, etas, LAMPS.astype(np.float32), size, samples, polarised=True)
-    polarised = compare(ours, number, theirs, UPSAMPLED)
-    assert_same(f"{name}, polarised", ours, polarised, bias=UPSAMPLED)
-    averaged = compare(seen(renderer, without, shapes, LAMPS, size, our_samples), number, theirs, UPSAMPLED)
-    print(f"  without polarisation: {averaged}")
-    return polarised, averaged
 
 
 def assert_same(name: str, ours: Seen, verdict: Verdict, bias: float) -> None:

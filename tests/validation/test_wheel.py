@@ -53,8 +53,10 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def culet(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The command, in an environment that has nothing but the wheel and what it asks for."""
     folder = tmp_path_factory.mktemp("clean")
-    venv.create(folder, with_pip=True)
-    subprocess.run([folder / "bin" / "pip", "install", "--quiet", str(wheel)], check=True)
+    venv.create(folder)
+    python = str(folder / "bin" / "python")
+    pip = [sys.executable, "-m", "pip", "--python", python]  # which need not be installed there itself
+    subprocess.run([*pip, "install", "--quiet", "--no-compile", str(wheel)], check=True)
     return folder / "bin" / "culet"
 
 
