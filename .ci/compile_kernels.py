@@ -1,6 +1,6 @@
 """Compile every OpenCL file by itself, and the renderer in all its kinds, with each of clang's warnings an error.
 
-In every width of a packet and both precisions, on all cores. No test does that again.
+Programs in every width of a packet and both precisions, on all cores. No test does that again.
 """
 
 from __future__ import annotations
@@ -31,6 +31,9 @@ ALL_WARNINGS = """
 #pragma clang diagnostic ignored "-Wbitwise-instead-of-logical"
 """
 VARIANTS = [Variant(lanes=lanes, real=real) for lanes in (1, 4, 8, 16) for real in (np.float32, np.float64)]
+BY_ITSELF = VARIANTS[0], VARIANTS[-1]
+"""One lane in single precision and sixteen in double, of a file without kernels: whether it includes what it uses. In
+the others it is compiled in the programs that include it."""
 FIXED = [
     Features(
         Geometry.HULL, SURFACE["mirror"], SURFACE["none"], -1, SKY["studio"], dispersion=1, absorption=0,
@@ -78,7 +81,11 @@ def programs() -> list[Program]:
         ("path.cl", (*Variant(lanes=1, real=real).options, *each.options))
         for real, each in product((np.float32, np.float64), (*(Features(geometry) for geometry in Geometry), *MANY))
     ]
-    alone = [(name, tuple(variant.options)) for name, variant in product(culet_kernels.NAMES, VARIANTS)]
+    alone = [
+        (name, tuple(variant.options))
+        for name in culet_kernels.NAMES
+        for variant in (VARIANTS if "__kernel" in culet_kernels.written(name) else BY_ITSELF)
+    ]
     return [*renderers, *rays, *alone]
 
 
