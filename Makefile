@@ -20,7 +20,7 @@ export PATH := $(CURDIR)/.venv/node/bin:$(PATH)
 # Kernels compiled for tests are kept here, apart from the user's own.
 test check-kernels validate soak reliability: export POCL_CACHE_DIR ?= $(CURDIR)/.cache/kernels
 
-.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench delay study compose-test lock digests compilers opencl browser node
+.PHONY: setup serve wheel test check check-python check-kernels check-protocol check-web check-docs docs format validate soak reliability bench delay study compose-test lock digests compilers opencl browser llvm node
 .DELETE_ON_ERROR:
 
 setup: $(DONE)/dev opencl $(DONE)/solver $(WEB_BUILD)
@@ -71,7 +71,7 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 	cd $(WEB) && npm run format
 
 # Without ARGS only the files that have such tests are read. pytest ends with 5 if it has found no test.
-validate: $(DONE)/validation opencl $(DONE)/solver compilers
+validate: $(DONE)/validation opencl $(DONE)/solver compilers llvm
 	$(BIN)/pytest -m "validation and not soak" --numprocesses 2 --dist loadfile --no-loadscope-reorder \
 	$(or $(ARGS),$$(grep -rlE 'mark\.validation|video_extra' tests --include='test_*.py')) || [ $$? -eq 5 ]
 
@@ -160,6 +160,9 @@ compilers:
 
 opencl: $(DONE)/base
 	@.ci/need opencl
+
+llvm: $(DONE)/validation
+	@.ci/need llvm || echo "make: Mitsuba has no LLVM, and takes three times as long" >&2
 
 browser:
 	@.ci/need chromium curl

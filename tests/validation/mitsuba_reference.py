@@ -39,7 +39,7 @@ LONGEST = 256
 
 
 def variants() -> dict[bool, str]:
-    """By whether light is polarised. PoCL brings the LLVM that Dr.Jit looks for."""
+    """By whether light is polarised. `make validate` brings the LLVM that Dr.Jit needs, where it may."""
     return BY_LANES if drjit.has_backend(drjit.JitBackend.LLVM) else ONE_BY_ONE
 
 
