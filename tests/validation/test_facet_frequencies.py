@@ -18,8 +18,8 @@ from culet.geometry.shape import Shape
 from culet.scene.stone import StoneSettings
 from culet.simulation.rigid_body.rotation import normalised, rotate, rotate_back
 from culet.simulation.rigid_body.state import Quaternion, Triple
+from simulation.one_stone.test_rest import check_rest, stable_normals
 from simulation.solids import rigid
-from simulation.test_rest import check_rest, stable_normals
 
 pytestmark = pytest.mark.validation
 MISSING = "the comparison needs MuJoCo, which is not installed: pip install -e '.[validation]'"
@@ -46,7 +46,7 @@ def facet(stone: Shape, down: Triple) -> str:
 
 
 def rest_here(stone: Shape, drop: Drop, stable: NDArray[np.float64]) -> str:
-    """It sleeps there as `simulation/test_rest.py` asks of it."""
+    """It sleeps there as `simulation/one_stone/test_rest.py` asks of it."""
     height, orientation, spin = drop
     moving = rigid(
         stone, (0.0, height, 0.0), orientation, spin=rotate(orientation, spin), restitution=0, friction=FRICTION,
