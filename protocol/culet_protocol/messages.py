@@ -365,6 +365,8 @@ class Problem(Message):
     code: str
     message: str
     field: str | None = None
+    number: int | None = None
+    """Of the viewer's message that was refused, if it was that: 1 is the first of the stream."""
 
 
 class Engine(Message):

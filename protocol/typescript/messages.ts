@@ -378,6 +378,7 @@ export interface Problem {
   code: string;
   message: string;
   field?: string | null;
+  number?: number | null;
 }
 
 /** The render process is gone (`down`), or is back with the same scene (`up`). */
@@ -474,7 +475,12 @@ export const NOTICE_FIELDS: Record<Notice["type"], Record<string, readonly strin
   },
   snapshot: { snapshot: ["object"] },
   viewers: { count: ["integer"] },
-  problem: { code: ["string"], message: ["string"], field: ["string", "null", "absent"] },
+  problem: {
+    code: ["string"],
+    message: ["string"],
+    field: ["string", "null", "absent"],
+    number: ["integer", "null", "absent"],
+  },
   engine: { status: ["down", "up"] },
   leaving: { seconds: ["number"] },
   pong: { time: ["number"] },

@@ -97,10 +97,13 @@ class Viewer:
         """Changes as the states that they make."""
         self.changes: list[dict[str, Any]] = []
         """As they came."""
+        self.sent = 0
+        """Control events and acknowledgements."""
         self._state: dict[str, Any] = {}
 
     async def say(self, message: Message) -> None:
         """Send a control event."""
+        self.sent += 1
         async with asyncio.timeout(PATIENCE):
             await self.websocket.send(message.model_dump_json())
 
@@ -113,6 +116,7 @@ class Viewer:
         frame = Frame.unpack(message)
         self.frames.append(frame)
         if self.acknowledges:
+            self.sent += 1
             with contextlib.suppress(ConnectionClosed):  # in a browser too, what came before a close is still received
                 await self.websocket.send(json.dumps({"type": "ack", "sequence": frame.sequence}))
 

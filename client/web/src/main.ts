@@ -43,6 +43,7 @@ import { ShareCard } from "./share/share-card";
 import { Bareness } from "./signs/bareness";
 import { Complaints, reasonOf } from "./signs/complaints";
 import { Signs } from "./signs/signs";
+import { slowly } from "./signs/slowly";
 import { Toasts } from "./signs/toasts";
 import { Welcome } from "./signs/welcome";
 import { StoneCommands } from "./stones/stone-commands";
@@ -105,6 +106,7 @@ const visit = new Visit(
       acknowledged.heard(answer);
       meter.delayed(delays.heard(answer, performance.now()));
     },
+    refused: (problem) => acknowledged.refused(problem),
     sent: (event) => {
       if (ENDING.has(event.type)) panel.forget();
       delays.sent(event, inputTime(), performance.now());
@@ -224,7 +226,11 @@ const panel = new Panel(element("panel", HTMLElement), {
   divide,
   otherwise: (scene) => comparison.otherwise(scene),
   grades: (stone, tilt, signal) => rest.grades(visit.session ?? "", stone, tilt, signal),
-  done: () => acknowledged.all(),
+  steps: {
+    after: (work) => acknowledged.after(work),
+    working: () => slowly(() => toasts.notice(words.cut.working)),
+    failed: (why) => complaints.tell(why),
+  },
   tiers: (scene, reach, signal) => rest.tiers(visit.session ?? "", text(stoneOf(scene).id, ""), reach, signal),
   measure: (scene) => rest.proportions(scene),
   openDiagram: (stone) => window.open(rest.diagramAddress(visit.session ?? "", stone), "_blank", "noopener"),
@@ -240,7 +246,10 @@ const shareCard = new ShareCard(
 );
 const fallButton = new FallButton(element("fall", HTMLButtonElement), () => perform(actionNamed("fall")));
 const welcome = new Welcome(element("welcome", HTMLElement));
-const acknowledged = new Acknowledged((question) => visit.viewer?.ask(question));
+const acknowledged = new Acknowledged(
+  (question) => visit.viewer?.ask(question),
+  () => visit.viewer?.stream.sent ?? { connection: 0, count: 0 },
+);
 const delays = new Delays((question) => visit.viewer?.ask(question));
 const meter = new Meter(
   element("meter", HTMLElement),

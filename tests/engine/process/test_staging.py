@@ -14,6 +14,7 @@ from culet.engine.process.staging import (
     CHANGE_SECONDS,
     MOST_WAITING,
     SHAPES_AT_ONCE,
+    Patience,
     ShapesNeededError,
     Staging,
     to_its_end,
@@ -135,6 +136,22 @@ async def test_a_change_is_refused_whose_shapes_take_too_long_and_a_smaller_one_
     async with staging.turn("a") as turn:
         stage = await turn.make(lambda library: Stage.of(one, library), most_seconds=CHANGE_SECONDS)
     assert len(stage.shapes) == 1
+
+
+async def test_a_change_whose_time_is_over_ends_before_its_next_shape() -> None:
+    now = iter((0.0, 1.0, 8.0, 9.0))  # when it came, and before and after shapes
+    patience, looks = Patience(9.0, clock=lambda: next(now)), 0
+
+    def work(library: Library) -> None:
+        nonlocal looks
+        for _ in range(4):
+            library.around_shape()
+            looks += 1
+
+    async with Staging(Library()).turn("a") as turn:
+        with pytest.raises(BusyError, match="not done within 9 s"):
+            await turn.make(work, check=patience.check)
+    assert looks == 2
 
 
 async def test_nothing_is_made_for_a_session_that_is_gone() -> None:

@@ -246,10 +246,12 @@ async def test_bad_control_messages_are_answered_and_the_session_lives_on(
 ) -> None:
     async with gateway.viewer(await gateway.session()) as viewer:
         first = await viewer.frame()
+        number = viewer.sent + 1
         await viewer.websocket.send(message)
         problem = await viewer.notice("problem")
         assert (problem["code"], problem["field"]) == (code, field)
         assert problem["message"]
+        assert problem["number"] == number, "whoever sent it can tell which message was refused"
         await viewer.say(Orbit(yaw=0.1, pitch=0.1))
         await viewer.until(lambda: viewer.frames[-1].step > first.step)
 

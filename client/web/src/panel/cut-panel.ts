@@ -12,6 +12,7 @@ import { words } from "../words/words";
 import { cutName, cutOf, cutPatch, type Proportion, proportionsOf, shapeName, shapePatch } from "./cut";
 import { LiveControls } from "./live-controls";
 import { type Measure, RecutSliders } from "./recut-sliders";
+import type { Steps } from "./steps";
 import { TierSliders } from "./tier-sliders";
 import { type ListTiers, SIDES, sharing } from "./tiers";
 
@@ -23,7 +24,7 @@ export interface CutActions {
   openDiagram: (stone: string) => void;
   measure: Measure;
   tiers: ListTiers;
-  done: () => Promise<void>;
+  steps: Steps;
   keepDesign: () => void;
   changeDesigns: () => void;
   divide: () => void;
@@ -38,8 +39,12 @@ class Sliders {
   readonly element = document.createElement("div");
   private readonly controls: LiveControls<Values>;
 
-  constructor(now: () => Values, send: (name: string, value: number) => void) {
-    this.controls = new LiveControls(now, send);
+  constructor(now: () => Values, send: (name: string, value: number) => void, steps: Steps) {
+    this.controls = new LiveControls(now, send, steps);
+  }
+
+  forget(): void {
+    this.controls.forget();
   }
 
   add({ name, label, least, most, step, hint }: Proportion, clamped: Clamped): void {
@@ -64,6 +69,7 @@ export class CutPanel {
   private readonly change: Command;
   private readonly both: Command;
   private readonly otherwise: CutActions["otherwise"];
+  private readonly steps: Steps;
   private readonly kinds = new Map<string, CutKind>();
   private readonly sliders = new Map<string, Sliders>();
   private readonly place: HTMLElement;
@@ -79,7 +85,7 @@ export class CutPanel {
       openDiagram,
       measure,
       tiers,
-      done,
+      steps,
       keepDesign,
       changeDesigns,
       divide,
@@ -87,19 +93,24 @@ export class CutPanel {
     }: CutActions,
   ) {
     this.otherwise = otherwise;
+    this.steps = steps;
     this.section = section.show(false);
     this.send = send;
     this.clamped = clamped;
     this.shape = new LiveControls(
       () => ({ cut: shapeName(this.scene) }),
-      (_, name) => send(shapePatch(this.scene, name)),
+      (_, name) => {
+        this.forgetSliders();
+        send(shapePatch(this.scene, name));
+      },
+      steps,
     );
     this.shape.listen("cut", section.add(this.list));
     this.place = section.add({ element: document.createElement("div") }).element;
-    this.anew = section.add(new RecutSliders(send, measure, clamped));
+    this.anew = section.add(new RecutSliders(send, measure, clamped, steps));
     const shared = sharing(tiers);
     this.tiers = SIDES.map((side) => {
-      return new TierSliders(section.section(words.cut.tiers[side]), side, send, shared, clamped, done);
+      return new TierSliders(section.section(words.cut.tiers[side]), side, send, shared, clamped, steps);
     });
     section.onFold((open) => this.anew.update(this.scene, open));
     const reset = () => {
@@ -114,6 +125,7 @@ export class CutPanel {
   }
 
   update({ scene }: ViewState): void {
+    if (stoneOf(scene).id !== stoneOf(this.scene).id) this.forget(); // or what waits would be done to another stone
     this.scene = scene;
     this.section.show(this.kinds.size > 0 && hasStone(scene));
     this.shape.display();
@@ -136,7 +148,13 @@ export class CutPanel {
 
   /** Send nothing of what waits in a slider: something else was done to the stone. */
   forget(): void {
-    for (const tiers of this.tiers) tiers.forget();
+    this.shape.forget();
+    this.forgetSliders();
+  }
+
+  private forgetSliders(): void {
+    this.anew.forget();
+    for (const sliders of [...this.sliders.values(), ...this.tiers]) sliders.forget();
   }
 
   addCuts(cuts: readonly CutKind[], state: ViewState): void {
@@ -150,6 +168,7 @@ export class CutPanel {
     const sliders = new Sliders(
       () => cutOf(this.scene, proportions),
       (name, value) => this.send(cutPatch(this.scene, name, value)),
+      this.steps,
     );
     for (const proportion of proportions) sliders.add(proportion, this.clamped);
     this.place.append(sliders.element);

@@ -22,6 +22,7 @@ import { EditButtons } from "./edit-buttons";
 import { FallPanel } from "./fall-panel";
 import { type Ask, GradePanel } from "./grade-panel";
 import type { Measure } from "./recut-sliders";
+import type { Steps } from "./steps";
 import { type StoneActions, StonePanel } from "./stone-panel";
 import { SurfacePanel } from "./surface-panel";
 import type { ListTiers } from "./tiers";
@@ -53,8 +54,8 @@ export interface PanelActions {
   measure: Measure;
   /** Ask for a stone's tiers. */
   tiers: ListTiers;
-  /** Ends when the server is done with what was sent before. */
-  done: () => Promise<void>;
+  /** What may take the server seconds is asked for so. */
+  steps: Steps;
   /** Show a stone's cutting diagram. */
   openDiagram: (stone: string) => void;
   /** Show the session's links. */

@@ -7,6 +7,7 @@ import type { Proportions } from "../session/answers";
 import { words } from "../words/words";
 import { LiveControls } from "./live-controls";
 import { asItCame, asItCamePatch, type Own, type Recut, recutOf, recutPatch, uploadOf } from "./recut";
+import type { Steps } from "./steps";
 
 const RATIO: Ends = { least: 0.8, most: 1.25, step: 0.005, decimals: 3 };
 const ENDS: Record<keyof Recut, Ends> = {
@@ -29,11 +30,12 @@ export class RecutSliders {
   private measured = "";
   private own: Own | null = null;
 
-  constructor(send: (patch: Record<string, unknown>) => void, measure: Measure, clamped: Clamped) {
+  constructor(send: (patch: Record<string, unknown>) => void, measure: Measure, clamped: Clamped, steps: Steps) {
     this.measure = measure;
     this.controls = new LiveControls<Recut>(
       () => recutOf(this.scene, this.own),
       (name, value) => send(recutPatch(this.scene, name, value)),
+      steps,
     );
     for (const name of NAMES) {
       const [label, hint] = words.cut.anew[name];
@@ -41,8 +43,17 @@ export class RecutSliders {
       this.controls.listen(name, slider);
       this.element.append(slider.element);
     }
-    this.element.append(new Command(words.cut.asItCame, () => send(asItCamePatch(this.scene))).element);
+    const asItWas = () => {
+      this.forget();
+      send(asItCamePatch(this.scene));
+    };
+    this.element.append(new Command(words.cut.asItCame, asItWas).element);
     this.element.hidden = true;
+  }
+
+  /** Send nothing of what waits: something else was done to the stone. */
+  forget(): void {
+    this.controls.forget();
   }
 
   /** `seen`: somebody looks at the panel's part that these are in. */

@@ -9,6 +9,7 @@ import { reasonOf } from "../signs/complaints";
 import { words } from "../words/words";
 import { LiveControls } from "./live-controls";
 import { Refusal } from "./refusal";
+import type { Steps } from "./steps";
 import { ListRequests, passes, ReachRequests } from "./tier-requests";
 import {
   anglesOf,
@@ -48,7 +49,7 @@ export class TierSliders {
   private readonly lists: ListRequests;
   private readonly reaches: ReachRequests;
   private readonly clamped: Clamped;
-  private readonly done: () => Promise<void>;
+  private readonly steps: Steps;
   private readonly place = document.createElement("div");
   /** Tiers that follow, or why there are none. */
   private readonly status = document.createElement("p");
@@ -60,14 +61,14 @@ export class TierSliders {
   /** The scene whose stone they are of, or which has none. */
   private listedOf: JsonObject | null = null;
 
-  /** `done` ends when the server is done with what was sent: an angle may take it seconds. */
+  /** `steps`: an angle may take the server seconds. */
   constructor(
     section: Section,
     side: Side,
     send: (patch: JsonObject) => void,
     list: ListTiers,
     clamped: Clamped,
-    done: () => Promise<void>,
+    steps: Steps,
   ) {
     this.section = section.fold(true);
     this.side = side;
@@ -78,7 +79,7 @@ export class TierSliders {
     });
     this.reaches = new ReachRequests(list, (tier) => this.span(this.rows.get(tier)));
     this.clamped = clamped;
-    this.done = done;
+    this.steps = steps;
     this.status.className = "tier-status";
     this.status.setAttribute("role", "status");
     section.add({ element: this.place });
@@ -184,7 +185,7 @@ export class TierSliders {
     this.controls = new LiveControls<Degrees>(
       () => this.degrees(),
       (name, value) => this.send(tierPatch(this.scene, String(name), value)),
-      this.done,
+      this.steps,
     );
     for (const tier of free) this.add(String(tier.tier), tier);
   }

@@ -10,6 +10,7 @@ import {
 } from "@culet/protocol/messages";
 import { NoticeError, parseNotice } from "@culet/protocol/notice";
 import { words } from "../words/words";
+import type { Sent } from "./acknowledged";
 import { Latency } from "./latency";
 
 export type Connection =
@@ -50,6 +51,8 @@ export class Stream {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private pinger: ReturnType<typeof setInterval> | undefined;
   private tries = 0;
+  private connections = 0;
+  private count = 0;
   private now: Connection = { status: "connecting" };
 
   /**
@@ -70,6 +73,11 @@ export class Stream {
 
   get connection(): Connection {
     return this.now;
+  }
+
+  /** Messages by the present connection, or by the last one. */
+  get sent(): Sent {
+    return { connection: this.connections, count: this.count };
   }
 
   open(): void {
@@ -103,6 +111,7 @@ export class Stream {
   send(event: ControlEvent): boolean {
     if (this.now.status !== "open" || !this.socket) return false;
     this.socket.send(JSON.stringify(event));
+    this.count += 1;
     return true;
   }
 
@@ -116,6 +125,8 @@ export class Stream {
 
   private opened(): void {
     this.tries = 0;
+    this.connections += 1;
+    this.count = 0;
     this.latency.reset();
     this.pinger = setInterval(() => this.ping(), PING_MS);
     this.become({ status: "open" });

@@ -26,6 +26,7 @@ beforeEach(() => {
     state: () => {},
     answer: () => undefined,
     lacking: () => problems.push("lacking"),
+    refused: ({ code }) => code === "at_the_limit",
     problem: (text) => problems.push(text),
   });
   viewer.stream.open();
@@ -134,6 +135,7 @@ describe("a viewer", () => {
     viewer.send({ type: "toggle_fall" });
     FakeSocket.last.accept();
     FakeSocket.last.say({ type: "problem", code: "malformed", message: "yaw: not a number" });
+    FakeSocket.last.say({ type: "problem", code: "at_the_limit", message: "told where it was done" });
     expect(problems).toEqual(["Not connected: nothing was sent.", "yaw: not a number"]);
   });
 });

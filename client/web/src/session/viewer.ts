@@ -1,7 +1,7 @@
 /** One session on this page: stream, frames and state together. */
 
 import type { Frame } from "@culet/protocol/frame";
-import type { ControlEvent, JsonObject, Notice, Outlined, Picked, Reached } from "@culet/protocol/messages";
+import type { ControlEvent, JsonObject, Notice, Outlined, Picked, Problem, Reached } from "@culet/protocol/messages";
 import { BottleneckMeter } from "../meter/bottleneck";
 import type { Arrival } from "../meter/frame-history";
 import type { PictureSize } from "../picture/picture-size";
@@ -24,6 +24,8 @@ export interface ViewerListener {
   answer: (answer: Picked | Outlined | Reached) => void;
   /** A new render process lacks what the session needs. */
   lacking: () => void;
+  /** Something was refused; whether who did it is told, and sends it again if it can be. */
+  refused: (problem: Problem) => boolean;
   /** `about`: the field of the scene that was refused, if it was that. */
   problem: (text: string, about?: string) => void;
 }
@@ -133,7 +135,7 @@ export class Viewer {
     else if (notice.type === "problem") {
       this.ended ||= notice.code === "session_closed";
       if (notice.code === "session_lost") this.listener.lacking();
-      this.listener.problem(notice.message, notice.field ?? undefined);
+      if (!this.listener.refused(notice)) this.listener.problem(notice.message, notice.field ?? undefined);
     } else if (isAmiss(this.state, notice)) this.stream.reopen();
     else this.become(withNotice(this.state, notice));
   }

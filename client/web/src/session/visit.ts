@@ -1,7 +1,7 @@
 /** The page's session: found by the address or made, watched, and made again if the server has lost it. */
 
 import type { Frame } from "@culet/protocol/frame";
-import { CloseCode, type Outlined, type Picked, type Reached } from "@culet/protocol/messages";
+import { CloseCode, type Outlined, type Picked, type Problem, type Reached } from "@culet/protocol/messages";
 import { fitted, LinkError, unpackedView } from "../files/view-link";
 import { part } from "../json";
 import type { Arrival } from "../meter/frame-history";
@@ -29,6 +29,8 @@ export interface VisitWorld {
   state: (before: ViewState, after: ViewState) => void;
   /** A question of this viewer is answered. */
   answer: (answer: Picked | Outlined | Reached) => void;
+  /** Something was refused; whether who did it is told, and sends it again if it can be. */
+  refused: (problem: Problem) => boolean;
   /** Something that a user did goes to the server. */
   sent: (event: SessionEvent) => void;
   /** Something went well that the user should know of. */
@@ -155,6 +157,7 @@ export class Visit {
         },
         answer: this.world.answer,
         lacking: () => this.complaints.attempt(() => this.giveFilesAgain()),
+        refused: this.world.refused,
         problem: (text, about) => this.complaints.tell(text, about),
       },
       only ? id : null,

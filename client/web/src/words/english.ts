@@ -331,6 +331,7 @@ export const cut = {
   /** Shown in the list of cuts for a stone whose shape comes from a file. */
   own: "A file's",
   usual: "The usual proportions",
+  working: "The stone is being cut\u2026",
   /** Of the design of a file, by the scene's names: label, and what it means. */
   anew: {
     crown_ratio: [
@@ -568,6 +569,7 @@ export const connection = {
   closed: "Not connected.",
   closedHere: "closed by the page",
   notSent: "Not connected: nothing was sent.",
+  notAnswered: "The server did not answer.",
   engineDown: "The render process stopped and is being restarted. The scene is kept.",
   leaving: (minutes: number) =>
     `This server is about to be stopped, within ${minutes} ${minutes === 1 ? "minute" : "minutes"}. Your session stays ` +

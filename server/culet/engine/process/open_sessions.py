@@ -15,7 +15,7 @@ from culet.engine.capacity.limits import Limits
 from culet.engine.capacity.memory import Memory
 from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
-from culet.engine.process.staging import CHANGE_SECONDS, Staging
+from culet.engine.process.staging import CHANGE_SECONDS, Patience, Staging
 from culet.engine.session import events
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import SessionSnapshot
@@ -109,11 +109,17 @@ class OpenSessions:
         self._make_room()
         own = scene.environment if snapshot is None else snapshot.environment or scene.environment
         most = CHANGE_SECONDS if snapshot is None else math.inf  # what was there before comes again, whatever it takes
-        with self._wanted(request.session) as check:
-            async with self._staging.turn(request.client) as turn:
+        patience = Patience(None if snapshot is None else math.inf)
+        with self._wanted(request.session) as wanted:
+
+            def check() -> None:
+                wanted()
+                patience.check()
+
+            async with patience.enter(self._staging.turn(request.client)) as turn:
                 work = partial(self._made, request.session, scene, own, snapshot)
                 session = await turn.make(work, most_seconds=most, check=check)
-            check()
+            wanted()
         if request.session in self:  # opened twice at once
             return self.get(request.session)
         self._make_room()

@@ -22,7 +22,14 @@ from culet.engine.painting.still import StillQueue
 from culet.engine.process.in_use import sky_bytes, uploads_in_use
 from culet.engine.process.open_sessions import SESSION_BYTES, OpenSessions, described
 from culet.engine.process.picture_memory import size_within
-from culet.engine.process.staging import CHANGE_SECONDS, ShapesNeededError, Staging, to_its_end, without_shapes
+from culet.engine.process.staging import (
+    CHANGE_SECONDS,
+    Patience,
+    ShapesNeededError,
+    Staging,
+    to_its_end,
+    without_shapes,
+)
 from culet.engine.process.still_requests import StillRequests
 from culet.engine.process.stone_requests import StoneRequests
 from culet.engine.session import events, questions
@@ -164,27 +171,32 @@ class Requests:
 
     async def _control(self, request: protocol.Control) -> dict[str, Any]:
         live = self.sessions.get(request.session)
-        session = live.session
+        session, patience = live.session, Patience()
         try:
-            async with session.lock:
+            async with patience.enter(session.lock):
                 if request.event.type in SHAPING_EVENTS:
-                    await self._reshape(live, request.event)
+                    await self._reshape(live, request.event, patience)
                 else:
                     await self._change(session, request.event, self._library)
         finally:
             self._painter.wake()
         return {"step": session.shown.step, "falling": session.motion.falling}
 
-    async def _reshape(self, live: LivePicture, event: SessionEvent) -> None:
+    async def _reshape(self, live: LivePicture, event: SessionEvent, patience: Patience) -> None:
         """An event that may make shapes: at once if it makes none, or else in a turn of the client."""
         session = live.session
         with suppress(ShapesNeededError):
             await self._change(session, event, without_shapes(self._library))
             return
-        there = partial(self.sessions.check, live)  # for who waits for one that is closed, nothing is made
-        async with self._changes.turn(self.sessions.client(live)) as turn, session.motion.still():
+
+        def check() -> None:
+            self.sessions.check(live)  # for who waits for one that is closed, nothing is made
+            patience.check()
+
+        turn_of = self._changes.turn(self.sessions.client(live))
+        async with patience.enter(turn_of) as turn, session.motion.still():
             with self._told(session):
-                await turn.make(partial(events.apply, session, event), most_seconds=CHANGE_SECONDS, check=there)
+                await turn.make(partial(events.apply, session, event), most_seconds=CHANGE_SECONDS, check=check)
 
     async def _change(self, session: Session, event: SessionEvent, library: Library) -> None:
         apply = partial(events.apply, session, event, library)

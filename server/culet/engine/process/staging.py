@@ -14,8 +14,9 @@ import threading
 from collections import Counter, deque
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractAsyncContextManager
 from dataclasses import replace
-from time import thread_time
+from time import monotonic, thread_time
 from typing import TypeVar
 
 from culet.client_turns import ClientTurns
@@ -35,10 +36,45 @@ MOST_WAITING = 320
 """Pieces of work of one client: a gateway lets 8 events of each of its 32 sessions be under way, and some stills."""
 CHANGE_SECONDS = 8.0
 """Of a processor, for the shapes of a session's scene. A gateway waits 10 s for a change."""
+WAIT_SECONDS = 9.0
+"""After which a change is refused that waits for others of its client, or whose next shape still is to be made: before
+a gateway would say that the engine does not answer."""
 
 
 class _GivenUp(Exception):  # noqa: N818 - nothing went wrong
     """Nobody waits for it any more."""
+
+
+class Patience:
+    """How long a change may take that others of its client are before."""
+
+    def __init__(self, seconds: float | None = None, *, clock: Callable[[], float] = monotonic) -> None:
+        """So many seconds, WAIT_SECONDS if None."""
+        self._seconds = WAIT_SECONDS if seconds is None else seconds
+        self._clock = clock
+        self._until = clock() + self._seconds
+
+    def check(self) -> None:
+        """BusyError if it is over. From any thread."""
+        if self._clock() >= self._until:
+            raise self._over()
+
+    @contextlib.asynccontextmanager
+    async def enter(self, waited: AbstractAsyncContextManager[T]) -> AsyncIterator[T]:
+        """Within what has to be waited for; BusyError, if that takes too long."""
+        async with contextlib.AsyncExitStack() as stack:
+            try:
+                async with asyncio.timeout(None if math.isinf(self._until) else self._until - self._clock()):
+                    entered = await stack.enter_async_context(waited)
+            except TimeoutError:
+                raise self._over() from None
+            yield entered
+
+    def _over(self) -> BusyError:
+        return BusyError(
+            f"this was not done within {self._seconds:g} s, beside what else of yours is being done; try again later: "
+            "shapes that were made are kept for a while"
+        )
 
 
 class Places:

@@ -128,6 +128,8 @@ class _Stream:
         self._questions = asyncio.Semaphore(QUESTIONS_UNDER_WAY)
         """Held for each question until the engine has answered."""
         self._under_way: set[asyncio.Task[None]] = set()
+        self._number = 0
+        """Of the viewer's message that was read last."""
 
     async def run(self) -> None:
         """Until either task ends."""
@@ -202,6 +204,7 @@ class _Stream:
             text: str | None = message.get("text")
             size = len(message["bytes"]) if text is None else len(text.encode())
             self._pay(min(size, MAX_CONTROL_BYTES))
+            self._number += 1
             if text is None:
                 self._refuse("binary_message", "control messages are JSON text; binary ones are for frames")
                 continue
@@ -228,7 +231,7 @@ class _Stream:
                 room = self._session.room if isinstance(event, SessionEvent) else self._questions
                 await room.acquire()
                 # Not awaited: events travel in order on the engine's socket without waiting for each other.
-                task = asyncio.create_task(self._bring(event))
+                task = asyncio.create_task(self._bring(event, self._number))
                 self._under_way.add(task)
                 task.add_done_callback(partial(self._done, room))
             else:
@@ -275,7 +278,7 @@ class _Stream:
         self._under_way.discard(task)
         room.release()
 
-    async def _bring(self, event: SessionEvent | Question) -> None:
+    async def _bring(self, event: SessionEvent | Question, number: int) -> None:
         """To the engine."""
         try:
             if isinstance(event, SessionEvent):
@@ -283,9 +286,10 @@ class _Stream:
             else:
                 self._viewer.tell(await self._gateway.sessions.ask(self._session, event))
         except InputError as error:
-            self._refuse("unusable_input", str(error), error.field)
+            self._refuse("unusable_input", str(error), error.field, number)
         except CuletError as error:
-            self._refuse(error.title.replace(" ", "_"), str(error))
+            self._refuse(error.title.replace(" ", "_"), str(error), None, number)
 
-    def _refuse(self, code: str, message: str, field: str | None = None) -> None:
-        self._viewer.tell(Problem(code=code, message=message, field=field))
+    def _refuse(self, code: str, message: str, field: str | None = None, number: int | None = None) -> None:
+        """The viewer's message of that number, or else the one that was read last."""
+        self._viewer.tell(Problem(code=code, message=message, field=field, number=number or self._number))
