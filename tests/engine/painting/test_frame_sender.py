@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 from collections.abc import AsyncIterator
 from dataclasses import replace
@@ -10,10 +11,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from culet.engine.governing.thrift import FINAL_TIMES, NO_LIMITS, ByteAllowance
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.frame_sender import FrameSender, Outgoing
 from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.resting_picture import encode_png, encode_resting
 from culet.engine.painting.video import Packet, VideoEncoder, VideoError
 from culet.engine.painting.video_track import BYTES_PER_PIXEL, CHANGE_SECONDS, MOST_FAILURES, ROOM_SECONDS, VideoTrack
 from culet.engine.session.session import Session
@@ -21,7 +24,7 @@ from culet.errors import CuletError
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.frame import Codec, Flags, Frame
-from culet_protocol.watch import video_topic, watch_key
+from culet_protocol.watch import LESSER, topic_of, video_topic, watch_key
 
 NAME = "0" * 32
 WATCH = watch_key(NAME)
@@ -252,3 +255,97 @@ async def test_of_an_encoder_of_another_size_only_what_is_more_needs_room(desk: 
     desk.frame = replace(desk.frame, rgb=np.zeros((18, 32, 3), np.uint8))
     assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 3)]
     assert desk.sent[-1].depends_on == 1, "of the encoder that was there all the time"
+
+
+class Resting:
+    """A picture at rest of much detail, and the bytes that it has with as much loss as those before it."""
+
+    def __init__(self, desk: Desk) -> None:
+        rows, columns = np.mgrid[:360, :640]
+        levels = (128 + 60 * np.sin(columns / 3) + 60 * np.sin(rows / 5 + columns / 17)).astype(np.uint8)
+        self.desk = desk
+        desk.frame = replace(desk.frame, rgb=np.stack([levels] * 3, -1), final=True)
+        self.bytes = len(encode_resting(desk.frame.rgb, NO_LIMITS, final=False).data)
+
+    def allow(self, share: float, lesser: float = 1.0) -> None:
+        """Links have room for so much of it, as the final picture."""
+        self.desk.outgoing.allowance = ByteAllowance(10**6, int(share * self.bytes / FINAL_TIMES))
+        self.desk.outgoing.lesser.allowance = ByteAllowance(10**6, int(lesser * self.bytes / FINAL_TIMES))
+
+    async def improve(self) -> list[tuple[bytes, int]]:
+        """Topic and number of what is sent because of that."""
+        before, outgoing = len(self.desk.sent), self.desk.outgoing
+        self.desk.sender.improve(self.desk.session, outgoing)
+        while outgoing.unsent:
+            assert outgoing.latest is not None
+            await outgoing.latest
+        return [(frame.watch, frame.sequence) for frame in self.desk.sent[before:]]
+
+
+async def test_the_picture_at_rest_is_sent_again_in_better_quality_once_the_link_is_better(desk: Desk) -> None:
+    resting = Resting(desk)
+    resting.allow(0.4)
+    await desk.publish(planned=False)
+    small = desk.sent[-1]
+    assert Flags.THRIFTY in small.flags
+    assert await resting.improve() == []
+    resting.allow(0.5)
+    assert await resting.improve() == [], "that is not worth it"
+    resting.allow(2)
+    assert await resting.improve() == [(WATCH, 2)]
+    better = desk.sent[-1]
+    assert len(better.payload) == resting.bytes > len(small.payload)
+    assert Flags.FINAL in better.flags
+    assert Flags.THRIFTY not in better.flags
+    assert desk.outgoing.message is not None
+    assert Frame.unpack(desk.outgoing.message).payload == better.payload, "for whoever comes, too"
+    resting.allow(2.5)
+    assert await resting.improve() == [], "that is not worth it"
+    resting.allow(4 * FINAL_TIMES)
+    assert await resting.improve() == [(WATCH, 3)]
+    assert (desk.sent[-1].codec, desk.sent[-1].payload) == (Codec.PNG, encode_png(desk.frame.rgb))
+    resting.allow(40 * FINAL_TIMES)
+    assert await resting.improve() == [], "there is no better one"
+
+
+async def test_a_link_that_gets_better_while_the_picture_is_on_its_way_counts_too(desk: Desk) -> None:
+    resting = Resting(desk)
+    resting.allow(0.4)
+    desk.sender.publish(desk.session, desk.outgoing, desk.learnt.append, replace(desk.frame, planned=False), 0)
+    await asyncio.sleep(0)
+    await asyncio.sleep(0)  # its quality is being chosen
+    resting.allow(2)
+    desk.sender.improve(desk.session, desk.outgoing)
+    await resting.improve()
+    assert len(desk.sent[-1].payload) == resting.bytes
+
+
+@pytest.mark.parametrize("kept", ["moving", "replaced", "not final"])
+async def test_nothing_else_than_the_final_picture_is_sent_again(desk: Desk, kept: str) -> None:
+    resting = Resting(desk)
+    resting.allow(0.4)
+    if kept == "not final":
+        desk.frame = replace(desk.frame, final=False)
+    await desk.publish(planned=kept == "moving")
+    if kept == "replaced":
+        await desk.publish()
+    resting.allow(2)
+    assert await resting.improve() == []
+
+
+async def test_the_lesser_picture_at_rest_grows_by_itself_and_so_does_the_first(desk: Desk) -> None:
+    desk.outgoing.watch(LESSER, subscribed=True)
+    topic, resting = topic_of(WATCH, LESSER), Resting(desk)
+    resting.allow(0.4, 0.2)
+    await desk.publish(planned=False)
+    resting.allow(0.4, 0.4)
+    assert await resting.improve() == [(topic, 2)]
+    resting.allow(2, 0.4)
+    assert await resting.improve() == [(WATCH, 3)]
+    resting.allow(2, 2)
+    assert await resting.improve() == [(topic, 4)]
+    assert [len(frame.payload) for frame in desk.sent[-2:]] == [resting.bytes] * 2
+    desk.sender.send_anew(desk.session, desk.outgoing)
+    assert {(frame.watch, frame.sequence) for frame in desk.sent[-2:]} == {(WATCH, 5), (topic, 5)}, (
+        "whoever has the lesser one takes no other of its number"
+    )

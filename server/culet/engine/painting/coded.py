@@ -24,6 +24,11 @@ class Coded(NamedTuple):
     depends_on: int = 0
     """Number of the frame that has to be decoded before it; 0: it needs none."""
 
+    @property
+    def looks(self) -> tuple[int, int, int]:
+        """Width, height and quality."""
+        return self.width, self.height, self.quality
+
     @classmethod
     def of_jpeg(cls, picture: Encoded, *, thrifty: bool) -> Self:
         """A picture of its own."""

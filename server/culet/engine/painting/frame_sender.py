@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance
+from culet.engine.painting.coarse import Coarse
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.failure import as_culet_error
@@ -40,6 +41,8 @@ class Outgoing:
     """Of video that somebody subscribes to."""
     message: bytes | None = None
     """The frame sent last, by the session's watch id; None if it was only sent as video."""
+    coarse: Coarse | None = None
+    """The frame sent last, if a better one of it could be made."""
     sent_at: float = 0.0
     """s, steady clock: when that was."""
     encoded_at: float = 0.0
@@ -57,7 +60,7 @@ class Outgoing:
         if not subscribed:
             self.codecs -= {codec}
             if codec is LESSER:
-                self.lesser.message = None
+                self.lesser.message = self.lesser.coarse = None
             else:
                 self.tracks.pop(codec, None)
             return
@@ -96,6 +99,21 @@ class Outgoing:
         return Codec.JPEG not in self.codecs and any(track.works and track.has_room for track in self.tracks.values())
 
     @property
+    def improves(self) -> bool:
+        """Whether the final picture at rest, of which nothing is on its way, could be sent again in better quality."""
+        tiers = (self.coarse, self.allowance), (self.lesser.coarse, self.lesser.allowance)
+        return self.unsent == 0 and any(coarse is not None and coarse.improves(room) for coarse, room in tiers)
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether the final picture at rest has more loss than those before it, since links carry no more."""
+        return any(coarse is not None and coarse.thrifty for coarse in (self.coarse, self.lesser.coarse))
+
+    def forget_frame(self) -> None:
+        """Keep none to be encoded again."""
+        self.coarse = self.lesser.coarse = None
+
+    @property
     def full(self) -> bool:
         """Whether so many frames wait that no other should be begun."""
         return self.unsent >= UNSENT_FRAMES
@@ -114,6 +132,8 @@ class _Departure:
     """s, steady clock."""
     before: asyncio.Task[None] | None
     """That of the session's frame before it."""
+    again: tuple[Coarse | None, Coarse | None] | None = None
+    """Of one that was sent before: as what, on the first tier and the lesser one, where it is to be sent again."""
 
 
 class FrameSender:
@@ -146,7 +166,23 @@ class FrameSender:
         """Encode and send a frame that was begun at that time of the clock; this does not wait for either. `learn` is
         told what a frame for a link with limits has become."""
         outgoing.unsent += 1
+        outgoing.forget_frame()
         departure = _Departure(session, outgoing, learn, frame, begun_at, outgoing.latest)
+        outgoing.latest = asyncio.create_task(self._encode_and_send(departure))
+
+    def improve(self, session: Session, outgoing: Outgoing) -> None:
+        """Encode the final picture at rest again where the links of who is sent it have got better, and send it under a
+        number of its own."""
+        if not outgoing.improves:
+            return
+        first, less = outgoing.coarse, outgoing.lesser.coarse
+        again = (
+            first if first is not None and first.improves(outgoing.allowance) else None,
+            less if less is not None and less.improves(outgoing.lesser.allowance) else None,
+        )
+        (frame, *_) = [coarse.frame for coarse in again if coarse is not None]
+        outgoing.unsent += 1
+        departure = _Departure(session, outgoing, lambda _: None, frame, self._now(), outgoing.latest, again)
         outgoing.latest = asyncio.create_task(self._encode_and_send(departure))
 
     def repeat(self, outgoing: Outgoing) -> None:
@@ -180,14 +216,49 @@ class FrameSender:
         outgoing = departure.outgoing
         lesser = LESSER in outgoing.codecs
         try:
+            if departure.again is not None:
+                await self._send_better(departure, *departure.again)
+                return
             began = await self._send_first(departure)
+            if began is None:
+                outgoing.forget_frame()
             if began is None or not lesser:
                 outgoing.lesser.message = None  # of something else than what is shown
             else:
                 await self._send_lesser(departure, began)
         finally:
             outgoing.unsent -= 1
+            self.improve(departure.session, outgoing)  # the links may have got better meanwhile
             self._wake()
+
+    async def _send_better(self, departure: _Departure, first: Coarse | None, less: Coarse | None) -> None:
+        """What was sent before, where it becomes another picture."""
+        session, outgoing, frame = departure.session, departure.outgoing, departure.frame
+        lesser, started = outgoing.lesser, time.perf_counter()
+        try:
+            if first is not None and (codecs := outgoing.codecs - {LESSER}):
+                allowance = outgoing.allowance
+                picture = await self._in_thread(frame.encoded, allowance, final=True)
+                outgoing.coarse = _coarse(frame, picture, allowance)
+                if picture.looks != first.looks:
+                    outgoing.message = self._pack_anew(session, frame, picture, started)
+                    self._send_to(codecs, outgoing.message)
+            if less is not None and LESSER in outgoing.codecs:
+                allowance = lesser.allowance
+                picture = await self._in_thread(lesser.encoded, frame, final=True)
+                lesser.coarse = _coarse(frame, picture, allowance)
+                if picture.looks != less.looks and LESSER in outgoing.codecs:
+                    lesser.message = self._pack_anew(session, frame, picture, started)
+                    lesser.sequence = session.sequence
+                    self._send_to({LESSER}, lesser.message)
+        except Exception as error:  # the picture that was sent before stays
+            outgoing.forget_frame()
+            self._tell_problem(session, as_culet_error(error, what="encoding"))
+
+    def _pack_anew(self, session: Session, frame: LiveFrame, picture: Coded, started: float) -> bytes:
+        session.sequence += 1
+        self._tally.counters.frames_sent += 1
+        return frame.pack(session, picture, time.perf_counter() - started)
 
     async def _send_first(self, departure: _Departure) -> float | None:
         """The first tier, which waits for no lesser picture of the same frame. s, of the performance counter: when it
@@ -211,7 +282,8 @@ class FrameSender:
                     codecs |= {track.codec}  # as JPEG
                 else:
                     video[track] = frame.coded(track.codec, packet, track.sequence)
-            picture = await self._in_thread(frame.encoded, outgoing.allowance, final=frame.final) if codecs else None
+            allowance = outgoing.allowance
+            picture = await self._in_thread(frame.encoded, allowance, final=frame.final) if codecs else None
             encode_seconds = time.perf_counter() - started
             if frame.encoding is not None:
                 for coded in [*video.values(), *([] if picture is None else [picture])]:
@@ -233,6 +305,7 @@ class FrameSender:
         self._tally.durations.encode_wait.add(max(0.0, now - drawn_at))
         self._tally.durations.frame.add(max(0.0, now - departure.begun_at))
         outgoing.message, outgoing.sent_at = message, now
+        outgoing.coarse = None if picture is None else _coarse(frame, picture, allowance)
         if video:
             outgoing.encoded_at = now
         self._tally.counters.frames_sent += 1
@@ -249,6 +322,7 @@ class FrameSender:
         session, outgoing, frame = departure.session, departure.outgoing, departure.frame
         lesser = outgoing.lesser
         try:
+            allowance = lesser.allowance
             less = await self._in_thread(lesser.encoded, frame, final=frame.final)
             message = frame.pack(session, less, time.perf_counter() - started)
         except Exception as error:
@@ -257,6 +331,7 @@ class FrameSender:
             return
         lesser.sequence = session.sequence
         if LESSER in outgoing.codecs:
+            lesser.coarse = _coarse(frame, less, allowance)
             lesser.message = message
             self._send_to({LESSER}, message)
 
@@ -269,6 +344,13 @@ class FrameSender:
     async def _in_thread(self, call: Callable[..., T], *arguments: object, final: bool = False) -> T:
         threads = self._final_thread if final else self._threads
         return await asyncio.get_running_loop().run_in_executor(threads, call, *arguments)
+
+
+def _coarse(frame: LiveFrame, picture: Coded, allowance: ByteAllowance) -> Coarse | None:
+    """Of a frame that was sent as that picture; None if no better one can come of it, or if others follow it soon."""
+    if not frame.final or frame.planned or frame.shown.moving or picture.codec is Codec.PNG:
+        return None
+    return Coarse(frame, allowance.resting(final=True), picture.looks, picture.thrifty)
 
 
 def _numbered(message: bytes | None, sequence: int) -> bytes | None:

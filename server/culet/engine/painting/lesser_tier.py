@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance, ByteRoom, Thrift, read_byte_ladder
 from culet.engine.painting import jpeg
+from culet.engine.painting.coarse import Coarse
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.resting_picture import encode_resting
@@ -31,6 +32,8 @@ class LesserTier:
         """That the link has for a moving frame, by the rate at which they are made."""
         self.message: bytes | None = None
         """The frame sent last, by the session's watch id."""
+        self.coarse: Coarse | None = None
+        """The frame sent last, if a better one of it could be made."""
         self.sequence: int | None = None
         """Number of the last frame of which there was a lesser picture."""
         self._thrift = Thrift(read_byte_ladder())

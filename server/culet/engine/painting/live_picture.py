@@ -299,8 +299,9 @@ class LivePicture:
         self.seen = None
         self.session.motion.look_away()
         self.unwatched_at = now
-        if self.state in (PictureState.REDUCED, PictureState.FULL):
+        if self.state in (PictureState.REDUCED, PictureState.FULL) or self.outgoing.is_coarse:
             self.state = PictureState.BLANK
+        self.outgoing.forget_frame()
         if self.painted is not self.session.shown:
             self.painted = None
 

@@ -94,6 +94,11 @@ class Painter:
             live.draw_anew()
         self.wake()
 
+    def improve(self, live: LivePicture) -> None:
+        """Send the picture at rest in a better quality, if the links of those who watch have got better."""
+        if live.at_rest and live.making is None:
+            self._sender.improve(live.session, live.outgoing)
+
     async def run(self) -> None:
         """Paint for ever."""
         try:

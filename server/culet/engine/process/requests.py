@@ -239,6 +239,7 @@ class Requests:
             live.session.scene.film,
             others,
         )
+        self._painter.improve(live)
         self._painter.wake()
         return {"width": live.size[0], "height": live.size[1]}
 
