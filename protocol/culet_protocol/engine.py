@@ -32,7 +32,7 @@ class OpenSession(Message):
     session: SessionId
     scene: dict[str, Any]
     snapshot: dict[str, Any] | None = None
-    client: str | None = None
+    client: Client | None = None
     """Who opened it, as the gateway calls it: what changes it takes turns with what else is done for that client."""
 
 

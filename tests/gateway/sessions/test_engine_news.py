@@ -7,14 +7,14 @@ from typing import Any
 
 from culet.engine.session.session import Session
 from culet.gateway.engine.link import EngineLink
-from culet.gateway.sessions.engine_news import EngineNews
+from culet.gateway.sessions.engine_news import OF_ONE_CLIENT, EngineNews
 from culet.gateway.sessions.session_record import SessionRecord
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.viewers.viewer import Viewer
 from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.engine import SessionChange
-from culet_protocol.messages import Message, Notice, State
+from culet_protocol.messages import Engine, Message, Notice, State
 
 NAME = "5" * 32
 
@@ -55,8 +55,12 @@ class Listener(Viewer):
     def __init__(self) -> None:
         super().__init__(1, 0.0)
         self.exposures: list[float] = []
+        self.engines: list[str] = []
 
     def tell(self, notice: Notice) -> None:
+        if isinstance(notice, Engine):
+            self.engines.append(notice.status)
+            return
         assert isinstance(notice, State)
         self.exposures.append(notice.scene["film"]["exposure"])
 
@@ -110,3 +114,32 @@ async def test_a_change_that_an_answer_told_already_is_told_to_viewers_and_nothi
     await turns()
     assert link.requests == 0
     assert viewer.exposures == [1.5]
+
+
+async def test_sessions_of_a_client_whose_shapes_take_long_hold_up_no_others_when_an_engine_is_new() -> None:
+    heavy = [SessionRecord(f"{number:032x}", {}, "10.0.0.1") for number in range(8)]
+    light = [SessionRecord(f"{number:032x}", {}, "10.0.0.2") for number in range(8, 12)]
+    viewers = {record.id: Listener() for record in (*heavy, *light)}
+    records = {record.id: record for record in (*heavy, *light)}
+    for record in records.values():
+        record.viewers.append(viewers[record.id])
+    go_on, asked = asyncio.Event(), list[str]()
+
+    async def reopen(record: SessionRecord) -> None:
+        asked.append(record.id)
+        if record.owner == "10.0.0.1":
+            await go_on.wait()
+
+    link = HeldLink(Session(NAME, Stage.of(Scene())))
+    link.ready.set()
+    news = EngineNews(link, records, reopen, lambda _: None)
+    news.taken_over.set()
+    coming = asyncio.create_task(news.engine_up(True))
+    for _ in range(100):
+        await asyncio.sleep(0)
+    assert sorted(asked) == [record.id for record in (*heavy[:OF_ONE_CLIENT], *light)]
+    assert [viewers[record.id].engines for record in light] == [["up"]] * 4, "told without waiting for the others"
+    assert all(not viewers[record.id].engines for record in heavy)
+    go_on.set()
+    await coming
+    assert [viewer.engines for viewer in viewers.values()] == [["up"]] * 12

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+from culet.engine.session.session import Session
+from culet.errors import EngineUnavailableError, NotFoundError
 from culet.gateway.engine.link import EngineLink
 from culet.gateway.sessions.session_places import SessionPlaces
 from culet.gateway.sessions.session_record import NO_DEMAND, SessionRecord
 from culet.gateway.sessions.sessions import Sessions
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.uploads.uploads import Uploads, words
-from culet_protocol.engine import CloseSession, GetSession
+from culet.scene import Scene
+from culet.stage import Stage
+from culet_protocol.engine import CloseSession, GetSession, OpenSession
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Engine, Message, State, Viewers
 
@@ -156,3 +161,70 @@ async def test_a_session_about_which_somebody_waits_for_an_answer_makes_no_room(
     places = SessionPlaces(SETTINGS.model_copy(update={"max_sessions": 2}), records, close, watched_elsewhere)
     await places.make_room(new)
     assert closed == [idle]
+
+
+class SlowEngine(EngineLink):
+    """Has lost the session, and opens it when it is let."""
+
+    def __init__(self, settings: GatewaySettings) -> None:
+        super().__init__(settings)
+        self.let = asyncio.Event()
+        self.opened: list[bool] = []
+        """Whether the gateway waits for it as long as that takes."""
+        self.given_up = 0
+
+    async def request(
+        self,
+        message: Message,
+        payload: bytes | bytearray | None = None,
+        *,
+        patient: bool = False,
+        for_asker: bool = False,
+    ) -> tuple[dict[str, Any], bytes | memoryview]:
+        if isinstance(message, OpenSession):
+            self.opened.append(patient)
+            try:
+                await self.let.wait()
+            except asyncio.CancelledError:
+                self.given_up += 1
+                raise
+        elif not self.let.is_set():
+            raise NotFoundError("no such session; it may have expired")
+        stage = Stage.of(Scene())
+        return Session("ab" * 16, stage).described() | {"findings": []}, b""
+
+
+async def test_a_session_whose_shapes_take_long_is_given_again_once_for_all_however_long_that_takes() -> None:
+    settings = SETTINGS.model_copy(update={"request_seconds": 0.01})
+    link = SlowEngine(settings)
+    sessions = Sessions(settings, link, Uploads(link, 0))
+    session = SessionRecord("ab" * 16, {})
+    sessions._sessions[session.id] = session
+    session.revision = 1
+    for _ in range(2):
+        with pytest.raises(EngineUnavailableError, match="still being made again; try again later"):
+            await sessions.describe(session)
+    anew = asyncio.create_task(sessions._give_again(session))  # as when an engine has come
+    leaves = asyncio.create_task(sessions.describe(session))
+    await asyncio.sleep(0)
+    leaves.cancel()
+    assert not anew.done()
+    link.let.set()
+    await anew
+    assert (link.opened, link.given_up) == ([True], 0)
+    assert session.scene == Scene().model_dump(mode="json")
+    assert not sessions._giving
+    assert (await sessions.describe(session))["scene"] == session.scene
+
+
+async def test_a_session_that_nobody_has_seen_is_given_up_with_who_asks_for_it() -> None:
+    link = SlowEngine(SETTINGS)
+    sessions = Sessions(SETTINGS, link, Uploads(link, 0))
+    session = SessionRecord("ab" * 16, {})
+    sessions._sessions[session.id] = session
+    leaves = asyncio.create_task(sessions.describe(session))
+    while not link.opened:  # noqa: ASYNC110 - it says nothing
+        await asyncio.sleep(0)
+    leaves.cancel()
+    await asyncio.wait([leaves])
+    assert (link.opened, link.given_up) == ([False], 1)

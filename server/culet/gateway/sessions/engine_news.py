@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import time
 from collections.abc import Awaitable, Callable
@@ -21,6 +22,9 @@ log = logging.getLogger(__name__)
 
 REOPENED_AT_ONCE = 4
 """Sessions, in a new engine: some of them need files that are read by processes."""
+OF_ONE_CLIENT = 3
+"""Of those: an engine makes shapes for one client after the other, which may take it a minute, and others' sessions
+need not wait for that."""
 
 
 class EngineNews(EngineEvents):
@@ -116,7 +120,9 @@ class EngineNews(EngineEvents):
         elif new_process:
             watched_first = sorted(self._records.values(), key=lambda session: not session.viewers)
             turn = asyncio.Semaphore(REOPENED_AT_ONCE)
-            await asyncio.gather(*(self._try_to_reopen(session, turn) for session in watched_first))
+            own = {session.owner: asyncio.Semaphore(OF_ONE_CLIENT) for session in watched_first}
+            await asyncio.gather(*(self._try_to_reopen(session, own[session.owner], turn) for session in watched_first))
+            return
         for session in self._records.values():
             session.tell(Engine(status="up"))
 
@@ -133,10 +139,15 @@ class EngineNews(EngineEvents):
             log.info("took over %d sessions", len(answer["sessions"]))
         self.taken_over.set()
 
-    async def _try_to_reopen(self, session: SessionRecord, turn: asyncio.Semaphore) -> None:
+    async def _try_to_reopen(self, session: SessionRecord, *turns: asyncio.Semaphore) -> None:
+        """In its turns; its viewers are told as soon as it is there, not only once all others are."""
         try:
-            async with turn:
+            async with contextlib.AsyncExitStack() as stack:
+                for turn in turns:
+                    await stack.enter_async_context(turn)
                 await self._reopen(session)
         except CuletError as error:
             session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
             log.warning("a session could not be opened again: %s", error)
+        if self._link.ready.is_set():
+            session.tell(Engine(status="up"))

@@ -10,6 +10,7 @@ import secrets
 import time
 from collections import OrderedDict
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from culet.errors import BusyError, CuletError, EngineUnavailableError, ForbiddenError, NotFoundError
@@ -58,6 +59,8 @@ class Sessions:
         self._demands = Demands(link, self._sessions)
         self._places = SessionPlaces(settings, self._sessions, self.close, self._watched_elsewhere)
         self._news = link.events = EngineNews(link, self._sessions, self._give_again, self._demands.heed_video)
+        self._giving: dict[str, asyncio.Task[None]] = {}
+        """Sessions that the engine is being given again."""
         self._deleted: OrderedDict[str, None] = OrderedDict()
         self._viewer_numbers = itertools.count(1)
         self.drain = Drain()
@@ -194,7 +197,9 @@ class Sessions:
 
     async def ask(self, session: SessionRecord, question: Question) -> Answer:
         """What the engine answers to a question about the session's picture."""
-        return answer.validate_python(await self._ask(session, to_engine.Ask(session=session.id, question=question)))
+        asked = to_engine.Ask(session=session.id, question=question)
+        result, _ = await self.request(session, asked, for_asker=True)
+        return answer.validate_python(result)
 
     async def scene_shown(self, session: SessionRecord, step: int | None) -> dict[str, Any]:
         """The scene that a session showed at a step, the latest if None; raises like `request`."""
@@ -202,19 +207,19 @@ class Sessions:
         return scene
 
     async def request(
-        self, session: SessionRecord, message: Message, *, patient: bool = False
+        self, session: SessionRecord, message: Message, *, patient: bool = False, for_asker: bool = False
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         """As `Uploads.request`, about a session; one that the engine does not know, because it is new, is opened there
         first."""
         with session.awaited():
             try:
-                return await self._uploads.request(message, session.scene, patient=patient)
+                return await self._uploads.request(message, session.scene, patient=patient, for_asker=for_asker)
             except NotFoundError:
                 if session.id not in self._sessions:
                     raise
                 if not await self._in_engine(session):  # or a step of it is not kept, which is no loss to its viewers
-                    await self._give_again(session)
-                return await self._uploads.request(message, session.scene, patient=patient)
+                    await self._until_given_again(session, patient=patient)
+                return await self._uploads.request(message, session.scene, patient=patient, for_asker=for_asker)
 
     async def describe(self, session: SessionRecord) -> dict[str, Any]:
         """What the engine says of the session now."""
@@ -346,8 +351,32 @@ class Sessions:
     def _words(self) -> set[str]:
         return words([(session.scene, session.snapshot) for session in self._sessions.values()])
 
+    async def _until_given_again(self, session: SessionRecord, *, patient: bool) -> None:
+        """As `_give_again`, for who does not wait for ever; EngineUnavailableError if it takes long."""
+        try:
+            async with asyncio.timeout(None if patient else self._settings.request_seconds):
+                await self._give_again(session)
+        except TimeoutError:
+            raise EngineUnavailableError("this session is still being made again; try again later") from None
+
     async def _give_again(self, session: SessionRecord) -> None:
-        """Give a session, as last heard of, to an engine that does not know it."""
+        """Give a session, as last heard of, to an engine that does not know it: however long that takes, and once for
+        all who wait for it. One that nobody has seen yet is given up with who asks for it."""
+        if session.revision is None:
+            await self._give(session, patient=False)
+            return
+        giving = self._giving.get(session.id)
+        if giving is None:
+            giving = self._giving[session.id] = asyncio.create_task(self._give(session, patient=True))
+            giving.add_done_callback(partial(self._given, session.id))
+        await asyncio.shield(giving)
+
+    def _given(self, session: str, giving: asyncio.Task[None]) -> None:
+        del self._giving[session]
+        if not giving.cancelled():
+            giving.exception()  # which maybe nobody waits for any more
+
+    async def _give(self, session: SessionRecord, *, patient: bool) -> None:
         session.latest = None
         for viewer in session.viewers:
             viewer.restart()
@@ -355,7 +384,8 @@ class Sessions:
             to_engine.OpenSession(
                 session=session.id, scene=session.scene, snapshot=session.snapshot, client=session.owner
             ),
-            for_asker=session.revision is None,  # which nobody has seen yet
+            patient=patient,
+            for_asker=not patient,
         )
         session.learn(opened)  # above all the numbers that it goes on with: the next engine must begin beyond them
         self._demands.begin_anew(session)
