@@ -11,11 +11,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import httpx
 import psutil
 
 from hostile.finding import Finding, Group, span
-from hostile.serving import FALLING, Serving
-from hostile.watching import watching
+from hostile.serving import FALLING, PATIENCE, Serving
+from hostile.shares import OTHER_ADDRESS
+from hostile.watching import SOON, watching
 
 QUIET = 3.0
 """s between two deaths in a row."""
@@ -54,6 +56,48 @@ async def killed(serving: Serving, part: str, times: int, within: float) -> Find
         f"the first time within {within:g} s, all scenes the same",
         seconds[0] <= within and same,
     )
+
+
+async def killed_with_heavy_sessions(serving: Serving, sessions: int, stones: int) -> Finding:
+    """kill -9 of the engine that has sessions of one client whose shapes take long, and one of another client."""
+    opened = [serving.session(_recut(number, stones)) for number in range(sessions)]
+    before = [serving.http.get(f"/api/sessions/{session}").json()["scene"] for session in opened]
+    transport = httpx.AsyncHTTPTransport(local_address=OTHER_ADDRESS)
+    async with httpx.AsyncClient(base_url=serving.url, transport=transport, timeout=PATIENCE) as other:
+        answer = await other.post("/api/sessions", json={"scene": FALLING})
+        light = str(answer.raise_for_status().json()["id"])
+        async with watching(serving, [light, *opened], (160, 90)) as (first, *watchers):
+            serving.kill(serving.engine)
+            moment = time.monotonic()
+            quick = await first.frame_after(moment + SOON) + SOON
+            seconds = [await watcher.frame_after(moment + SOON) + SOON for watcher in watchers]
+            lost = [
+                notice for watcher in watchers for notice in watcher.notices if notice.get("code") == "session_lost"
+            ]
+        await other.delete(f"/api/sessions/{light}")
+    same = before == [serving.http.get(f"/api/sessions/{session}").json()["scene"] for session in opened]
+    serving.forget(*opened)
+    return Finding(
+        Group.FAULTS,
+        f"kill -9 of the engine with {sessions} sessions of {stones} stones cut anew of one client, and one of another",
+        f"the other's is seen after {quick:.1f} s, these after {span(seconds, 's')}; {len(lost)} called lost; scenes "
+        f"{'the same' if same else 'changed'}",
+        "the other's before the last of these, none is called lost, all scenes the same",
+        quick < max(seconds) and not lost and same,
+    )
+
+
+def _recut(session: int, stones: int) -> dict[str, Any]:
+    """So many stones, of which no two are cut alike."""
+    return {
+        "stones": [
+            {
+                "position": [2.5 * (number % 8), 1, 2.5 * (number // 8)],
+                "recut": {"angles": {"1": 41 + 0.001 * (session * stones + number)}},
+            }
+            for number in range(stones)
+        ]
+    }
 
 
 async def hung(serving: Serving, part: str) -> Finding:

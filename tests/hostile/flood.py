@@ -24,6 +24,7 @@ MESSAGES: Mapping[str, Sequence[Mapping[str, object]]] = {
         {"type": "pick", "number": 1, "x": 0.1, "y": 0},
         {"type": "outline", "stone": "stone-1", "step": 1},
     ],
+    "reach": [{"type": "reach", "number": number} for number in range(2)],
     "scatter": [
         {"type": "patch_scene", "patch": {"stones": [{"position": [n % 8 + x, 3, n // 8]} for n in range(64)]}}
         for x in (0, 0.5)

@@ -126,6 +126,42 @@ def _heap(session: int, stones: int) -> dict[str, Any]:
     }
 
 
+async def slow_readers(serving: Serving, readers: int, keeps: float, most: float, seconds: float) -> Finding:
+    """What a viewer of a falling stone keeps while so many others of the same session read nothing, and the MB by which
+    the gateway grows."""
+    session = serving.falling()
+    async with watching(serving, [session]) as (watcher,), contextlib.AsyncExitStack() as stack:
+
+        async def measured() -> float:
+            await asyncio.sleep(SETTLING)
+            began = time.monotonic()
+            await asyncio.sleep(seconds)
+            return watcher.rate(began, time.monotonic())
+
+        before, held = await measured(), serving.gateway.memory_full_info().rss
+        url = f"{serving.stream_url}/api/sessions/{session}/stream"
+        for _ in range(readers):
+            connection = await stack.enter_async_context(
+                connect(
+                    url, subprotocols=[Subprotocol(SUBPROTOCOL)], max_size=None, max_queue=1, compression=None,
+                    proxy=None, ping_interval=None, close_timeout=0.1,
+                )
+            )  # fmt: skip
+            await connection.send(json.dumps({"type": "resize", "width": 1280, "height": 720}))
+        during = await measured()
+        grown = (serving.gateway.memory_full_info().rss - held) / 1e6
+    serving.forget(session)
+    share = during / before
+    return Finding(
+        Group.SHARES,
+        f"{readers} viewers of the same session that read nothing",
+        f"another viewer keeps {100 * share:.0f} % of its rate ({during:.1f} of {before:.1f} frames/s); the gateway "
+        f"takes {grown:.0f} MB more",
+        f"at least {100 * keeps:.0f} %, and at most {most:g} MB",
+        share >= keeps and grown <= most,
+    )
+
+
 async def beside(serving: Serving, name: str, attack: Attack, keeps: float, seconds: float) -> Finding:
     """The rate of a viewer before, during and after an attack of another one."""
     session = serving.falling()
@@ -194,6 +230,7 @@ resizes = flood_of("resize")
 orbits = flood_of("orbit")
 questions = flood_of("questions")
 scatters = flood_of("scatter")
+reaches = flood_of("reach")
 
 
 @contextlib.asynccontextmanager
