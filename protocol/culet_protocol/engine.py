@@ -120,6 +120,8 @@ class HoldVideo(Message):
     session: SessionId
     codec: VideoCodec
     held: bool
+    lesser: bool = False
+    """Of the video of lesser pictures."""
 
 
 class Render(Message):

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+from collections.abc import Mapping
 from enum import Enum
-from typing import Final, Literal
+from typing import Final
 
 from culet_protocol.frame import Codec
 from culet_protocol.messages import VideoCodec
@@ -28,13 +29,21 @@ class Lesser(Enum):
 
     PICTURES = "lesser"
     """Smaller, or encoded with more loss, for viewers whose link or window has much less room than others'."""
+    H264 = "lesser h264"
+    VP9 = "lesser vp9"
+    """Video of such frames."""
 
 
 LESSER: Final = Lesser.PICTURES
-Stream = Codec | Literal[Lesser.PICTURES]
+LESSER_VIDEO: Final[Mapping[Codec, Lesser]] = {Codec.H264: Lesser.H264, Codec.VP9: Lesser.VP9}
+Stream = Codec | Lesser
 """What one can subscribe to of a session: pictures of their own (`Codec.JPEG`, though a final one may be a PNG), video
-of a codec, or lesser pictures."""
-STREAMS: Final[tuple[Stream, ...]] = (Codec.JPEG, *VIDEO, LESSER)
+of a codec, and the same of lesser pictures."""
+STREAMS: Final[tuple[Stream, ...]] = (Codec.JPEG, *VIDEO, *Lesser)
+CODEC_OF_VIDEO: Final[Mapping[Stream, Codec]] = {codec: codec for codec in VIDEO} | {
+    stream: codec for codec, stream in LESSER_VIDEO.items()
+}
+"""Of streams of video."""
 LESSER_BIT = 0x80
 
 
@@ -60,6 +69,5 @@ def video_topic(watch: bytes, codec: Codec) -> bytes:
 def topic_of(watch: bytes, stream: Stream) -> bytes:
     """The ZeroMQ topic by which a session's frames come, by its watch id: of lesser pictures the last byte is another
     one too."""
-    if stream is LESSER:
-        return watch[:-1] + bytes([watch[-1] ^ LESSER_BIT])
-    return video_topic(watch, stream) if stream in VIDEO else watch
+    lesser = LESSER_BIT if isinstance(stream, Lesser) else 0
+    return watch[:-1] + bytes([watch[-1] ^ CODEC_OF_VIDEO.get(stream, 0) ^ lesser])

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
+from culet.gateway.viewers.viewer import Viewer as Watching
 from culet_client.video import VideoDecoder, asked_of
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Hello, ResetStone, Resize, ToggleFall
@@ -99,3 +101,41 @@ async def test_video_goes_on_through_another_size_and_a_picture_at_rest(gateway:
     decoder = VideoDecoder()
     for frame in packets(viewer.frames):
         assert decoder.decode(frame) is not None, f"frame {frame.sequence} needs {frame.depends_on}"
+
+
+@needs_av
+async def test_lesser_frames_have_video_of_their_own_that_is_decoded_packet_by_packet(
+    gateway: Gateway, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = await gateway.session({"floor": {"kind": "matte"}})
+    record = gateway.parts.sessions.get(session)
+    sizes = Resize(width=320, height=180), Resize(width=160, height=90)
+    async with gateway.viewer(session, size=sizes[0]) as viewer, gateway.viewer(session, size=sizes[1]) as other:
+        await decoding(viewer)
+        await decoding(other)
+        await viewer.frame()
+
+        def assign(viewers: Sequence[Watching], *_: object) -> None:
+            """As if the second one's link were slow."""
+            for one in viewers:
+                one.feed.follow_lesser(lesser=one.size == (160, 90))
+
+        monkeypatch.setattr(record.tiers, "assign", assign)
+        reading = asyncio.create_task(other.until(lambda: False))
+
+        def lesser() -> list[Frame]:
+            if reading.done():
+                reading.result()  # which is what ended it
+            return [frame for frame in packets(other.frames) if frame.width == 160]
+
+        try:
+            await dropped(viewer, lambda: len(lesser()) >= PACKETS and len(packets(viewer.frames)) >= PACKETS)
+        finally:
+            reading.cancel()
+            await asyncio.gather(reading, return_exceptions=True)
+    for frames in (packets(viewer.frames), [frame for frame in packets(other.frames) if frame.width == 160]):
+        decoder = VideoDecoder()
+        for frame in frames:
+            picture = decoder.decode(frame)
+            assert picture is not None, f"frame {frame.sequence} needs {frame.depends_on}"
+            assert picture.shape == (frame.height, frame.width, 3)

@@ -349,3 +349,16 @@ async def test_the_lesser_picture_at_rest_grows_by_itself_and_so_does_the_first(
     assert {(frame.watch, frame.sequence) for frame in desk.sent[-2:]} == {(WATCH, 5), (topic, 5)}, (
         "whoever has the lesser one takes no other of its number"
     )
+
+
+async def test_a_picture_that_nobody_is_sent_is_not_encoded_again_until_somebody_is(desk: Desk) -> None:
+    """It would be encoded for ever, as often as the loop turns."""
+    desk.outgoing.watch(LESSER, subscribed=True)
+    resting = Resting(desk)
+    resting.allow(0.4, 2)
+    await desk.publish(planned=False)
+    desk.outgoing.watch(Codec.JPEG, subscribed=False)
+    resting.allow(2, 2)
+    assert await resting.improve() == []
+    desk.outgoing.watch(Codec.JPEG, subscribed=True)
+    assert await resting.improve() == [(WATCH, 2)]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import simplejpeg
 
-from culet.engine.governing.thrift import FINAL_TIMES, GROWN, NO_LIMITS, ByteAllowance, Encoding
+from culet.engine.governing.thrift import BEST_CRF, FINAL_TIMES, GROWN, NO_LIMITS, ByteAllowance, Encoding
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
@@ -19,11 +19,12 @@ from culet.engine.painting.live_picture import LivePicture, PictureState
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, StillQueue
+from culet.engine.painting.video_track import BYTES_PER_PIXEL, VideoTrack
 from culet.errors import CuletError
 from culet.rendering.film.target import Target
 from culet_protocol.frame import Codec, Flags
-from culet_protocol.watch import LESSER, topic_of
-from engine.painting.test_frame_sender import VIDEO_TOPIC, WATCH, Desk
+from culet_protocol.watch import LESSER, Lesser, Stream, topic_of
+from engine.painting.test_frame_sender import VIDEO_TOPIC, WATCH, Desk, Telling
 
 LESSER_TOPIC = topic_of(WATCH, LESSER)
 WIDTH, HEIGHT = 640, 360
@@ -237,3 +238,82 @@ async def test_while_video_is_held_those_with_lesser_pictures_go_on(desk: Desk) 
     await desk.publish()
     desk.outgoing.hold(Codec.H264, desk.now, held=True)
     assert await desk.publish() == [(LESSER_TOPIC, Codec.JPEG, 2)]
+
+
+LESSER_VIDEO_TOPIC = topic_of(WATCH, Lesser.H264)
+
+
+def follow(desk: Desk, frame: LiveFrame, *streams: Stream) -> None:
+    """Those watch; every encoder only says what it was given."""
+    Telling.fails = False
+    desk.frame = frame
+    desk.watch()
+    for stream in streams:
+        desk.outgoing.watch(stream, subscribed=True)
+    for tracks in (desk.outgoing.tracks, desk.outgoing.lesser.tracks):
+        for codec in tracks:
+            tracks[codec] = VideoTrack(codec, Telling)
+
+
+async def test_each_tier_has_video_of_its_own_of_the_same_frames(desk: Desk, frame: LiveFrame) -> None:
+    follow(desk, frame, Codec.H264, Lesser.H264)
+    desk.outgoing.lesser.size = (320, 180)
+    for number in (1, 2):
+        sent = await desk.publish()
+        assert sent == [(VIDEO_TOPIC, Codec.H264, number), (LESSER_VIDEO_TOPIC, Codec.H264, number)]
+    assert [(sent.width, sent.depends_on) for sent in desk.sent] == [(WIDTH, 0), (320, 0), (WIDTH, 1), (320, 1)]
+    sizes = BYTES_PER_PIXEL[Codec.H264] * (WIDTH * HEIGHT + 320 * 180)
+    assert desk.outgoing.nbytes == sizes
+    assert (desk.outgoing.give_back(), desk.outgoing.nbytes) == (sizes, 0)
+    await desk.publish()
+    assert [sent.depends_on for sent in desk.sent[-2:]] == [0, 0]
+    desk.outgoing.hold(Lesser.H264, desk.now, held=True)
+    assert await desk.publish() == [(VIDEO_TOPIC, Codec.H264, 4)], "skipped before it is encoded"
+    desk.outgoing.hold(Lesser.H264, desk.now, held=False)
+    await desk.publish()
+    assert [sent.depends_on for sent in desk.sent[-2:]] == [4, 3], "of its own packets"
+
+
+async def test_the_lesser_video_keeps_to_the_link_and_is_no_better_than_the_first(desk: Desk, frame: LiveFrame) -> None:
+    follow(desk, frame, Lesser.H264)
+    desk.outgoing.lesser.room = ByteAllowance(1500, None).room(30, 30)
+    await desk.publish()
+    (sent,) = desk.sent
+    assert Flags.THRIFTY in sent.flags
+    size, crf = desk.outgoing.lesser.video_of(frame)
+    assert crf > BEST_CRF or size < frame.size
+    coarse = replace(frame, encoding=Encoding(50, np.inf, thrifty=True, crf=40))
+    desk.outgoing.lesser.room = None
+    assert desk.outgoing.lesser.video_of(coarse) == (frame.size, 40)
+
+
+async def test_stills_and_frames_of_an_encoder_that_failed_twice_are_lesser_pictures(
+    desk: Desk, frame: LiveFrame
+) -> None:
+    follow(desk, frame, Codec.JPEG, Lesser.H264, LESSER)
+    topics = (WATCH, LESSER_VIDEO_TOPIC, LESSER_TOPIC)
+    assert await desk.publish() == [
+        (WATCH, Codec.JPEG, 1), (LESSER_VIDEO_TOPIC, Codec.H264, 1), (LESSER_TOPIC, Codec.JPEG, 1),
+    ]  # fmt: skip
+    assert set(await desk.publish(planned=False)) == {(topic, Codec.JPEG, 2) for topic in topics}
+    Telling.fails = True
+    for number in (3, 4, 5):
+        assert set(await desk.publish()) == {(topic, Codec.JPEG, number) for topic in topics}
+    assert not desk.outgoing.lesser.tracks[Codec.H264].works
+
+
+async def test_without_room_for_its_encoder_it_is_pictures(desk: Desk, frame: LiveFrame) -> None:
+    follow(desk, frame, Lesser.H264)
+    desk.room = 0
+    assert await desk.publish() == [(LESSER_VIDEO_TOPIC, Codec.JPEG, 1)]
+    assert desk.outgoing.nbytes == 0
+
+
+async def test_who_follows_its_video_is_sent_no_first_picture_while_things_move(desk: Desk, frame: LiveFrame) -> None:
+    follow(desk, frame, Codec.JPEG, Lesser.H264)
+    await desk.publish()
+    before = len(desk.sent)
+    desk.sender.repeat(desk.outgoing)
+    assert [sent.watch for sent in desk.sent[before:]] == [WATCH]
+    desk.outgoing.watch(Lesser.H264, subscribed=False)
+    assert not desk.outgoing.lesser.tracks

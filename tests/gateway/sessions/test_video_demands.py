@@ -14,7 +14,7 @@ from culet.gateway.viewers.viewer import Viewer
 from culet_protocol.engine import Demand, HoldVideo
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.messages import Message
-from culet_protocol.watch import LESSER, VIDEO, Stream
+from culet_protocol.watch import LESSER, VIDEO, Lesser, Stream
 
 NAME = "0" * 32
 LARGE = 50_000
@@ -29,6 +29,8 @@ class Link(EngineLink):
         self.ready.set()
         self.heard: list[tuple[str, Stream]] = []
         self.holds: list[bool] = []
+        self.held: list[tuple[bool, bool]] = []
+        """Whether video is held, and is that of lesser pictures."""
         self.answers = asyncio.Event()
         """Whether demands are answered."""
         self.answers.set()
@@ -56,6 +58,7 @@ class Link(EngineLink):
     ) -> tuple[dict[str, Any], bytes | memoryview]:
         if isinstance(message, HoldVideo):
             self.holds.append(message.held)
+            self.held.append((message.held, message.lesser))
             return {}, b""
         assert isinstance(message, Demand)
         await self.answers.wait()
@@ -74,12 +77,12 @@ class Link(EngineLink):
         for _ in range(5):
             await asyncio.sleep(0)
 
-    def offer(self, sequence: int, codec: Codec, depends_on: int = 0) -> None:
+    def offer(self, sequence: int, codec: Codec, depends_on: int = 0, stream: Stream | None = None) -> None:
         flags = Flags.NONE if depends_on else Flags.KEY
         numbers = sequence, 1, 1, 1, 3, 1, 0, sequence, 0, 0, 0, 0, 0, 0, 0
         frame = Frame(self.record.topic, codec, flags, *numbers, bytes(LARGE), depends_on=depends_on)
         for viewer in self.record.viewers:
-            viewer.offer(frame, frame.pack(), monotonic(), codec)
+            viewer.offer(frame, frame.pack(), monotonic(), stream or codec)
         self.demands.heed_video(self.record)
 
 
@@ -220,4 +223,33 @@ async def test_windows_are_compared_with_the_pictures_that_the_engine_makes() ->
 
 def test_topics_are_all_different() -> None:
     record = SessionRecord(NAME, {})
-    assert len(set(record.topics.values())) == 2 + len(VIDEO)
+    assert len(set(record.topics.values())) == len(record.topics) == 2 * (1 + len(VIDEO))
+
+
+async def test_a_slow_viewer_of_the_lesser_video_has_that_held_and_is_not_barred_for_those_of_the_first() -> None:
+    link = Link()
+    fast, slow = link.viewer(Codec.H264), link.viewer(Codec.H264)
+    slow.feed.follow_lesser(lesser=True)
+    link.record.lesser_told = True
+    await link.begin()
+    assert link.record.subscribed == {Codec.JPEG, Codec.H264, LESSER, Lesser.H264}
+    streams: tuple[Stream, ...] = (Codec.H264, Lesser.H264)
+    for stream in streams:
+        link.offer(1, Codec.H264, stream=stream)
+    assert link.record.subscribed == set(streams)
+    for viewer in (fast, slow):
+        assert viewer.next_frame(monotonic()) is not None
+    fast.acknowledge(1, monotonic())
+    for stream in streams:
+        link.offer(2, Codec.H264, depends_on=1, stream=stream)
+    assert fast.next_frame(monotonic()) is not None
+    assert slow.behind(monotonic()) is not None
+    slow._behind_since = monotonic() - 2 * PATIENCE_SECONDS
+    link.demands.heed_video(link.record)
+    await asyncio.sleep(0)
+    assert slow.feed.in_step, "nobody else follows what this one does"
+    assert (True, True) in link.held
+    assert (True, False) not in link.held
+    link.offer(4, Codec.H264, depends_on=3, stream=Lesser.H264)
+    assert ("+", Lesser.H264) in link.heard[-4:], "who missed a packet has a key frame asked for"
+    await ended(link)

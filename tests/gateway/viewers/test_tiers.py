@@ -8,8 +8,8 @@ import pytest
 
 from culet.gateway.viewers.tiers import ENTER_SECONDS, FEW_FRAMES, LEAVE_SECONDS, StreamTiers
 from culet.gateway.viewers.viewer import Viewer
-from culet_protocol.frame import Codec
-from culet_protocol.watch import LESSER, Stream
+from culet_protocol.frame import Codec, Flags, Frame
+from culet_protocol.watch import LESSER, Lesser, Stream
 from gateway.simulated_link import ASKED, STEP, SimulatedLink
 
 SIZE = 1280, 720
@@ -222,11 +222,17 @@ def test_of_frames_no_more_is_remembered_than_is_counted() -> None:
     assert sum(map(len, tiers._came.values())) <= 62
 
 
-def test_a_viewer_of_lesser_pictures_is_offered_those_alone_and_video_from_a_key_frame_on_afterwards() -> None:
+def test_a_viewer_of_lesser_pictures_is_offered_those_and_their_video_alone() -> None:
     (viewer,) = watching(SIZE)
     viewer.feed.follow(Codec.H264)
     viewer.feed.follow_lesser(lesser=True)
-    streams: frozenset[Stream] = frozenset({LESSER})
-    assert viewer.feed.codecs == streams
+    streams: tuple[Stream, ...] = (Codec.H264, Lesser.H264)
+    assert viewer.feed.codecs == {LESSER, Lesser.H264}
+    key = Frame(bytes(16), Codec.H264, Flags.KEY, 7, 1, 1, 1, 3, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, b"key")
+    for stream in streams:
+        viewer.offer(key, b"key", 0, stream)
+        assert viewer.feed.in_step == (stream is Lesser.H264)
+    assert viewer.feed.codecs == {Lesser.H264}
     viewer.feed.follow_lesser(lesser=False)
+    assert not viewer.feed.in_step
     assert viewer.feed.codecs == {Codec.JPEG, Codec.H264}

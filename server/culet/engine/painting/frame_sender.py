@@ -21,7 +21,7 @@ from culet.engine.painting.video_track import VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
 from culet_protocol.frame import Codec, Frame
-from culet_protocol.watch import LESSER, VIDEO, WATCH_BYTES, Stream, topic_of
+from culet_protocol.watch import CODEC_OF_VIDEO, LESSER, LESSER_VIDEO, WATCH_BYTES, Lesser, Stream, topic_of
 
 T = TypeVar("T")
 
@@ -57,21 +57,39 @@ class Outgoing:
     def watch(self, codec: Stream, *, subscribed: bool) -> None:
         """Somebody began, or the last one ceased, to receive frames in that codec. Whoever subscribes once more to
         video lacks a key frame."""
+        lesser, video = isinstance(codec, Lesser), CODEC_OF_VIDEO.get(codec)
+        tracks = self.lesser.tracks if lesser else self.tracks
         if not subscribed:
             self.codecs -= {codec}
-            if codec is LESSER:
+            if lesser and not self.less:
                 self.lesser.message = self.lesser.coarse = None
-            else:
-                self.tracks.pop(codec, None)
+            if video is not None:
+                tracks.pop(video, None)
             return
         self.codecs |= {codec}
-        if codec is not LESSER and codec in VIDEO:
-            self.tracks.setdefault(codec, VideoTrack(codec)).want_key()
+        if video is not None:
+            tracks.setdefault(video, VideoTrack(video)).want_key()
 
-    def hold(self, codec: Codec, now: float, *, held: bool) -> None:
-        """Encode no more video of that codec for a while, or go on."""
-        if codec in self.tracks:
-            self.tracks[codec].hold(now, held=held)
+    @property
+    def first(self) -> frozenset[Stream]:
+        """Of the first tier, what somebody subscribes to."""
+        return self.codecs - set(Lesser)
+
+    @property
+    def less(self) -> frozenset[Stream]:
+        """The same of the lesser one."""
+        return self.codecs & set(Lesser)
+
+    @property
+    def all_tracks(self) -> tuple[VideoTrack, ...]:
+        """Of both tiers."""
+        return *self.tracks.values(), *self.lesser.tracks.values()
+
+    def hold(self, stream: Stream, now: float, *, held: bool) -> None:
+        """Encode no more of that video for a while, or go on."""
+        tracks, codec = self.lesser.tracks if isinstance(stream, Lesser) else self.tracks, CODEC_OF_VIDEO[stream]
+        if codec in tracks:
+            tracks[codec].hold(now, held=held)
 
     @property
     def kept_bytes(self) -> int:
@@ -81,7 +99,7 @@ class Outgoing:
     @property
     def nbytes(self) -> int:
         """That its encoders take."""
-        return sum(track.nbytes for track in self.tracks.values())
+        return sum(track.nbytes for track in self.all_tracks)
 
     def give_back(self) -> int:
         """Close its encoders, unless a frame is on its way: video goes on with a key frame. The bytes that are free by
@@ -89,7 +107,7 @@ class Outgoing:
         if self.unsent > 0:
             return 0
         held = self.nbytes
-        for track in self.tracks.values():
+        for track in self.all_tracks:
             track.close()
         return held
 
@@ -99,10 +117,15 @@ class Outgoing:
         return Codec.JPEG not in self.codecs and any(track.works and track.has_room for track in self.tracks.values())
 
     @property
-    def improves(self) -> bool:
-        """Whether the final picture at rest, of which nothing is on its way, could be sent again in better quality."""
-        tiers = (self.coarse, self.allowance), (self.lesser.coarse, self.lesser.allowance)
-        return self.unsent == 0 and any(coarse is not None and coarse.improves(room) for coarse, room in tiers)
+    def improving(self) -> tuple[Coarse | None, Coarse | None]:
+        """The final picture at rest as it was sent on the first tier, and on the lesser one, where somebody who
+        subscribes could be sent a better one. Neither while another is on its way."""
+        first = self.coarse if self.first and self.unsent == 0 else None
+        less = self.lesser.coarse if self.less and self.unsent == 0 else None
+        return (
+            first if first is not None and first.improves(self.allowance) else None,
+            less if less is not None and less.improves(self.lesser.allowance) else None,
+        )
 
     @property
     def is_coarse(self) -> bool:
@@ -173,16 +196,12 @@ class FrameSender:
     def improve(self, session: Session, outgoing: Outgoing) -> None:
         """Encode the final picture at rest again where the links of who is sent it have got better, and send it under a
         number of its own."""
-        if not outgoing.improves:
+        again = outgoing.improving
+        coarse = again[0] or again[1]
+        if coarse is None:
             return
-        first, less = outgoing.coarse, outgoing.lesser.coarse
-        again = (
-            first if first is not None and first.improves(outgoing.allowance) else None,
-            less if less is not None and less.improves(outgoing.lesser.allowance) else None,
-        )
-        (frame, *_) = [coarse.frame for coarse in again if coarse is not None]
         outgoing.unsent += 1
-        departure = _Departure(session, outgoing, lambda _: None, frame, self._now(), outgoing.latest, again)
+        departure = _Departure(session, outgoing, lambda _: None, coarse.frame, self._now(), outgoing.latest, again)
         outgoing.latest = asyncio.create_task(self._encode_and_send(departure))
 
     def repeat(self, outgoing: Outgoing) -> None:
@@ -193,9 +212,9 @@ class FrameSender:
         outgoing.sent_at = self._now()
         self._tally.counters.frames_repeated += 1
         if outgoing.message is not None:
-            self._send_to(outgoing.codecs - {LESSER}, outgoing.message)
-        if LESSER in outgoing.codecs:
-            self._send_to({LESSER}, lesser)
+            self._send_to(outgoing.first, outgoing.message)
+        # Who follows video is sent no first picture in the place of a lesser one: what moves goes on at once.
+        self._send_to(outgoing.less if outgoing.lesser.message else outgoing.less & {LESSER}, lesser)
 
     def send_anew(self, session: Session, outgoing: Outgoing) -> None:
         """Send the frame sent last again, under a number of its own if it was sent as a lesser picture too: whoever has
@@ -214,43 +233,47 @@ class FrameSender:
 
     async def _encode_and_send(self, departure: _Departure) -> None:
         outgoing = departure.outgoing
-        lesser = LESSER in outgoing.codecs
         try:
             if departure.again is not None:
                 await self._send_better(departure, *departure.again)
-                return
-            began = await self._send_first(departure)
-            if began is None:
-                outgoing.forget_frame()
-            if began is None or not lesser:
-                outgoing.lesser.message = None  # of something else than what is shown
             else:
-                await self._send_lesser(departure, began)
+                await self._send_tiers(departure)
         finally:
             outgoing.unsent -= 1
-            self.improve(departure.session, outgoing)  # the links may have got better meanwhile
             self._wake()
+        self.improve(departure.session, outgoing)  # the links may have got better meanwhile
+
+    async def _send_tiers(self, departure: _Departure) -> None:
+        outgoing = departure.outgoing
+        lesser = bool(outgoing.less)
+        began = await self._send_first(departure)
+        if began is None:
+            outgoing.forget_frame()
+        if began is None or not lesser:
+            outgoing.lesser.message = None  # of something else than what is shown
+        else:
+            await self._send_lesser(departure, began)
 
     async def _send_better(self, departure: _Departure, first: Coarse | None, less: Coarse | None) -> None:
         """What was sent before, where it becomes another picture."""
         session, outgoing, frame = departure.session, departure.outgoing, departure.frame
         lesser, started = outgoing.lesser, time.perf_counter()
         try:
-            if first is not None and (codecs := outgoing.codecs - {LESSER}):
+            if first is not None and (codecs := outgoing.first):
                 allowance = outgoing.allowance
                 picture = await self._in_thread(frame.encoded, allowance, final=True)
                 outgoing.coarse = _coarse(frame, picture, allowance)
                 if picture.looks != first.looks:
                     outgoing.message = self._pack_anew(session, frame, picture, started)
                     self._send_to(codecs, outgoing.message)
-            if less is not None and LESSER in outgoing.codecs:
+            if less is not None and outgoing.less:
                 allowance = lesser.allowance
                 picture = await self._in_thread(lesser.encoded, frame, final=True)
                 lesser.coarse = _coarse(frame, picture, allowance)
-                if picture.looks != less.looks and LESSER in outgoing.codecs:
+                if picture.looks != less.looks and outgoing.less:
                     lesser.message = self._pack_anew(session, frame, picture, started)
                     lesser.sequence = session.sequence
-                    self._send_to({LESSER}, lesser.message)
+                    self._send_to(outgoing.less, lesser.message)
         except Exception as error:  # the picture that was sent before stays
             outgoing.forget_frame()
             self._tell_problem(session, as_culet_error(error, what="encoding"))
@@ -265,7 +288,7 @@ class FrameSender:
         was begun; None if the frame goes no further."""
         session, outgoing, frame, before = departure.session, departure.outgoing, departure.frame, departure.before
         drawn_at, started = self._now(), time.perf_counter()
-        codecs, lesser = outgoing.codecs - {LESSER}, LESSER in outgoing.codecs
+        codecs, lesser = outgoing.first, bool(outgoing.less)
         tracks = list(outgoing.tracks.values()) if frame.planned else []
         video: dict[VideoTrack, Coded] = {}
         try:
@@ -319,21 +342,43 @@ class FrameSender:
     async def _send_lesser(self, departure: _Departure, started: float) -> None:
         """The lesser picture of the frame that was sent last, under the same number. What fails here costs nobody else
         theirs."""
-        session, outgoing, frame = departure.session, departure.outgoing, departure.frame
-        lesser = outgoing.lesser
+        session, outgoing, frame, now = departure.session, departure.outgoing, departure.frame, self._now()
+        lesser, streams = outgoing.lesser, outgoing.less
+        video: dict[VideoTrack, Coded] = {}
         try:
+            for track in list(lesser.tracks.values()) if frame.planned else []:
+                size, crf = lesser.video_of(frame)
+                works = track.works and track.find_room(size, crf, now, self._has_room)
+                streams -= {LESSER_VIDEO[track.codec]} if works else set()
+                if not works or track.is_held(now):  # skipped before it is encoded, not after
+                    track.forgo()
+                    continue
+                packet = await self._in_thread(lesser.packet, frame, track, size, crf, now)
+                if packet is None:
+                    streams |= {LESSER_VIDEO[track.codec]}  # as JPEG
+                else:
+                    video[track] = packet
             allowance = lesser.allowance
-            less = await self._in_thread(lesser.encoded, frame, final=frame.final)
-            message = frame.pack(session, less, time.perf_counter() - started)
+            less = await self._in_thread(lesser.encoded, frame, final=frame.final) if streams else None
+            seconds = time.perf_counter() - started
+            message = None if less is None else frame.pack(session, less, seconds)
+            packed = {track: frame.pack(session, coded, seconds) for track, coded in video.items()}
         except Exception as error:
             lesser.message = None
+            for track in video:
+                track.close()  # what comes next must not need what was not sent
             self._tell_problem(session, as_culet_error(error, what="encoding"))
             return
-        lesser.sequence = session.sequence
-        if LESSER in outgoing.codecs:
+        lesser.sequence, lesser.message = session.sequence, None
+        if video:
+            outgoing.encoded_at = self._now()
+        for track, sent in packed.items():
+            track.sequence = session.sequence
+            self._send_to({LESSER_VIDEO[track.codec]}, sent)
+        if message is not None and less is not None and outgoing.less:
             lesser.coarse = _coarse(frame, less, allowance)
             lesser.message = message
-            self._send_to({LESSER}, message)
+            self._send_to(streams & outgoing.less, message)
 
     def _send_to(self, codecs: Collection[Stream], message: bytes) -> None:
         """A message by the session's watch id to who subscribes to frames in those codecs."""

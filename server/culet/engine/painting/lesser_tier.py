@@ -9,19 +9,29 @@ import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
 
-from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance, ByteRoom, Thrift, read_byte_ladder
+from culet.engine.governing.thrift import (
+    NO_LIMITS,
+    ByteAllowance,
+    ByteRoom,
+    Thrift,
+    read_byte_ladder,
+    read_video_ladder,
+)
 from culet.engine.painting import jpeg
 from culet.engine.painting.coarse import Coarse
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.resting_picture import encode_resting
+from culet.engine.painting.video_track import VideoTrack
+from culet_protocol.frame import Codec
 
 LEAST_SIDE = 16
 """Pixels."""
 
 
 class LesserTier:
-    """Of one session. `encoded` runs on an encoding thread, one call at a time, the rest on the engine's loop."""
+    """Of one session. `encoded` and `packet` run on an encoding thread, one call at a time, the rest on the engine's
+    loop."""
 
     def __init__(self) -> None:
         """Without limits, until some are told."""
@@ -36,7 +46,10 @@ class LesserTier:
         """The frame sent last, if a better one of it could be made."""
         self.sequence: int | None = None
         """Number of the last frame of which there was a lesser picture."""
+        self.tracks: dict[Codec, VideoTrack] = {}
+        """Of its video that somebody subscribes to."""
         self._thrift = Thrift(read_byte_ladder())
+        self._video_thrift = Thrift(read_video_ladder())
 
     def encoded(self, frame: LiveFrame) -> Coded:
         """The frame within the limits. Takes milliseconds, a final one some hundredths of a second."""
@@ -59,6 +72,26 @@ class LesserTier:
         self._thrift.encoded((picture.width, picture.height), picture.quality, len(picture.data))
         less = picture.quality < best or picture.width < width
         return Coded.of_jpeg(picture, thrifty=thrifty or less)
+
+    def video_of(self, frame: LiveFrame) -> tuple[tuple[int, int], int]:
+        """Width and height of a moving frame as video within the limits, and its constant rate factor."""
+        window = self.fitting(frame.size)
+        if self.room is None:
+            return window, frame.crf
+        scale = self._video_thrift.scale(window, self.room)
+        size = max(LEAST_SIDE, round(scale * window[0])), max(LEAST_SIDE, round(scale * window[1]))
+        return size, max(frame.crf, self._video_thrift.encoding(size, self.room).quality)
+
+    def packet(self, frame: LiveFrame, track: VideoTrack, size: tuple[int, int], crf: int, now: float) -> Coded | None:
+        """The frame as the next packet of a track, in that size and of that rate factor; None if that failed. Takes
+        milliseconds."""
+        packet = track.encode(_shrunk(frame.rgb, *size), crf, now)
+        if packet is None:
+            return None
+        coded = frame.coded(track.codec, packet, track.sequence)
+        if coded.depends_on:  # key frames are few, and so do not count
+            self._video_thrift.encoded((coded.width, coded.height), coded.quality, len(coded.data))
+        return coded._replace(thrifty=coded.thrifty or coded.width < self.fitting(frame.size)[0])
 
     def fitting(self, size: tuple[int, int]) -> tuple[int, int]:
         """A frame's size, or the smaller one that fills the viewers' windows."""

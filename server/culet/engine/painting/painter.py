@@ -28,7 +28,7 @@ from culet.errors import CuletError
 from culet.rendering.film.target import Target
 from culet.stage import Stage
 from culet_protocol.frame import Codec
-from culet_protocol.watch import LESSER, Stream
+from culet_protocol.watch import Lesser, Stream
 
 
 class Painter:
@@ -90,7 +90,7 @@ class Painter:
             self._sender.send_anew(live.session, live.outgoing)
         elif live.current:
             self._sender.repeat(live.outgoing)
-        if live.at_rest and codec is not LESSER and live.outgoing.message is None:
+        if live.at_rest and not isinstance(codec, Lesser) and live.outgoing.message is None:
             live.draw_anew()
         self.wake()
 

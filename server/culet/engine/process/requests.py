@@ -39,7 +39,7 @@ from culet.optics.sky_files.picture import SkyPicture
 from culet.stage import Library
 from culet_protocol import engine as protocol
 from culet_protocol.messages import SessionEvent
-from culet_protocol.watch import VIDEO_OF_NAME
+from culet_protocol.watch import LESSER_VIDEO, VIDEO_OF_NAME
 
 SHAPING_EVENTS = frozenset({"patch_scene", "set_scene", "undo", "redo"})
 """They may make shapes, which takes their client's turn."""
@@ -125,7 +125,8 @@ class Requests:
                 return self._demand(request), None
             case protocol.HoldVideo():
                 outgoing = self.sessions.get(request.session).outgoing
-                outgoing.hold(VIDEO_OF_NAME[request.codec], time.monotonic(), held=request.held)
+                codec, lesser = VIDEO_OF_NAME[request.codec], request.lesser
+                outgoing.hold(LESSER_VIDEO[codec] if lesser else codec, time.monotonic(), held=request.held)
                 return {}, None
             case protocol.Render():
                 return await self._stills.render(request)

@@ -13,7 +13,7 @@ from culet.gateway.sessions.session_record import NO_DEMAND, LesserWanted, Sessi
 from culet_protocol.engine import Demand, HoldVideo, LesserDemand
 from culet_protocol.frame import Codec
 from culet_protocol.sizes import LIVE_SIZE
-from culet_protocol.watch import LESSER, VIDEO, VIDEO_NAMES, Stream
+from culet_protocol.watch import CODEC_OF_VIDEO, VIDEO_NAMES, Lesser, Stream
 
 log = logging.getLogger(__name__)
 
@@ -84,8 +84,8 @@ class Demands:
             return
         now = time.monotonic()
         wanted = session.codecs_wanted(now)
-        if LESSER not in session.subscribed and not session.lesser_told:
-            wanted -= {LESSER}  # which would be made without limits
+        if not session.lesser_told:
+            wanted -= set(Lesser) - session.subscribed  # which would be made without limits
         wanted = wanted or session.subscribed
         lacking = [viewer for viewer in session.viewers if viewer.feed.lacks_picture and viewer.watches(now)]
         again = wanted & {Codec.JPEG} if lacking else frozenset()
@@ -101,20 +101,22 @@ class Demands:
 
     def heed_video(self, session: SessionRecord) -> None:
         """Frames came, or were taken: see to it that all who follow the session's video can go on doing so."""
-        if not session.subscribed.intersection(VIDEO) and all(viewer.feed.codec is None for viewer in session.viewers):
+        if not session.subscribed.intersection(CODEC_OF_VIDEO) and all(
+            viewer.feed.codec is None for viewer in session.viewers
+        ):
             return
         now = time.monotonic()
         following = [viewer for viewer in session.viewers if viewer.feed.in_step]
         since = {viewer: viewer.behind(now) for viewer in following}
         behind = [viewer for viewer, at in since.items() if at is not None]
-        if len(behind) < len(following):
-            for viewer in behind:
-                if now - (since[viewer] or now) > PATIENCE_SECONDS:
-                    viewer.feed.bar(now)
-        waited_for = {viewer.feed.codec for viewer in behind if viewer.feed.in_step}
+        for viewer in behind:
+            others = [other for other in following if other.feed.video is viewer.feed.video and other not in behind]
+            if others and now - (since[viewer] or now) > PATIENCE_SECONDS:
+                viewer.feed.bar(now)
+        waited_for = {viewer.feed.video for viewer in behind if viewer.feed.in_step}
         self._hold(session, session.subscribed.intersection(waited_for))
         self._listen(session)
-        lacking = {viewer.feed.codec for viewer in session.viewers if viewer.feed.lacks_key and viewer.watches(now)}
+        lacking = {viewer.feed.video for viewer in session.viewers if viewer.feed.lacks_key and viewer.watches(now)}
         if now - session.key_asked_at >= KEY_SECONDS:
             for codec in session.subscribed.intersection(lacking):
                 session.key_asked_at = now
@@ -125,8 +127,9 @@ class Demands:
 
     def _hold(self, session: SessionRecord, codecs: frozenset[Stream]) -> None:
         """Have the engine hold video of those codecs, and no other."""
-        for codec in [codec for codec in VIDEO if codec in codecs ^ session.held]:
-            told = HoldVideo(session=session.id, codec=VIDEO_NAMES[codec], held=codec in codecs)
+        for stream in [stream for stream in CODEC_OF_VIDEO if stream in codecs ^ session.held]:
+            codec, lesser = VIDEO_NAMES[CODEC_OF_VIDEO[stream]], isinstance(stream, Lesser)
+            told = HoldVideo(session=session.id, codec=codec, held=stream in codecs, lesser=lesser)
             task = asyncio.create_task(self._tell_hold(told))
             self._telling.add(task)
             task.add_done_callback(self._telling.discard)

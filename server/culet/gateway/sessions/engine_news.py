@@ -16,7 +16,7 @@ from culet.gateway.sessions.session_record import SessionRecord
 from culet_protocol.engine import GetSession, ListSessions, SessionChange, SessionMotion, SessionProblem
 from culet_protocol.frame import Codec, Frame
 from culet_protocol.messages import Engine, Problem
-from culet_protocol.watch import LESSER, VIDEO
+from culet_protocol.watch import VIDEO, Lesser
 
 log = logging.getLogger(__name__)
 
@@ -56,7 +56,7 @@ class EngineNews(EngineEvents):
         stream = next(codec for codec, topic in session.topics.items() if topic == frame.watch)
         if stream is not Codec.JPEG:  # a viewer knows the session by its watch id alone
             frame, message = replace(frame, watch=session.topic), session.topic + message[len(session.topic) :]
-        if stream is not LESSER:
+        if not isinstance(stream, Lesser):
             session.latest = None if frame.codec in VIDEO else (frame, message)
         now = time.monotonic()
         session.tiers.came(stream, len(message), now)

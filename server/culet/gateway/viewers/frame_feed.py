@@ -10,7 +10,7 @@ from collections import deque
 from typing import NamedTuple
 
 from culet_protocol.frame import Codec, Flags, Frame
-from culet_protocol.watch import LESSER, VIDEO, Stream
+from culet_protocol.watch import LESSER, LESSER_VIDEO, VIDEO, Stream
 
 MOST_WAITING = 4
 """Packets: two that were under way when the engine was told to hold, and as many for a gateway that is busy."""
@@ -33,7 +33,7 @@ class FrameFeed:
         self.codec: Codec | None = None
         """Of the video that the viewer decodes; None: it wants pictures of their own."""
         self.lesser = False
-        """It is sent lesser pictures, and no video."""
+        """It is sent lesser pictures, and their video."""
         self.lacks_key = False
         """It was offered a packet that it cannot use: it needs a key frame."""
         self.lacks_picture = False
@@ -51,12 +51,15 @@ class FrameFeed:
         return self._follows is not None
 
     @property
+    def video(self) -> Stream | None:
+        """That it follows, or will from the next key frame on; None: it wants pictures of their own."""
+        return self.codec if self.codec is None or not self.lesser else LESSER_VIDEO[self.codec]
+
+    @property
     def codecs(self) -> frozenset[Stream]:
         """Of frames that it needs to be offered; JPEG: pictures of their own."""
-        if self.lesser:
-            return frozenset({LESSER})
-        video = frozenset() if self.codec is None else frozenset({self.codec})
-        return video if self.in_step else video | {Codec.JPEG}
+        video = frozenset() if self.video is None else frozenset({self.video})
+        return video if self.in_step else video | {LESSER if self.lesser else Codec.JPEG}
 
     @property
     def next(self) -> WaitingFrame | None:
@@ -70,11 +73,9 @@ class FrameFeed:
 
     def follow_lesser(self, *, lesser: bool) -> None:
         """From now on lesser pictures, or those of the first tier again."""
-        if lesser and not self.lesser:
-            self.fall_out()
-            self.lacks_key = False
         if lesser != self.lesser:
-            self.lacks_picture = not lesser
+            self.fall_out()
+            self.lacks_key, self.lacks_picture = False, not lesser
         self.lesser = lesser
 
     def offer(self, frame: Frame, message: bytes, stream: Stream, now: float) -> None:

@@ -14,7 +14,7 @@ from weakref import WeakSet
 
 from culet.gateway.viewers.viewer import Viewer
 from culet_protocol.frame import Codec
-from culet_protocol.watch import LESSER, Stream
+from culet_protocol.watch import Lesser, Stream
 
 ENTER, LEAVE = 0.5, 0.8
 """Of the bytes a second that frames have: a viewer whose link carries less is sent lesser ones, until it carries more.
@@ -42,7 +42,7 @@ class StreamTiers:
 
     def came(self, stream: Stream, size: int, now: float) -> None:
         """A frame of so many bytes came from the engine."""
-        if stream is LESSER:
+        if isinstance(stream, Lesser):
             return
         came = self._came.setdefault(stream, deque())
         came.append((now, size))
