@@ -141,3 +141,17 @@ async def test_what_was_asked_by_a_connection_that_is_gone_is_not_waited_for(
         number, _ = await engine.heard()
         await engine.say(number, Reply(status=200, result={"sessions": 0}))
         assert (await asking)[0] == {"sessions": 0}
+
+
+async def test_an_engine_that_does_not_count_as_down_yet_is_not_connected_to_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waited: list[float] = []
+
+    async def silence(_: EngineLink, __: float, seconds: float) -> None:
+        waited.append(seconds)
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(EngineLink, "_silence", silence)
+    async with linked(tmp_path, request_seconds=PATIENCE):
+        assert waited == [PATIENCE], "the link's own silence"

@@ -44,8 +44,8 @@ FRAMES_WAITING = 16
 RECONNECT_MS = 50
 """Between tries to connect to an engine that is being started again."""
 REOPEN_SECONDS = 5.0
-"""An engine that was silent for so long is connected to anew: it may have forgotten this gateway, and a gateway that is
-not greeted asks nothing."""
+"""An engine that was silent for so long, and counts as down, is connected to anew: it may have forgotten this gateway,
+and a gateway that is not greeted asks nothing."""
 
 GREET_AGAIN_SECONDS = 1.0
 """After a greeting that an engine which lives did not answer in time."""
@@ -143,6 +143,7 @@ class EngineLink:
 
     async def _keep_control(self) -> None:
         """A control socket, and another one whenever the engine was silent for long."""
+        reopen_seconds = max(REOPEN_SECONDS, self._settings.engine_silence_seconds)  # or requests would fail before
         while True:
             control = self._context.socket(zmq.DEALER)
             control.setsockopt(zmq.LINGER, 0)
@@ -159,7 +160,7 @@ class EngineLink:
             readers = [
                 asyncio.create_task(self._read_control(control)),
                 asyncio.create_task(self._notice_disconnections(monitor)),
-                asyncio.create_task(self._silence(asyncio.get_running_loop().time(), REOPEN_SECONDS)),
+                asyncio.create_task(self._silence(asyncio.get_running_loop().time(), reopen_seconds)),
             ]
             try:
                 done, _ = await asyncio.wait(readers, return_when=asyncio.FIRST_COMPLETED)
