@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from culet_protocol.messages import Orbit, ResetStone, Resize, ToggleFall
+from culet_protocol.messages import Decoders, Orbit, ResetStone, Resize, ToggleFall
 from network.shaped_link import Shape, running_link
 from network.watching import Arrival, Seen, Watcher, new_session, percentile, server_at
+from video_extra import needs_av
 
 FAST = Shape(megabits=20, milliseconds=40, kilobytes=200)
 SLOW = Shape(megabits=2, milliseconds=150, kilobytes=100)
@@ -158,3 +159,28 @@ def test_a_slow_watcher_is_sent_lesser_pictures_and_delays_nobody() -> None:
     print(f"near: {Seen(there, [], 10)}\nfar: {Seen(here, [], 10)}")
     assert sum(frame.bytes for frame in here) / len(here) < 0.7 * sum(frame.bytes for frame in there) / len(there)
     assert percentile([frame.latency for frame in there], 0.5) < percentile([frame.latency for frame in here], 0.5)
+
+
+@pytest.mark.soak
+@needs_av
+def test_a_slow_watcher_that_decodes_video_has_more_of_the_picture_in_fewer_bytes() -> None:
+    """As above: first pictures, then video of the lesser tier, and pictures again."""
+    with running_link(SLOW) as link, server_at(link, "serve", "--no-spare"):
+        session = new_session(link)
+        near, far = Watcher(link, session, SIZE, near=True), Watcher(link, session, SIZE)
+        sizes: list[float] = []
+        with near.watching():
+            for _ in range(4):
+                turned(near)
+            with far.watching():
+                for codecs in ((), ("h264",), ()):
+                    far.say(Decoders.model_validate({"codecs": codecs}))
+                    for _ in range(6):
+                        turned(near)
+                    begun = len(far.arrivals)
+                    for _ in range(8):
+                        turned(near)
+                    here = far.arrivals[begun:]
+                    sizes.append(sum(frame.bytes for frame in here) / len(here))
+                    print(f"{codecs or 'pictures'}: {Seen(here, [], 8)}")
+    assert sizes[1] < 0.7 * min(sizes[0], sizes[2])
