@@ -93,7 +93,7 @@ def _recut(session: int, stones: int) -> dict[str, Any]:
         "stones": [
             {
                 "position": [2.5 * (number % 8), 1, 2.5 * (number // 8)],
-                "recut": {"angles": {"1": 41 + 0.001 * (session * stones + number)}},
+                "recut": {"angles": {"4": 42.5 + 0.001 * (session * stones + number)}},
             }
             for number in range(stones)
         ]

@@ -183,4 +183,4 @@ def test_a_slow_watcher_that_decodes_video_has_more_of_the_picture_in_fewer_byte
                     here = far.arrivals[begun:]
                     sizes.append(sum(frame.bytes for frame in here) / len(here))
                     print(f"{codecs or 'pictures'}: {Seen(here, [], 8)}")
-    assert sizes[1] < 0.7 * min(sizes[0], sizes[2])
+    assert sizes[1] < 0.9 * min(sizes[0], sizes[2]), "either takes what there is room for; video needs less of it"
