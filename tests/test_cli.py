@@ -293,7 +293,7 @@ def test_every_scene_of_a_benchmark_renders(renderer: Renderer, name: str) -> No
     picture = renderer.picture(stage_of(CASES[name]), 16, 9)
     picture.refine(1)
     assert np.isfinite(picture.linear()).all()
-    assert picture.segments() > 0
+    assert (picture.segments() > 0) == (name not in ("default, 64 stones out of view", "default, without stones"))
 
 
 @contextmanager

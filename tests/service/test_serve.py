@@ -455,7 +455,7 @@ async def test_a_process_that_falls_silent_is_replaced_by_the_one_that_stands_by
 async def test_a_process_that_asks_for_patience_gets_it(tmp_path: Path) -> None:
     impatient, patient = (
         Supervisor(
-            ServerPart(name, [sys.executable, "-c", SPEAKER, seconds], silence_seconds=0.1, has_spare=True), tmp_path
+            ServerPart(name, [sys.executable, "-c", SPEAKER, seconds], silence_seconds=1, has_spare=True), tmp_path
         )
         for name, seconds in (("impatient", "0.1"), ("patient", "600"))
     )
