@@ -427,10 +427,10 @@ async def test_a_gateway_that_is_told_to_end_by_itself_is_followed_by_another(se
 
 SPEAKER = """
 import sys, time
-from culet.notify import Notice, notify, notify_patience
+from culet.notify import ServiceNotice, notify, notify_patience
 sys.stdin.readline()
 notify_patience(float(sys.argv[1]))
-notify(Notice.READY)
+notify(ServiceNotice.READY)
 time.sleep(600)
 """
 """Asks for so much patience, says that it is ready, and then says nothing more."""
@@ -447,9 +447,11 @@ async def test_a_process_that_falls_silent_is_replaced_by_the_one_that_stands_by
     async def replaced() -> bool:
         return supervisor.starts >= 3
 
-    await eventually(replaced)
-    await supervisor.stop()
-    await running
+    try:
+        await eventually(replaced)
+    finally:
+        await supervisor.stop()
+        await running
 
 
 async def test_a_process_that_asks_for_patience_gets_it(tmp_path: Path) -> None:
@@ -464,11 +466,13 @@ async def test_a_process_that_asks_for_patience_gets_it(tmp_path: Path) -> None:
     async def replaced_often() -> bool:
         return impatient.starts >= 4
 
-    await eventually(replaced_often)
-    assert patient.starts <= 2, "itself, and the one that stands by"
-    for supervisor in (impatient, patient):
-        await supervisor.stop()
-    await asyncio.gather(*running)
+    try:
+        await eventually(replaced_often)
+        assert patient.starts <= 2, "itself, and the one that stands by"
+    finally:
+        for supervisor in (impatient, patient):
+            await supervisor.stop()
+        await asyncio.gather(*running)
 
 
 @pytest.mark.soak
