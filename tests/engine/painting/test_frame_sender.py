@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import threading
 from collections.abc import AsyncIterator
 from dataclasses import replace
 
@@ -25,6 +26,7 @@ from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.frame import Codec, Flags, Frame
 from culet_protocol.watch import LESSER, topic_of, video_topic, watch_key
+from shared.patience import PATIENCE
 
 NAME = "0" * 32
 WATCH = watch_key(NAME)
@@ -318,6 +320,45 @@ async def test_a_link_that_gets_better_while_the_picture_is_on_its_way_counts_to
     desk.sender.improve(desk.session, desk.outgoing)
     await resting.improve()
     assert len(desk.sent[-1].payload) == resting.bytes
+
+
+@pytest.mark.parametrize("begun", [False, True], ids=["waits", "begun"])
+@pytest.mark.parametrize("again", [False, True], ids=["first", "again"])
+async def test_what_an_input_changes_waits_for_no_final_picture(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, *, again: bool, begun: bool
+) -> None:
+    """Neither for its own, nor for those of others that are encoded before it."""
+    resting, going_on = Resting(desk), threading.Event()
+    encode = LiveFrame.encoded
+
+    def held_up(frame: LiveFrame, allowance: ByteAllowance) -> Coded:
+        assert not frame.final or going_on.wait(PATIENCE)
+        return encode(frame, allowance)
+
+    if again:
+        resting.allow(0.4)
+        await desk.publish(planned=False)
+        resting.allow(2)
+    monkeypatch.setattr(LiveFrame, "encoded", held_up)
+    if again:
+        desk.sender.improve(desk.session, desk.outgoing)
+    else:
+        final = replace(desk.frame, planned=False)
+        desk.sender.publish(desk.session, desk.outgoing, desk.learnt.append, final, 0)
+    if begun:
+        await asyncio.sleep(0)
+    assert desk.outgoing.unsent == 1
+    given_up, count = desk.outgoing.latest, len(desk.sent)
+    desk.frame = replace(desk.frame, final=False)
+    try:
+        assert await desk.publish() == [(WATCH, Codec.JPEG, count + 1)]
+        assert given_up is not None
+        assert given_up.cancelled()
+        assert desk.outgoing.unsent == 0
+    finally:
+        going_on.set()
+    await desk.publish()
+    assert not any(Flags.FINAL in frame.flags for frame in desk.sent[count:]), "it would be seen after what came later"
 
 
 @pytest.mark.parametrize("kept", ["moving", "replaced", "not final"])

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TypeVar
 
 from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance
@@ -53,6 +54,8 @@ class Outgoing:
     """Bytes that frames may have."""
     latest: asyncio.Task[None] | None = None
     """Encodes and sends the frame that was drawn last."""
+    final: _Departure | None = None
+    """A final picture at rest that is on its way, if nothing was drawn since: it takes long to encode."""
 
     def watch(self, codec: Stream, *, subscribed: bool) -> None:
         """Somebody began, or the last one ceased, to receive frames in that codec. Whoever subscribes once more to
@@ -188,10 +191,8 @@ class FrameSender:
     ) -> None:
         """Encode and send a frame that was begun at that time of the clock; this does not wait for either. `learn` is
         told what a frame for a link with limits has become."""
-        outgoing.unsent += 1
         outgoing.forget_frame()
-        departure = _Departure(session, outgoing, learn, frame, begun_at, outgoing.latest)
-        outgoing.latest = asyncio.create_task(self._encode_and_send(departure))
+        self._depart(_Departure(session, outgoing, learn, frame, begun_at, _leave_behind(outgoing)))
 
     def improve(self, session: Session, outgoing: Outgoing) -> None:
         """Encode the final picture at rest again where the links of who is sent it have got better, and send it under a
@@ -200,9 +201,14 @@ class FrameSender:
         coarse = again[0] or again[1]
         if coarse is None:
             return
+        self._depart(_Departure(session, outgoing, lambda _: None, coarse.frame, self._now(), outgoing.latest, again))
+
+    def _depart(self, departure: _Departure) -> None:
+        outgoing = departure.outgoing
         outgoing.unsent += 1
-        departure = _Departure(session, outgoing, lambda _: None, coarse.frame, self._now(), outgoing.latest, again)
         outgoing.latest = asyncio.create_task(self._encode_and_send(departure))
+        outgoing.latest.add_done_callback(partial(self._departed, departure))  # also of one given up before it began
+        outgoing.final = departure if departure.frame.final else None
 
     def repeat(self, outgoing: Outgoing) -> None:
         """Send the frame sent last again, if there was one."""
@@ -232,16 +238,19 @@ class FrameSender:
             threads.shutdown(wait=False, cancel_futures=True)
 
     async def _encode_and_send(self, departure: _Departure) -> None:
+        if departure.again is not None:
+            await self._send_better(departure, *departure.again)
+        else:
+            await self._send_tiers(departure)
+
+    def _departed(self, departure: _Departure, task: asyncio.Task[None]) -> None:
         outgoing = departure.outgoing
-        try:
-            if departure.again is not None:
-                await self._send_better(departure, *departure.again)
-            else:
-                await self._send_tiers(departure)
-        finally:
-            outgoing.unsent -= 1
-            self._wake()
-        self.improve(departure.session, outgoing)  # the links may have got better meanwhile
+        outgoing.unsent -= 1
+        if outgoing.final is departure:
+            outgoing.final = None
+        self._wake()
+        if not task.cancelled():
+            self.improve(departure.session, outgoing)  # the links may have got better meanwhile
 
     async def _send_tiers(self, departure: _Departure) -> None:
         outgoing = departure.outgoing
@@ -389,6 +398,16 @@ class FrameSender:
     async def _in_thread(self, call: Callable[..., T], *arguments: object, final: bool = False) -> T:
         threads = self._final_thread if final else self._threads
         return await asyncio.get_running_loop().run_in_executor(threads, call, *arguments)
+
+
+def _leave_behind(outgoing: Outgoing) -> asyncio.Task[None] | None:
+    """The task of the frame before the one that is drawn now. A final picture that is still being encoded, or waits for
+    those of others, is given up: an input's answer does not wait for it."""
+    latest, final = outgoing.latest, outgoing.final
+    if latest is None or final is None:
+        return latest
+    latest.cancel()
+    return final.before
 
 
 def _coarse(frame: LiveFrame, picture: Coded, allowance: ByteAllowance) -> Coarse | None:
