@@ -5,9 +5,12 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
+import pytest
+
 from culet.engine.session.session import Session
+from culet.errors import EngineUnavailableError
 from culet.gateway.engine.link import EngineLink
-from culet.gateway.sessions.engine_news import OF_ONE_CLIENT, EngineNews
+from culet.gateway.sessions.engine_news import EngineNews
 from culet.gateway.sessions.session_record import SessionRecord
 from culet.gateway.settings import GatewaySettings
 from culet.gateway.viewers.viewer import Viewer
@@ -15,6 +18,7 @@ from culet.scene import Scene
 from culet.stage import Stage
 from culet_protocol.engine import SessionChange
 from culet_protocol.messages import Engine, Message, Notice, State
+from shared.patience import PATIENCE
 
 NAME = "5" * 32
 
@@ -116,30 +120,92 @@ async def test_a_change_that_an_answer_told_already_is_told_to_viewers_and_nothi
     assert viewer.exposures == [1.5]
 
 
-async def test_sessions_of_a_client_whose_shapes_take_long_hold_up_no_others_when_an_engine_is_new() -> None:
-    heavy = [SessionRecord(f"{number:032x}", {}, "10.0.0.1") for number in range(8)]
-    light = [SessionRecord(f"{number:032x}", {}, "10.0.0.2") for number in range(8, 12)]
-    viewers = {record.id: Listener() for record in (*heavy, *light)}
-    records = {record.id: record for record in (*heavy, *light)}
-    for record in records.values():
-        record.viewers.append(viewers[record.id])
-    go_on, asked = asyncio.Event(), list[str]()
+class Reopening:
+    """A gateway that has sessions, and an engine that opens those of some clients only once it is let."""
 
-    async def reopen(record: SessionRecord) -> None:
-        asked.append(record.id)
-        if record.owner == "10.0.0.1":
-            await go_on.wait()
+    def __init__(self, *, light: int, heavy: int, of_heavy: int = 0) -> None:
+        """So many clients with a session each, and clients with so many sessions each whose shapes take long."""
+        owners = [f"light {number}" for number in range(light)]
+        owners += [f"heavy {number // of_heavy}" for number in range(heavy * of_heavy)]
+        self.records = {
+            f"{number:032x}": SessionRecord(f"{number:032x}", {}, name) for number, name in enumerate(owners)
+        }
+        self.viewers: dict[str, Listener] = {}
+        for record in self.records.values():
+            record.revision, record.engine = 1, "1"
+            self.viewers[record.id] = Listener()
+            record.viewers.append(self.viewers[record.id])
+        self.go_on = asyncio.Event()
+        self.asked: list[str] = []
+        self.link = HeldLink(Session(NAME, Stage.of(Scene())))
+        self.link.events = self.news = EngineNews(self.link, self.records, self.reopen, lambda _: None)
+        self.news.taken_over.set()
+        self.link._greeted = "1"
 
-    link = HeldLink(Session(NAME, Stage.of(Scene())))
-    link.ready.set()
-    news = EngineNews(link, records, reopen, lambda _: None)
-    news.taken_over.set()
-    coming = asyncio.create_task(news.engine_up(True))
-    for _ in range(100):
-        await asyncio.sleep(0)
-    assert sorted(asked) == [record.id for record in (*heavy[:OF_ONE_CLIENT], *light)]
-    assert [viewers[record.id].engines for record in light] == [["up"]] * 4, "told without waiting for the others"
-    assert all(not viewers[record.id].engines for record in heavy)
-    go_on.set()
-    await coming
-    assert [viewer.engines for viewer in viewers.values()] == [["up"]] * 12
+    async def reopen(self, record: SessionRecord) -> None:
+        """As the sessions' own."""
+        self.asked.append(record.id)
+        instance = self.link.instance
+        if record.owner.startswith("heavy"):
+            await self.go_on.wait()
+        if self.link.instance != instance or not self.link.ready.is_set():
+            raise EngineUnavailableError("it went")
+        record.engine = instance
+
+    async def greeted(self) -> None:
+        """Until the engine that was heard last has what it lacked."""
+        greeting = self.link._greeting
+        assert greeting is not None
+        async with asyncio.timeout(PATIENCE):
+            await greeting
+
+
+async def test_sessions_of_clients_whose_shapes_take_long_hold_up_no_others_when_an_engine_is_new() -> None:
+    heavy, each = 5, 8
+    gateway = Reopening(light=12, heavy=heavy, of_heavy=each)
+    light = [name for name, record in gateway.records.items() if record.owner.startswith("light")]
+    slow = [name for name in gateway.records if name not in light]
+    gateway.link._hear("2")
+    await turns()
+    assert sorted(gateway.asked) == sorted([*light, *slow[::each]]), "of each client one at a time"
+    assert all(gateway.viewers[name].engines == ["up"] for name in light), "told without waiting for the others"
+    assert not any(gateway.viewers[name].engines for name in slow)
+    gateway.go_on.set()
+    await gateway.greeted()
+    assert sorted(gateway.asked) == sorted(gateway.records)
+    assert all(viewer.engines == ["up"] for viewer in gateway.viewers.values())
+
+
+async def test_sessions_that_wait_when_the_link_breaks_are_given_when_the_same_engine_is_heard_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("culet.gateway.engine.link.GREET_AGAIN_SECONDS", 0)
+    gateway = Reopening(light=1, heavy=1, of_heavy=2)
+    done, *waiting = gateway.records
+    gateway.link._hear("2")
+    await turns()
+    assert gateway.asked == [done, waiting[0]]
+    gateway.link.lose("the cable was pulled")
+    gateway.go_on.set()
+    await gateway.greeted()
+    assert [record.engine for record in gateway.records.values()] == ["2", "1", "1"]
+    assert all(gateway.viewers[name].engines == ["down"] for name in waiting), "they are not told that it has them"
+    gateway.asked.clear()
+    gateway.link._hear("2")
+    await gateway.greeted()
+    assert gateway.asked == waiting, "and nothing that the engine has"
+    assert {record.engine for record in gateway.records.values()} == {"2"}
+    assert all(gateway.viewers[name].engines == ["down", "up"] for name in waiting)
+
+
+async def test_a_session_that_is_closed_opened_or_given_while_it_waits_for_its_turn_is_not_given_then() -> None:
+    gateway = Reopening(light=0, heavy=1, of_heavy=5)
+    first, closed, given, opening, last = gateway.records.values()
+    gateway.link._hear("2")
+    await turns()
+    del gateway.records[closed.id]
+    given.engine = "2"  # by an event
+    opening.revision = None  # asked for by a page that waits for the answer
+    gateway.go_on.set()
+    await gateway.greeted()
+    assert gateway.asked == [first.id, last.id]

@@ -171,6 +171,7 @@ class SlowEngine(EngineLink):
         self.let = asyncio.Event()
         self.opened: list[bool] = []
         """Whether the gateway waits for it as long as that takes."""
+        self.closed: list[str] = []
         self.given_up = 0
 
     async def request(
@@ -190,6 +191,8 @@ class SlowEngine(EngineLink):
                 raise
         elif not self.let.is_set():
             raise NotFoundError("no such session; it may have expired")
+        elif isinstance(message, CloseSession):
+            self.closed.append(message.session)
         stage = Stage.of(Scene())
         return Session("ab" * 16, stage).described() | {"findings": []}, b""
 
@@ -228,3 +231,39 @@ async def test_a_session_that_nobody_has_seen_is_given_up_with_who_asks_for_it()
     leaves.cancel()
     await asyncio.wait([leaves])
     assert (link.opened, link.given_up) == ([False], 1)
+
+
+async def test_a_session_that_is_closed_while_it_is_given_again_does_not_stay_in_the_engine() -> None:
+    link = SlowEngine(SETTINGS)
+    sessions = Sessions(SETTINGS, link, Uploads(link, 0))
+    session = sessions._sessions["ab" * 16] = SessionRecord("ab" * 16, {})
+    session.revision = 1
+    giving = asyncio.create_task(sessions._give_again(session))
+    while not link.opened:  # noqa: ASYNC110 - it says nothing
+        await asyncio.sleep(0)
+    await sessions.close(session)
+    assert link.closed == [], "it was not there yet"
+    link.let.set()
+    with pytest.raises(NotFoundError, match="closed meanwhile"):
+        await giving
+    assert link.closed == [session.id]
+    with pytest.raises(NotFoundError, match="closed meanwhile"):
+        await sessions._give_again(session)
+    assert len(link.opened) == 1
+
+
+async def test_a_session_made_anew_under_its_name_while_the_one_before_is_given_again_stays_in_the_engine() -> None:
+    link = SlowEngine(SETTINGS)
+    sessions = Sessions(SETTINGS, link, Uploads(link, 0))
+    before = sessions._sessions["ab" * 16] = SessionRecord("ab" * 16, {})
+    before.revision = 1
+    giving = asyncio.create_task(sessions._give_again(before))
+    while not link.opened:  # noqa: ASYNC110 - it says nothing
+        await asyncio.sleep(0)
+    await sessions.close(before, "others needed room")
+    anew = sessions._sessions[before.id] = SessionRecord(before.id, {})
+    link.let.set()
+    with pytest.raises(NotFoundError, match="closed meanwhile"):
+        await giving
+    assert link.closed == []
+    assert sessions.get(before.id) is anew

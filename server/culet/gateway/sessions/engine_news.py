@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import replace
 
-from culet.errors import CuletError
+from culet.errors import CuletError, EngineUnavailableError
 from culet.gateway.engine.link import EngineEvents, EngineLink
 from culet.gateway.identity.client_address import UNKNOWN
 from culet.gateway.sessions.session_record import SessionRecord
@@ -19,12 +18,6 @@ from culet_protocol.messages import Engine, Problem
 from culet_protocol.watch import VIDEO, Lesser
 
 log = logging.getLogger(__name__)
-
-REOPENED_AT_ONCE = 4
-"""Sessions, in a new engine: some of them need files that are read by processes."""
-OF_ONE_CLIENT = 3
-"""Of those: an engine makes shapes for one client after the other, which may take it a minute, and others' sessions
-need not wait for that."""
 
 
 class EngineNews(EngineEvents):
@@ -118,10 +111,7 @@ class EngineNews(EngineEvents):
         if not self.taken_over.is_set():
             await self._take_over()
         elif new_process:
-            watched_first = sorted(self._records.values(), key=lambda session: not session.viewers)
-            turn = asyncio.Semaphore(REOPENED_AT_ONCE)
-            own = {session.owner: asyncio.Semaphore(OF_ONE_CLIENT) for session in watched_first}
-            await asyncio.gather(*(self._try_to_reopen(session, own[session.owner], turn) for session in watched_first))
+            await self._reopen_all()
             return
         for session in self._records.values():
             session.tell(Engine(status="up"))
@@ -132,6 +122,7 @@ class EngineNews(EngineEvents):
         for described in answer["sessions"]:
             session = SessionRecord(described["session"], described["scene"], described["client"] or UNKNOWN)
             session.learn(described)
+            session.engine = self._link.instance
             session.watched = True  # or so it may have been, and its page may be about to come back
             session.viewer_left = time.monotonic()
             self._records.setdefault(session.id, session)
@@ -139,15 +130,45 @@ class EngineNews(EngineEvents):
             log.info("took over %d sessions", len(answer["sessions"]))
         self.taken_over.set()
 
-    async def _try_to_reopen(self, session: SessionRecord, *turns: asyncio.Semaphore) -> None:
-        """In its turns; its viewers are told as soon as it is there, not only once all others are."""
-        try:
-            async with contextlib.AsyncExitStack() as stack:
-                for turn in turns:
-                    await stack.enter_async_context(turn)
+    async def _reopen_all(self) -> None:
+        """Of each client one session after the other, those that are watched first, and all clients' beside each other:
+        an engine makes shapes in turns of clients, so that a client whose shapes take it minutes holds up no other.
+
+        EngineUnavailableError if some could not be given, which then still lack.
+        """
+        own: dict[str, list[SessionRecord]] = {}
+        for session in sorted(self._records.values(), key=lambda session: not session.viewers):
+            own.setdefault(session.owner, []).append(session)
+        ended = await asyncio.gather(*map(self._reopen_in_turn, own.values()), return_exceptions=True)
+        for error in ended:
+            if error is not None:
+                raise error
+
+    async def _reopen_in_turn(self, sessions: Sequence[SessionRecord]) -> None:
+        failed: EngineUnavailableError | None = None
+        for session in sessions:
+            try:
+                await self._try_to_reopen(session)
+            except EngineUnavailableError as error:
+                failed = error
+        if failed is not None:
+            raise failed
+
+    async def _try_to_reopen(self, session: SessionRecord) -> None:
+        """Its viewers are told as soon as it is there, not only once all others are."""
+        opening = session.revision is None  # by who asked for it, who is told if that fails
+        if not (opening or session.engine == self._link.instance) and self._is_known(session):
+            try:
                 await self._reopen(session)
-        except CuletError as error:
-            session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
-            log.warning("a session could not be opened again: %s", error)
+            except EngineUnavailableError:  # it is given when the engine answers again
+                raise
+            except CuletError as error:
+                if self._is_known(session):
+                    session.tell(Problem(code="session_lost", message=f"it could not be opened again: {error}"))
+                    log.warning("a session could not be opened again: %s", error)
         if self._link.ready.is_set():
             session.tell(Engine(status="up"))
+
+    def _is_known(self, session: SessionRecord) -> bool:
+        """Whether it was not closed meanwhile."""
+        return self._records.get(session.id) is session

@@ -68,6 +68,8 @@ class SessionRecord:
         self.scene = scene
         self.revision: int | None = None
         """Of the scene, by the engine's count; None until the engine has said so."""
+        self.engine: str | None = None
+        """Instance of the engine's process that has it."""
         self.findings: tuple[str, ...] = ()
         """What the engine said about the stones when it last described the session."""
         self.condition = Condition(falling=False)

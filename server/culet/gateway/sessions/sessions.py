@@ -59,7 +59,7 @@ class Sessions:
         self._demands = Demands(link, self._sessions)
         self._places = SessionPlaces(settings, self._sessions, self.close, self._watched_elsewhere)
         self._news = link.events = EngineNews(link, self._sessions, self._give_again, self._demands.heed_video)
-        self._giving: dict[str, asyncio.Task[None]] = {}
+        self._giving: dict[SessionRecord, asyncio.Task[None]] = {}
         """Sessions that the engine is being given again."""
         self._deleted: OrderedDict[str, None] = OrderedDict()
         self._viewer_numbers = itertools.count(1)
@@ -169,6 +169,7 @@ class Sessions:
                 for_asker=True,  # also one that its client says there was: it may say so of as many as it likes
             )
             session.learn(opened)
+            session.engine = self._link.instance
             if session.id not in self._sessions:
                 await self.close(session, "others needed room")
                 raise BusyError("others needed the room of this session before it was open; try again")
@@ -365,18 +366,20 @@ class Sessions:
         if session.revision is None:
             await self._give(session, patient=False)
             return
-        giving = self._giving.get(session.id)
+        giving = self._giving.get(session)
         if giving is None:
-            giving = self._giving[session.id] = asyncio.create_task(self._give(session, patient=True))
-            giving.add_done_callback(partial(self._given, session.id))
+            giving = self._giving[session] = asyncio.create_task(self._give(session, patient=True))
+            giving.add_done_callback(partial(self._given, session))
         await asyncio.shield(giving)
 
-    def _given(self, session: str, giving: asyncio.Task[None]) -> None:
+    def _given(self, session: SessionRecord, giving: asyncio.Task[None]) -> None:
         del self._giving[session]
         if not giving.cancelled():
             giving.exception()  # which maybe nobody waits for any more
 
     async def _give(self, session: SessionRecord, *, patient: bool) -> None:
+        """NotFoundError if the session is closed by then, or meanwhile."""
+        self._check_known(session)
         session.latest = None
         for viewer in session.viewers:
             viewer.restart()
@@ -387,5 +390,14 @@ class Sessions:
             patient=patient,
             for_asker=not patient,
         )
+        session.engine = self._link.instance
+        if session.id not in self._sessions:  # the engine did not have it yet when it was closed
+            with contextlib.suppress(NotFoundError):
+                await self._link.request(to_engine.CloseSession(session=session.id))
+        self._check_known(session)
         session.learn(opened)  # above all the numbers that it goes on with: the next engine must begin beyond them
         self._demands.begin_anew(session)
+
+    def _check_known(self, session: SessionRecord) -> None:
+        if self._sessions.get(session.id) is not session:
+            raise NotFoundError("that session was closed meanwhile")

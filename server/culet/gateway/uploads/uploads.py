@@ -21,6 +21,9 @@ from culet.gateway.uploads.upload_folder import UploadFolder
 from culet_protocol.engine import MeshType, PutMesh, PutSky, SkyType
 from culet_protocol.messages import Message
 
+GIVEN_AT_ONCE = 4
+"""Uploads that a new engine is given again: it reads one of a kind at a time, and lets few wait."""
+
 
 @dataclass(frozen=True)
 class UploadKind:
@@ -76,7 +79,8 @@ class Uploads:
         self._link = link
         self._max_bytes = max_bytes
         self._kept: OrderedDict[str, _Upload] = OrderedDict()
-        self._giving: dict[str, asyncio.Task[dict[str, Any]]] = {}
+        self._giving: dict[str, asyncio.Task[None]] = {}
+        self._turns = asyncio.Semaphore(GIVEN_AT_ONCE)
         self._folder = UploadFolder(folder) if folder else None
         for stored in self._folder.read() if self._folder else ():
             kind = {MESH.name: MESH, SKY.name: SKY}.get(stored.kind)
@@ -129,9 +133,13 @@ class Uploads:
         """Once for all who ask for it at the same time."""
         giving = self._giving.get(upload.id)
         if giving is None:
-            giving = self._giving[upload.id] = asyncio.create_task(upload.give(self._link))
+            giving = self._giving[upload.id] = asyncio.create_task(self._give_in_turn(upload))
             giving.add_done_callback(lambda _: self._giving.pop(upload.id, None))
         await asyncio.shield(giving)
+
+    async def _give_in_turn(self, upload: _Upload) -> None:
+        async with self._turns:
+            await upload.give(self._link)
 
     def _lacking(self, field: str, named: set[str], about: set[str]) -> list[_Upload]:
         """Those of the kind that the field names; the message's own last, in case the engine keeps only few."""
