@@ -59,7 +59,8 @@ class FrameSubscription:
             ) from error
 
     def receive(self, timeout_seconds: float = 10) -> Frame:
-        """The next frame (a picture at rest comes again once a second); SilenceError, ClientError for other bytes."""
+        """The next frame (a picture at rest comes again, ever more rarely, but every 8 s at least); SilenceError,
+        ClientError for other bytes."""
         if not self._socket.poll(int(timeout_seconds * 1000)):
             raise SilenceError(
                 f"no frame of watch id {self.watch} from {self.endpoint} in {timeout_seconds:g} s; "

@@ -70,7 +70,8 @@ def view(
 ) -> int:
     """Write the next frames, each the latest when it is taken; the number written.
 
-    A picture at rest comes again once a second, and counts each time. SilenceError if none comes in the time allowed.
+    A picture at rest comes again, ever more rarely, and counts each time. SilenceError if none comes in the time
+    allowed.
     """
     target = FrameFolder(folder)
     with FrameSubscription(endpoint, watch) as subscription:

@@ -15,7 +15,8 @@ from culet.gateway.settings import GatewaySettings
 def token_kept(settings: GatewaySettings) -> Iterator[None]:
     """Keep the token in the file that the settings name, if they name one; a server without a token has no file.
 
-    The file is new, whatever was there, and nobody else could ever read it. InputError if it cannot be written.
+    The file is new, whatever was there, and nobody else could ever read it. At the end it is removed, unless another
+    server has put its own there. InputError if it cannot be written.
     """
     file, token = settings.token_file, settings.token
     if file is None:
@@ -34,4 +35,7 @@ def token_kept(settings: GatewaySettings) -> Iterator[None]:
         yield
     finally:
         with contextlib.suppress(OSError):
-            file.unlink(missing_ok=True)
+            if (
+                token is not None and file.read_bytes() == token.encode()
+            ):  # and not that of a server which was started since
+                file.unlink()

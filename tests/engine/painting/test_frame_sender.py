@@ -16,6 +16,7 @@ from culet.engine.governing.thrift import FINAL_TIMES, NO_LIMITS, ByteAllowance
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.frame_sender import FrameSender, Outgoing
+from culet.engine.painting.lesser_tier import LesserTier
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.resting_picture import encode_png, encode_resting
 from culet.engine.painting.video import Packet, VideoEncoder, VideoError
@@ -259,6 +260,33 @@ async def test_of_an_encoder_of_another_size_only_what_is_more_needs_room(desk: 
     assert desk.sent[-1].depends_on == 1, "of the encoder that was there all the time"
 
 
+async def test_a_picture_at_rest_is_repeated_ever_more_rarely_until_somebody_comes(desk: Desk) -> None:
+    def waits(times: int) -> list[float]:
+        """s between so many repetitions that come by themselves."""
+        waited = []
+        for _ in range(times):
+            waited.append(desk.outgoing.silent_seconds)
+            desk.now += desk.outgoing.silent_seconds
+            desk.sender.repeat_by_itself(desk.outgoing)
+            assert desk.outgoing.sent_at == desk.now
+        return waited
+
+    await desk.publish(planned=False)
+    assert waits(6) == [1, 2, 4, 8, 8, 8]
+    assert len(desk.sent) == 1 + 6
+    desk.sender.repeat(desk.outgoing)
+    assert waits(2) == [1, 2], "for who has just come, and may have missed it"
+    await desk.publish(planned=False)
+    assert waits(2) == [1, 2]
+    resting = Resting(desk)
+    resting.allow(0.4)
+    await desk.publish(planned=False)
+    assert waits(2) == [1, 2]
+    resting.allow(2)
+    assert await resting.improve()
+    assert waits(2) == [1, 2], "a better one is a new one"
+
+
 class Resting:
     """A picture at rest of much detail, and the bytes that it has with as much loss as those before it."""
 
@@ -403,3 +431,45 @@ async def test_a_picture_that_nobody_is_sent_is_not_encoded_again_until_somebody
     assert await resting.improve() == []
     desk.outgoing.watch(Codec.JPEG, subscribed=True)
     assert await resting.improve() == [(WATCH, 2)]
+
+
+async def test_whether_a_better_picture_is_sent_is_decided_when_it_is_encoded_for_each_tier(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The links may have got worse since it was seen that they had got better."""
+    desk.outgoing.watch(LESSER, subscribed=True)
+    resting = Resting(desk)
+    resting.allow(0.4, 0.4)
+    await desk.publish(planned=False)
+    resting.allow(2, 2)
+    desk.sender.improve(desk.session, desk.outgoing)
+    resting.allow(0.2, 0.2)
+    assert await resting.improve() == []
+    encode = LiveFrame.encoded
+
+    def worsening(frame: LiveFrame, allowance: ByteAllowance) -> Coded:
+        resting.allow(2, 0.2)
+        return encode(frame, allowance)
+
+    monkeypatch.setattr(LiveFrame, "encoded", worsening)
+    resting.allow(2, 2)
+    assert await resting.improve() == [(WATCH, 2)], "of the lesser one there was room while the first was encoded"
+
+
+async def test_of_a_tier_that_is_left_while_its_better_picture_is_encoded_nothing_is_kept(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk.outgoing.watch(LESSER, subscribed=True)
+    resting = Resting(desk)
+    resting.allow(2, 0.2)
+    await desk.publish(planned=False)
+    encode = LesserTier.encoded
+
+    def left(tier: LesserTier, frame: LiveFrame) -> Coded:
+        desk.outgoing.watch(LESSER, subscribed=False)
+        return encode(tier, frame)
+
+    monkeypatch.setattr(LesserTier, "encoded", left)
+    resting.allow(2, 2)
+    assert await resting.improve() == []
+    assert (desk.outgoing.lesser.lossy, desk.outgoing.lesser.message) == (None, None)

@@ -10,16 +10,17 @@ from typing import cast
 import numpy as np
 import pytest
 import simplejpeg
+from numpy.typing import NDArray
 
 from culet.engine.governing.thrift import BEST_CRF, FINAL_TIMES, GROWN, NO_LIMITS, ByteAllowance, Encoding
 from culet.engine.painting.coded import Coded
-from culet.engine.painting.lesser_tier import LesserTier
+from culet.engine.painting.lesser_tier import LesserTier, shrunk
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.live_picture import LivePicture, PictureState
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.renderer import AnyRenderer
 from culet.engine.painting.still import EncodeStill, StillQueue
-from culet.engine.painting.video_track import BYTES_PER_PIXEL, VideoTrack
+from culet.engine.painting.video_track import BYTES_PER_PIXEL, CHANGE_SECONDS, VideoTrack
 from culet.errors import CuletError
 from culet.rendering.film.target import Target
 from culet_protocol.frame import Codec, Flags
@@ -285,6 +286,27 @@ async def test_the_lesser_video_keeps_to_the_link_and_is_no_better_than_the_firs
     coarse = replace(frame, encoding=Encoding(50, np.inf, thrifty=True, crf=40))
     desk.outgoing.lesser.room = None
     assert desk.outgoing.lesser.video_of(coarse) == (frame.size, 40)
+
+
+async def test_the_lesser_video_of_all_codecs_is_of_one_size_and_shrunk_once(
+    desk: Desk, frame: LiveFrame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sizes = list[tuple[int, int]]()
+
+    def counted(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+        sizes.append((width, height))
+        return shrunk(rgb, width, height)
+
+    monkeypatch.setattr("culet.engine.painting.frame_sender.shrunk", counted)
+    follow(desk, frame, Lesser.H264, Lesser.VP9)
+    desk.outgoing.lesser.size = (320, 180)
+    desk.outgoing.lesser.room = ByteAllowance(1500, None).room(30, 30)
+    for number in (1, 2, 3):
+        desk.now += CHANGE_SECONDS  # what an encoder was given before does not keep it from another size
+        await desk.publish()
+        assert len(sizes) == number
+        assert {(sent.width, sent.height) for sent in desk.sent[-2:]} == {sizes[-1]}
+        assert {sent.codec for sent in desk.sent[-2:]} == {Codec.H264, Codec.VP9}
 
 
 async def test_stills_and_frames_of_an_encoder_that_failed_twice_are_lesser_pictures(

@@ -325,6 +325,7 @@ async def done(live: LivePicture) -> None:
     """Encoding takes no time of these worlds."""
     if live.outgoing.latest is not None:
         await live.outgoing.latest
+        await asyncio.sleep(0)  # until who waits for its end has heard of it
 
 
 def _fail(_session: str, error: Exception) -> None:

@@ -45,6 +45,16 @@ def test_the_last_picture_is_without_loss_and_those_before_are_jpegs(rgb: NDArra
     assert off(last, rgb) == 0
 
 
+def test_for_a_link_without_limits_no_picture_with_loss_is_made(
+    rgb: NDArray[np.uint8], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def nothing(*_: object) -> bytes:
+        raise AssertionError
+
+    monkeypatch.setattr(jpeg, "encode", nothing)
+    assert encode_resting(rgb, NO_LIMITS, final=True).codec is Codec.PNG
+
+
 def test_a_link_has_the_least_loss_that_it_carries_as_soon_as_any_picture_at_rest(rgb: NDArray[np.uint8]) -> None:
     """Not in the time of which only the last picture may have more: what an input changes comes behind it."""
     sizes = [len(encode_png(rgb)), *(len(jpeg.encode(rgb, quality)) for quality in (*FINER_QUALITIES, 92))]

@@ -3,9 +3,9 @@
 import pytest
 
 from culet.engine.painting import schedule
-from culet.engine.painting.frame_sender import UNSENT_FRAMES
+from culet.engine.painting.frame_sender import REPEAT_SECONDS, UNSENT_FRAMES
 from culet.engine.painting.frame_work import FrameWork, WorkKind
-from culet.engine.painting.live_picture import REPEAT_SECONDS, REST_WEIGHT, LivePicture, PictureState
+from culet.engine.painting.live_picture import REST_WEIGHT, LivePicture, PictureState
 from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session

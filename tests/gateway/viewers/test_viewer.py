@@ -21,7 +21,7 @@ def test_with_credit_the_latest_frame_goes_out_once() -> None:
     offer(viewer, 1)
     latest = offer(viewer, 2)
     assert viewer.next_frame(0) == latest
-    offer(viewer, 2)  # a still picture is repeated once a second
+    offer(viewer, 2)  # a still picture is repeated
     assert viewer.next_frame(0) is None
 
 

@@ -72,3 +72,12 @@ it("takes what its question was refused for as unknown", async () => {
     ["refused", null],
   ]);
 });
+
+it("waits for nothing where nothing could be sent, which is not sent later either", async () => {
+  const { asked, told, after } = waiting();
+  after("without a connection", 0);
+  await settle();
+  expect(told).toEqual([["without a connection", null]]);
+  expect(asked).toEqual([]);
+  expect(vi.getTimerCount()).toBe(0);
+});

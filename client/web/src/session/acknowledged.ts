@@ -39,13 +39,14 @@ export class Acknowledged {
 
   /**
    * Do what sends something; ends when the server is done with that, or has refused it: with null, or why some of it was
-   * given up, or may be, and can be sent again.
+   * given up, or may be, and can be sent again. Without a connection nothing is sent, and nothing to be waited for.
    */
   after(work: () => void): Promise<string | null> {
     this.number += 1;
     const { number } = this;
     const first = this.sent().count + 1;
     work();
+    if (this.sent().count < first) return Promise.resolve(null);
     return new Promise((resolve) => {
       const timer = setTimeout(() => this.waiting.get(number)?.end(words.connection.notAnswered), PATIENCE_MS);
       const { connection, count } = this.sent();

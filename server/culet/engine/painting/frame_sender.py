@@ -11,13 +11,16 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from culet.engine.governing.thrift import NO_LIMITS, ByteAllowance
-from culet.engine.painting.coarse import Coarse
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.counters import SharedCounters
 from culet.engine.painting.failure import as_culet_error
-from culet.engine.painting.lesser_tier import LesserTier
+from culet.engine.painting.lesser_tier import LesserTier, shrunk
 from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.lossy import Lossy
 from culet.engine.painting.video_track import VideoTrack
 from culet.engine.session.session import Session
 from culet.errors import CuletError
@@ -28,6 +31,11 @@ T = TypeVar("T")
 
 UNSENT_FRAMES = 2
 """That may wait to be encoded and sent before no other is begun."""
+REPEAT_SECONDS = 1.0
+"""After which a picture at rest is sent again, since a high-water mark drops the newest message, maybe the last; and
+after twice as long each time,"""
+MOST_REPEAT_SECONDS = 8.0
+"""but no longer: those who receive frames straight from the engine take 10 s of silence for its end."""
 
 
 @dataclass(eq=False)
@@ -42,10 +50,12 @@ class Outgoing:
     """Of video that somebody subscribes to."""
     message: bytes | None = None
     """The frame sent last, by the session's watch id; None if it was only sent as video."""
-    coarse: Coarse | None = None
+    lossy: Lossy | None = None
     """The frame sent last, if a better one of it could be made."""
     sent_at: float = 0.0
-    """s, steady clock: when that was."""
+    """s, steady clock: when that was, or when it was sent again."""
+    silent_seconds: float = REPEAT_SECONDS
+    """After which it is sent again."""
     encoded_at: float = 0.0
     """s, steady clock: when a frame was last encoded as video."""
     unsent: int = 0
@@ -64,8 +74,8 @@ class Outgoing:
         tracks = self.lesser.tracks if lesser else self.tracks
         if not subscribed:
             self.codecs -= {codec}
-            if lesser and not self.less:
-                self.lesser.message = self.lesser.coarse = None
+            if lesser and not self.lesser_streams:
+                self.lesser.forget()
             if video is not None:
                 tracks.pop(video, None)
             return
@@ -74,12 +84,12 @@ class Outgoing:
             tracks.setdefault(video, VideoTrack(video)).want_key()
 
     @property
-    def first(self) -> frozenset[Stream]:
+    def first_streams(self) -> frozenset[Stream]:
         """Of the first tier, what somebody subscribes to."""
         return self.codecs - set(Lesser)
 
     @property
-    def less(self) -> frozenset[Stream]:
+    def lesser_streams(self) -> frozenset[Stream]:
         """The same of the lesser one."""
         return self.codecs & set(Lesser)
 
@@ -120,24 +130,29 @@ class Outgoing:
         return Codec.JPEG not in self.codecs and any(track.works and track.has_room for track in self.tracks.values())
 
     @property
-    def improving(self) -> tuple[Coarse | None, Coarse | None]:
-        """The final picture at rest as it was sent on the first tier, and on the lesser one, where somebody who
-        subscribes could be sent a better one. Neither while another is on its way."""
-        first = self.coarse if self.first and self.unsent == 0 else None
-        less = self.lesser.coarse if self.less and self.unsent == 0 else None
-        return (
-            first if first is not None and first.improves(self.allowance) else None,
-            less if less is not None and less.improves(self.lesser.allowance) else None,
-        )
+    def first_improving(self) -> Lossy | None:
+        """The final picture at rest as it was sent on the first tier, if who subscribes could be sent a better one."""
+        lossy = self.lossy if self.first_streams else None
+        return lossy if lossy is not None and lossy.improves(self.allowance) else None
 
     @property
-    def is_coarse(self) -> bool:
+    def lesser_improving(self) -> Lossy | None:
+        """The same of the lesser tier."""
+        lossy = self.lesser.lossy if self.lesser_streams else None
+        return lossy if lossy is not None and lossy.improves(self.lesser.allowance) else None
+
+    @property
+    def is_thrifty(self) -> bool:
         """Whether the final picture at rest has more loss than those before it, since links carry no more."""
-        return any(coarse is not None and coarse.thrifty for coarse in (self.coarse, self.lesser.coarse))
+        return any(lossy is not None and lossy.thrifty for lossy in (self.lossy, self.lesser.lossy))
 
     def forget_frame(self) -> None:
         """Keep none to be encoded again."""
-        self.coarse = self.lesser.coarse = None
+        self.lossy = self.lesser.lossy = None
+
+    def sent(self, now: float) -> None:
+        """Something new left, or the same for who has just come."""
+        self.sent_at, self.silent_seconds = now, REPEAT_SECONDS
 
     @property
     def full(self) -> bool:
@@ -158,8 +173,8 @@ class _Departure:
     """s, steady clock."""
     before: asyncio.Task[None] | None
     """That of the session's frame before it."""
-    again: tuple[Coarse | None, Coarse | None] | None = None
-    """Of one that was sent before: as what, on the first tier and the lesser one, where it is to be sent again."""
+    again: bool = False
+    """It was sent before, and is to be sent again where links have got better."""
 
 
 class FrameSender:
@@ -197,11 +212,11 @@ class FrameSender:
     def improve(self, session: Session, outgoing: Outgoing) -> None:
         """Encode the final picture at rest again where the links of who is sent it have got better, and send it under a
         number of its own."""
-        again = outgoing.improving
-        coarse = again[0] or again[1]
-        if coarse is None:
+        lossy = outgoing.first_improving or outgoing.lesser_improving
+        if lossy is None or outgoing.unsent > 0:
             return
-        self._depart(_Departure(session, outgoing, lambda _: None, coarse.frame, self._now(), outgoing.latest, again))
+        frame, before = lossy.frame, outgoing.latest
+        self._depart(_Departure(session, outgoing, lambda _: None, frame, self._now(), before, again=True))
 
     def _depart(self, departure: _Departure) -> None:
         outgoing = departure.outgoing
@@ -211,16 +226,27 @@ class FrameSender:
         outgoing.final = departure if departure.frame.final else None
 
     def repeat(self, outgoing: Outgoing) -> None:
-        """Send the frame sent last again, if there was one."""
+        """Send the frame sent last again, if there was one, for who has just come."""
+        self._repeat(outgoing)
+        outgoing.sent(self._now())
+
+    def repeat_by_itself(self, outgoing: Outgoing) -> None:
+        """The same for who may have missed it: the next time will be later."""
+        self._repeat(outgoing)
+        outgoing.sent_at = self._now()
+        outgoing.silent_seconds = min(2 * outgoing.silent_seconds, MOST_REPEAT_SECONDS)
+
+    def _repeat(self, outgoing: Outgoing) -> None:
         lesser = outgoing.lesser.message or outgoing.message
         if lesser is None:
             return
-        outgoing.sent_at = self._now()
         self._tally.counters.frames_repeated += 1
         if outgoing.message is not None:
-            self._send_to(outgoing.first, outgoing.message)
+            self._send_to(outgoing.first_streams, outgoing.message)
         # Who follows video is sent no first picture in the place of a lesser one: what moves goes on at once.
-        self._send_to(outgoing.less if outgoing.lesser.message else outgoing.less & {LESSER}, lesser)
+        self._send_to(
+            outgoing.lesser_streams if outgoing.lesser.message else outgoing.lesser_streams & {LESSER}, lesser
+        )
 
     def send_anew(self, session: Session, outgoing: Outgoing) -> None:
         """Send the frame sent last again, under a number of its own if it was sent as a lesser picture too: whoever has
@@ -238,8 +264,8 @@ class FrameSender:
             threads.shutdown(wait=False, cancel_futures=True)
 
     async def _encode_and_send(self, departure: _Departure) -> None:
-        if departure.again is not None:
-            await self._send_better(departure, *departure.again)
+        if departure.again:
+            await self._send_better(departure)
         else:
             await self._send_tiers(departure)
 
@@ -254,35 +280,41 @@ class FrameSender:
 
     async def _send_tiers(self, departure: _Departure) -> None:
         outgoing = departure.outgoing
-        lesser = bool(outgoing.less)
+        lesser = bool(outgoing.lesser_streams)
         began = await self._send_first(departure)
         if began is None:
             outgoing.forget_frame()
         if began is None or not lesser:
-            outgoing.lesser.message = None  # of something else than what is shown
+            outgoing.lesser.forget()
         else:
             await self._send_lesser(departure, began)
 
-    async def _send_better(self, departure: _Departure, first: Coarse | None, less: Coarse | None) -> None:
-        """What was sent before, where it becomes another picture."""
+    async def _send_better(self, departure: _Departure) -> None:
+        """What was sent before, where it becomes another picture by what the links have room for then."""
         session, outgoing, frame = departure.session, departure.outgoing, departure.frame
         lesser, started = outgoing.lesser, time.perf_counter()
         try:
-            if first is not None and (codecs := outgoing.first):
-                allowance = outgoing.allowance
+            if (lossy := outgoing.first_improving) is not None:
+                codecs, allowance = outgoing.first_streams, outgoing.allowance
                 picture = await self._in_thread(frame.encoded, allowance, final=True)
-                outgoing.coarse = _coarse(frame, picture, allowance)
-                if picture.looks != first.looks:
+                if outgoing.lossy is not lossy:  # nobody watches any more
+                    return
+                outgoing.lossy = _lossy(frame, picture, allowance)
+                if picture.looks != lossy.looks:
                     outgoing.message = self._pack_anew(session, frame, picture, started)
+                    outgoing.sent(self._now())
                     self._send_to(codecs, outgoing.message)
-            if less is not None and outgoing.less:
+            if (lossy := outgoing.lesser_improving) is not None:
                 allowance = lesser.allowance
                 picture = await self._in_thread(lesser.encoded, frame, final=True)
-                lesser.coarse = _coarse(frame, picture, allowance)
-                if picture.looks != less.looks and outgoing.less:
+                if lesser.lossy is not lossy:
+                    return
+                lesser.lossy = _lossy(frame, picture, allowance)
+                if picture.looks != lossy.looks:
                     lesser.message = self._pack_anew(session, frame, picture, started)
                     lesser.sequence = session.sequence
-                    self._send_to(outgoing.less, lesser.message)
+                    outgoing.sent(self._now())
+                    self._send_to(outgoing.lesser_streams, lesser.message)
         except Exception as error:  # the picture that was sent before stays
             outgoing.forget_frame()
             self._tell_problem(session, as_culet_error(error, what="encoding"))
@@ -297,7 +329,7 @@ class FrameSender:
         was begun; None if the frame goes no further."""
         session, outgoing, frame, before = departure.session, departure.outgoing, departure.frame, departure.before
         drawn_at, started = self._now(), time.perf_counter()
-        codecs, lesser = outgoing.first, bool(outgoing.less)
+        codecs, lesser = outgoing.first_streams, bool(outgoing.lesser_streams)
         tracks = list(outgoing.tracks.values()) if frame.planned else []
         video: dict[VideoTrack, Coded] = {}
         try:
@@ -336,8 +368,9 @@ class FrameSender:
         now = self._now()
         self._tally.durations.encode_wait.add(max(0.0, now - drawn_at))
         self._tally.durations.frame.add(max(0.0, now - departure.begun_at))
-        outgoing.message, outgoing.sent_at = message, now
-        outgoing.coarse = None if picture is None else _coarse(frame, picture, allowance)
+        outgoing.message = message
+        outgoing.sent(now)
+        outgoing.lossy = None if picture is None else _lossy(frame, picture, allowance)
         if video:
             outgoing.encoded_at = now
         self._tally.counters.frames_sent += 1
@@ -352,42 +385,47 @@ class FrameSender:
         """The lesser picture of the frame that was sent last, under the same number. What fails here costs nobody else
         theirs."""
         session, outgoing, frame, now = departure.session, departure.outgoing, departure.frame, self._now()
-        lesser, streams = outgoing.lesser, outgoing.less
+        lesser, streams = outgoing.lesser, outgoing.lesser_streams
+        tracks = list(lesser.tracks.values()) if frame.planned else []
         video: dict[VideoTrack, Coded] = {}
+        rgb: NDArray[np.uint8] | None = None
         try:
-            for track in list(lesser.tracks.values()) if frame.planned else []:
-                size, crf = lesser.video_of(frame)
+            size, crf = lesser.video_of(frame) if tracks else (frame.size, frame.crf)
+            for track in tracks:
                 works = track.works and track.find_room(size, crf, now, self._has_room)
                 streams -= {LESSER_VIDEO[track.codec]} if works else set()
                 if not works or track.is_held(now):  # skipped before it is encoded, not after
                     track.forgo()
                     continue
-                packet = await self._in_thread(lesser.packet, frame, track, size, crf, now)
+                if rgb is None:
+                    rgb = await self._in_thread(shrunk, frame.rgb, *size)
+                packet = await self._in_thread(lesser.packet, frame, rgb, track, crf, now)
                 if packet is None:
                     streams |= {LESSER_VIDEO[track.codec]}  # as JPEG
                 else:
                     video[track] = packet
             allowance = lesser.allowance
-            less = await self._in_thread(lesser.encoded, frame, final=frame.final) if streams else None
+            picture = await self._in_thread(lesser.encoded, frame, final=frame.final) if streams else None
             seconds = time.perf_counter() - started
-            message = None if less is None else frame.pack(session, less, seconds)
+            message = None if picture is None else frame.pack(session, picture, seconds)
             packed = {track: frame.pack(session, coded, seconds) for track, coded in video.items()}
         except Exception as error:
-            lesser.message = None
+            lesser.forget()
             for track in video:
                 track.close()  # what comes next must not need what was not sent
             self._tell_problem(session, as_culet_error(error, what="encoding"))
             return
-        lesser.sequence, lesser.message = session.sequence, None
+        lesser.forget()
+        lesser.sequence = session.sequence
         if video:
             outgoing.encoded_at = self._now()
         for track, sent in packed.items():
             track.sequence = session.sequence
             self._send_to({LESSER_VIDEO[track.codec]}, sent)
-        if message is not None and less is not None and outgoing.less:
-            lesser.coarse = _coarse(frame, less, allowance)
+        if message is not None and picture is not None and outgoing.lesser_streams:
+            lesser.lossy = _lossy(frame, picture, allowance)
             lesser.message = message
-            self._send_to(streams & outgoing.less, message)
+            self._send_to(streams & outgoing.lesser_streams, message)
 
     def _send_to(self, codecs: Collection[Stream], message: bytes) -> None:
         """A message by the session's watch id to who subscribes to frames in those codecs."""
@@ -410,11 +448,11 @@ def _leave_behind(outgoing: Outgoing) -> asyncio.Task[None] | None:
     return final.before
 
 
-def _coarse(frame: LiveFrame, picture: Coded, allowance: ByteAllowance) -> Coarse | None:
+def _lossy(frame: LiveFrame, picture: Coded, allowance: ByteAllowance) -> Lossy | None:
     """Of a frame that was sent as that picture; None if no better one can come of it, or if others follow it soon."""
     if not frame.final or frame.planned or frame.shown.moving or picture.codec is Codec.PNG:
         return None
-    return Coarse(frame, allowance.resting(final=True), picture.looks, picture.thrifty)
+    return Lossy(frame, allowance.resting(final=True), picture.looks, picture.thrifty)
 
 
 def _numbered(message: bytes | None, sequence: int) -> bytes | None:

@@ -18,9 +18,9 @@ from culet.engine.governing.thrift import (
     read_video_ladder,
 )
 from culet.engine.painting import jpeg
-from culet.engine.painting.coarse import Coarse
 from culet.engine.painting.coded import Coded
 from culet.engine.painting.live_frame import LiveFrame
+from culet.engine.painting.lossy import Lossy
 from culet.engine.painting.resting_picture import encode_resting
 from culet.engine.painting.video_track import VideoTrack
 from culet_protocol.frame import Codec
@@ -42,7 +42,7 @@ class LesserTier:
         """That the link has for a moving frame, by the rate at which they are made."""
         self.message: bytes | None = None
         """The frame sent last, by the session's watch id."""
-        self.coarse: Coarse | None = None
+        self.lossy: Lossy | None = None
         """The frame sent last, if a better one of it could be made."""
         self.sequence: int | None = None
         """Number of the last frame of which there was a lesser picture."""
@@ -51,24 +51,28 @@ class LesserTier:
         self._thrift = Thrift(read_byte_ladder())
         self._video_thrift = Thrift(read_video_ladder())
 
+    def forget(self) -> None:
+        """Keep none of what was sent last: something else is shown, or nobody is sent lesser pictures."""
+        self.message = self.lossy = None
+
     def encoded(self, frame: LiveFrame) -> Coded:
         """The frame within the limits. Takes milliseconds, a final one some hundredths of a second."""
         width, height = self.fitting(frame.size)
         if not frame.planned and not frame.shown.moving:
-            return encode_resting(_shrunk(frame.rgb, width, height), self.allowance, final=frame.final)
+            return encode_resting(shrunk(frame.rgb, width, height), self.allowance, final=frame.final)
         if not frame.planned:
             most = self.allowance.resting(final=False)
-            picture = jpeg.encode_within(_shrunk(frame.rgb, width, height), jpeg.MOVING_QUALITY, most)
+            picture = jpeg.encode_within(shrunk(frame.rgb, width, height), jpeg.MOVING_QUALITY, most)
             return Coded.of_jpeg(picture, thrifty=picture.quality < jpeg.MOVING_QUALITY or picture.width < width)
         best = jpeg.MOVING_QUALITY if frame.encoding is None else frame.encoding.quality
         thrifty = frame.encoding is not None and frame.encoding.thrifty
         if self.room is None:
-            return Coded.of_jpeg(jpeg.encode_within(_shrunk(frame.rgb, width, height), best, math.inf), thrifty=thrifty)
+            return Coded.of_jpeg(jpeg.encode_within(shrunk(frame.rgb, width, height), best, math.inf), thrifty=thrifty)
         scale = self._thrift.scale((width, height), self.room)
         size = max(LEAST_SIDE, round(scale * width)), max(LEAST_SIDE, round(scale * height))
         how = self._thrift.encoding(size, self.room)
         quality = min(best, how.quality)
-        picture = jpeg.encode_within(_shrunk(frame.rgb, *size), quality, how.most_bytes)
+        picture = jpeg.encode_within(shrunk(frame.rgb, *size), quality, how.most_bytes)
         self._thrift.encoded((picture.width, picture.height), picture.quality, len(picture.data))
         less = picture.quality < best or picture.width < width
         return Coded.of_jpeg(picture, thrifty=thrifty or less)
@@ -82,10 +86,10 @@ class LesserTier:
         size = max(LEAST_SIDE, round(scale * window[0])), max(LEAST_SIDE, round(scale * window[1]))
         return size, max(frame.crf, self._video_thrift.encoding(size, self.room).quality)
 
-    def packet(self, frame: LiveFrame, track: VideoTrack, size: tuple[int, int], crf: int, now: float) -> Coded | None:
-        """The frame as the next packet of a track, in that size and of that rate factor; None if that failed. Takes
-        milliseconds."""
-        packet = track.encode(_shrunk(frame.rgb, *size), crf, now)
+    def packet(self, frame: LiveFrame, rgb: NDArray[np.uint8], track: VideoTrack, crf: int, now: float) -> Coded | None:
+        """The frame as the next packet of a track, shrunk to (height, width, 3) pixels, of that rate factor; None if
+        that failed. Takes milliseconds."""
+        packet = track.encode(rgb, crf, now)
         if packet is None:
             return None
         coded = frame.coded(track.codec, packet, track.sequence)
@@ -104,7 +108,8 @@ def fitting(size: tuple[int, int], window: tuple[int, int]) -> tuple[int, int]:
     return max(LEAST_SIDE, round(scale * size[0])), max(LEAST_SIDE, round(scale * size[1]))
 
 
-def _shrunk(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+def shrunk(rgb: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+    """A (height, width, 3) picture in that size. Takes milliseconds."""
     if rgb.shape[:2] == (height, width):
         return rgb
     picture = PIL.Image.fromarray(np.ascontiguousarray(rgb))

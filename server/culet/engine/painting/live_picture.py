@@ -30,9 +30,6 @@ the picture is governed as a falling stone's is. The picture is drawn in full on
 change. How long the drawing took does not count. A picture that takes longer than this in full is governed at its first
 change too, or nothing would be seen of the change meanwhile."""
 
-REPEAT_SECONDS = 1.0
-"""A picture at rest is sent again this often: a high-water mark drops the newest message, maybe the last one."""
-
 REST_WEIGHT = 0.25
 """Share of the render thread's time for a picture at rest beside one that moves: it can wait, motion cannot."""
 
@@ -299,7 +296,7 @@ class LivePicture:
         self.seen = None
         self.session.motion.look_away()
         self.unwatched_at = now
-        if self.state in (PictureState.REDUCED, PictureState.FULL) or self.outgoing.is_coarse:
+        if self.state in (PictureState.REDUCED, PictureState.FULL) or self.outgoing.is_thrifty:
             self.state = PictureState.BLANK
         self.outgoing.forget_frame()
         if self.painted is not self.session.shown:
@@ -314,4 +311,4 @@ class LivePicture:
     def repeat_at(self) -> float | None:
         """When the frame sent last is to be sent again."""
         known = self.watched and self.current and (self.outgoing.message or self.outgoing.lesser.message)
-        return self.outgoing.sent_at + REPEAT_SECONDS if known else None
+        return self.outgoing.sent_at + self.outgoing.silent_seconds if known else None

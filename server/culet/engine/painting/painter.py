@@ -1,7 +1,7 @@
 """The render loop: live frames, refinements and stills share one render thread.
 
 Nobody watching, nothing rendered; at rest a picture is refined until it is good enough, and then costs nothing but
-being sent again once a second. The loop never waits for anything but one short piece of work of the render thread.
+being sent again, ever more rarely. The loop never waits for anything but one short piece of work of the render thread.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ class Painter:
             await self._still_painter.advance(still)
         repeat = schedule.next_repeat(pictures, self._now())
         if repeat is not None:
-            self._sender.repeat(repeat.outgoing)
+            self._sender.repeat_by_itself(repeat.outgoing)
         return chosen is not None or repeat is not None
 
     async def make_ready(self, stage: Stage, samples: int = 0) -> None:

@@ -31,23 +31,30 @@ LEAST_TIMES = 2
 def encode_resting(rgb: NDArray[np.uint8], allowance: ByteAllowance, *, final: bool) -> Coded:
     """A (height, width, 3) picture that does not move, within what the link allows. Takes milliseconds, a final one
     some hundredths of a second."""
+    if final and allowance.at_rest is None:
+        return _without_loss(rgb)
     picture = jpeg.encode_within(rgb, jpeg.RESTING_QUALITY, allowance.resting(final=final))
-    coarse = picture.quality < jpeg.RESTING_QUALITY
-    fine = _finer(rgb, len(picture.data), allowance.resting(final=False)) if final and not coarse else None
-    return fine or Coded.of_jpeg(picture, thrifty=coarse)
+    thrifty = picture.quality < jpeg.RESTING_QUALITY
+    fine = _finer(rgb, len(picture.data), allowance.resting(final=False)) if final and not thrifty else None
+    return fine or Coded.of_jpeg(picture, thrifty=thrifty)
 
 
 def _finer(rgb: NDArray[np.uint8], count: int, most_bytes: float) -> Coded | None:
     """With less loss than the JPEG of quality 92, which has so many bytes. None: the link has no room for that."""
     height, width, _ = rgb.shape
     if LEAST_TIMES * count <= most_bytes:
-        data = encode_png(rgb)
-        if len(data) <= most_bytes:
-            return Coded(Codec.PNG, data, width, height, LOSSLESS_QUALITY, thrifty=False)
+        lossless = _without_loss(rgb)
+        if len(lossless.data) <= most_bytes:
+            return lossless
     for quality in FINER_QUALITIES:
         if count < most_bytes and len(data := jpeg.encode(rgb, quality)) <= most_bytes:
             return Coded(Codec.JPEG, data, width, height, quality, thrifty=False)
     return None
+
+
+def _without_loss(rgb: NDArray[np.uint8]) -> Coded:
+    height, width, _ = rgb.shape
+    return Coded(Codec.PNG, encode_png(rgb), width, height, LOSSLESS_QUALITY, thrifty=False)
 
 
 def encode_png(rgb: NDArray[np.uint8]) -> bytes:

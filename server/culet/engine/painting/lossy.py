@@ -13,7 +13,7 @@ measured rate of a link grow less, so that a picture does not lead to its own ne
 
 
 @dataclass(frozen=True, eq=False)
-class Coarse:
+class Lossy:
     """The final picture at rest, as it was sent, with loss that it would not have without the limits of a link."""
 
     frame: LiveFrame
