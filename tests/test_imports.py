@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 NOT_LOADED = {
-    "culet.gateway.serve": ("pyopencl", "culet.rendering", "culet.engine"),
+    "culet.gateway.serve": ("pyopencl", "scipy", "culet.rendering", "culet.engine"),
     "culet.service.serve": ("pyopencl", "culet.rendering", "culet.engine", "fastapi", "uvicorn"),
     "culet.engine.process.serve": ("fastapi", "uvicorn"),
     "culet.engine.library.upload_reader": ("pyopencl",),

@@ -12,7 +12,7 @@ import time
 import httpx
 from PIL import Image
 
-PATIENCE = 120.0
+PATIENCE = 240.0
 """Seconds until it is ready: kernels are compiled first."""
 
 

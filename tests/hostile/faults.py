@@ -17,7 +17,7 @@ import psutil
 from hostile.finding import Finding, Group, span
 from hostile.serving import FALLING, PATIENCE, Serving
 from hostile.shares import OTHER_ADDRESS
-from hostile.watching import SOON, watching
+from hostile.watching import watching
 
 QUIET = 3.0
 """s between two deaths in a row."""
@@ -59,18 +59,23 @@ async def killed(serving: Serving, part: str, times: int, within: float) -> Find
 
 
 async def killed_with_heavy_sessions(serving: Serving, sessions: int, stones: int) -> Finding:
-    """kill -9 of the engine that has sessions of one client whose shapes take long, and one of another client."""
+    """kill -9 of the engine that has sessions of one client whose shapes take long, and one of another client.
+
+    All are at rest by then, so that whatever comes later is of the next engine.
+    """
     opened = [serving.session(_recut(number, stones)) for number in range(sessions)]
     before = [serving.http.get(f"/api/sessions/{session}").json()["scene"] for session in opened]
     transport = httpx.AsyncHTTPTransport(local_address=OTHER_ADDRESS)
     async with httpx.AsyncClient(base_url=serving.url, transport=transport, timeout=PATIENCE) as other:
-        answer = await other.post("/api/sessions", json={"scene": FALLING})
+        answer = await other.post("/api/sessions", json={"scene": {}})
         light = str(answer.raise_for_status().json()["id"])
         async with watching(serving, [light, *opened], (160, 90)) as (first, *watchers):
-            serving.kill(serving.engine)
-            moment = time.monotonic()
-            quick = await first.frame_after(moment + SOON) + SOON
-            seconds = [await watcher.frame_after(moment + SOON) + SOON for watcher in watchers]
+            for watcher in (first, *watchers):
+                await watcher.rest()
+            process, moment = serving.engine, time.monotonic()
+            serving.kill(process)
+            quick = await first.frame_after(moment)
+            seconds = [await watcher.frame_after(moment) for watcher in watchers]
             lost = [
                 notice for watcher in watchers for notice in watcher.notices if notice.get("code") == "session_lost"
             ]
@@ -80,8 +85,8 @@ async def killed_with_heavy_sessions(serving: Serving, sessions: int, stones: in
     return Finding(
         Group.FAULTS,
         f"kill -9 of the engine with {sessions} sessions of {stones} stones cut anew of one client, and one of another",
-        f"the other's is seen after {quick:.1f} s, these after {span(seconds, 's')}; {len(lost)} called lost; scenes "
-        f"{'the same' if same else 'changed'}",
+        f"the other's is seen after {quick:.1f} s, all of these after {span(seconds, 's')}; {len(lost)} called lost; "
+        f"scenes {'the same' if same else 'changed'}",
         "the other's before the last of these, none is called lost, all scenes the same",
         quick < max(seconds) and not lost and same,
     )

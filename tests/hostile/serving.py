@@ -119,7 +119,12 @@ class Serving:
 
     def session(self, scene: Mapping[str, Any] | None = None) -> str:
         """A new session's id."""
-        answer = self.http.post("/api/sessions", json={"scene": dict(scene or {})})
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            answer = self.http.post("/api/sessions", json={"scene": dict(scene or {})})
+            if answer.status_code != 429 or time.monotonic() > deadline:
+                break
+            time.sleep(float(answer.headers["Retry-After"]))  # its shapes took long, and are kept for the next try
         assert answer.status_code == 201, answer.text
         session: str = answer.json()["id"]
         return session

@@ -15,7 +15,7 @@ from websockets.exceptions import WebSocketException
 from websockets.typing import Subprotocol
 
 from culet_protocol import SUBPROTOCOL
-from culet_protocol.frame import Frame
+from culet_protocol.frame import Flags, Frame
 from hostile.serving import PATIENCE, Serving
 
 PAUSE = 0.1
@@ -31,6 +31,8 @@ class Watcher:
         self.session = session
         self.seen: list[tuple[float, int]] = []
         """When (s, monotonic) which frame came."""
+        self.rests = False
+        """Whether the last of them is the final one of a picture at rest: no new one comes."""
         self.notices: list[dict[str, Any]] = []
         self.closes: list[str] = []
         self._url = f"{serving.stream_url}/api/sessions/{session}/stream"
@@ -73,6 +75,12 @@ class Watcher:
                 await asyncio.sleep(0.005)
         return next(at for at, _ in self.seen if at > moment) - moment
 
+    async def rest(self, patience: float = PATIENCE) -> None:
+        """Wait until the picture is as good as it becomes."""
+        async with asyncio.timeout(patience):
+            while not self.rests:  # noqa: ASYNC110 - the condition is the server's
+                await asyncio.sleep(0.005)
+
     async def pause_after(self, moment: float) -> float:
         """s of the longest pause that began within SOON after that moment, once frames come again."""
         await self.frame_after(moment + SOON)
@@ -84,6 +92,7 @@ class Watcher:
             return
         frame = Frame.unpack(message)
         self.seen.append((time.monotonic(), frame.sequence))
+        self.rests = Flags.FINAL in frame.flags
         await self.say({"type": "ack", "sequence": frame.sequence})
 
 

@@ -387,6 +387,16 @@ async def test_without_a_spare_nobody_stands_by_and_what_dies_is_started_anew(tm
             assert served.children() == 2
 
 
+async def test_the_gateways_process_holds_nothing_that_renders_or_measures(served: Served) -> None:
+    """Also after it was asked for that: its memory counts for each server."""
+    asked = await served.http.post("/api/design/tiers", json={"scene": {}})
+    assert asked.status_code == 200, asked.text
+    gateway = served.gateway()
+    mapped = Path(f"/proc/{gateway}/maps").read_text()  # noqa: ASYNC240 - procfs does not block
+    assert "/pydantic_core/" in mapped
+    assert not [each for each in ("/scipy/", "/pyopencl/", "/simplejpeg/") if each in mapped]
+
+
 async def test_a_killed_gateway_comes_back_with_the_sessions_that_the_engine_kept(served: Served) -> None:
     scene = {"floor": {"kind": "matte"}, "simulation": {"restitution": 1, "random_torque": 0}}
     session = (await served.http.post("/api/sessions", json={"scene": scene})).json()["id"]

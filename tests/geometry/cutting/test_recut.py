@@ -9,8 +9,9 @@ from culet.errors import MeshError
 from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.cutting.recut import recut_shape
 from culet.geometry.cutting.recut_design import recut_design
-from culet.geometry.designs.measures import Proportions, proportions_of
+from culet.geometry.designs.measures import proportions_of
 from culet.geometry.designs.of_shape import design_of
+from culet.geometry.designs.proportions import Proportions
 from culet.geometry.designs.solid import Solid, shape_of_design
 from culet.geometry.half_spaces import shape_from_half_spaces
 from culet.geometry.load import shape_of

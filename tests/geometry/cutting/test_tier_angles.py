@@ -8,7 +8,8 @@ from culet.errors import MeshError
 from culet.geometry.cuts.cut import shape_of_cut
 from culet.geometry.cutting import meets
 from culet.geometry.cutting.recut import recut_shape
-from culet.geometry.cutting.tier_angles import TierAngle, tiers_of
+from culet.geometry.cutting.tier_angles import tiers_of
+from culet.geometry.cutting.tiers import TierAngle
 from culet.geometry.designs.shipped import SHIPPED, shipped_shape
 from culet.geometry.designs.solid import shape_of_design
 from culet.geometry.shape import Shape

@@ -14,8 +14,8 @@ from culet.gateway.identity.client_address import client_of
 from culet.gateway.routes.parts import ThisGateway
 from culet.gateway.sessions.session_record import SessionRecord
 from culet.gateway.state import Gateway
-from culet.geometry.cutting.tier_angles import Tiers
-from culet.geometry.designs.measures import Proportions
+from culet.geometry.cutting.tiers import Tiers
+from culet.geometry.designs.proportions import Proportions
 from culet.grading.answer import GradeReport
 from culet.grading.rules import Convention
 from culet.scene import Scene

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 from culet.errors import MeshError
 from culet.geometry.cutting.meets import (
@@ -18,37 +16,12 @@ from culet.geometry.cutting.meets import (
     reach_of_tier,
 )
 from culet.geometry.cutting.recut import OF_A_SHAPE, recut_shape
+from culet.geometry.cutting.tiers import TierAngle, Tiers
 from culet.geometry.shape import Shape
 from culet.scene.recut import Recut, TierAngles
 
 PARTS = 100
 """Of a degree, to which ends are rounded inward: finer than anybody cuts."""
-
-
-@dataclass(frozen=True)
-class TierAngle:
-    """A tier of sloping facets that are all of one angle."""
-
-    tier: int
-    """Its number, as `recut.angles` of a stone has it."""
-    names: tuple[str, ...]
-    """Of its facets, each once; none where they have no names."""
-    facets: int
-    side: Literal["crown", "pavilion"]
-    degrees: float
-    """From the horizontal, as the stone is."""
-    independent: bool
-    """Whether it can be turned together with all others that are so. The angles of the rest follow from theirs."""
-    least: float
-    """Degrees: less is refused, and so is what loses a meet between both ends, unless they are its reach."""
-    most: float
-
-
-@dataclass(frozen=True)
-class Tiers:
-    """The sloping tiers of a stone, in their order of cutting."""
-
-    tiers: tuple[TierAngle, ...]
 
 
 def tiers_of(stone: Shape, uncut: Shape, recut: Recut | None, reach: int | None = None) -> Tiers:

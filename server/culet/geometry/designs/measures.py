@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from culet.geometry.designs.proportions import Proportions
 from culet.geometry.designs.solid import Solid
 from culet.geometry.half_spaces import Intersection
 from culet.geometry.mass import solid_integrals
@@ -37,39 +38,6 @@ class DesignOutline:
         """Each once, the smaller number first."""
         sides = (side for face in self.faces for side in zip(face, face[1:] + face[:1], strict=True))
         return sorted({(min(side), max(side)) for side in sides})
-
-
-@dataclass(frozen=True)
-class Proportions:
-    """In the file's units; per cent are of the width."""
-
-    facets: int
-    corners: int
-    edges: int
-    length: float
-    """The larger extent along x or y."""
-    width: float
-    height: float
-    volume: float
-    table_percent: float | None
-    """The table's extent along the width; None without a table."""
-    crown_percent: float | None
-    """From the girdle's highest corner up; None without upright facets."""
-    girdle_percent: float | None
-    pavilion_percent: float | None
-
-    @property
-    def length_by_width(self) -> float:
-        return self.length / self.width
-
-    @property
-    def height_by_width(self) -> float:
-        return self.height / self.width
-
-    @property
-    def volume_factor(self) -> float:
-        """Volume by the width's cube: with it and the density, weight comes from the width."""
-        return self.volume / self.width**3
 
 
 def outline_of(cut: Intersection) -> DesignOutline:

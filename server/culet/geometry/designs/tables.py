@@ -7,7 +7,8 @@ from rich.console import Console
 from rich.table import Table
 
 from culet.geometry.designs.design import Tier
-from culet.geometry.designs.measures import Proportions, proportions_of
+from culet.geometry.designs.measures import proportions_of
+from culet.geometry.designs.proportions import Proportions
 from culet.geometry.designs.solid import Solid
 
 
