@@ -7,7 +7,7 @@ import time
 from collections.abc import Awaitable, Callable
 
 PATIENCE = 240.0
-"""Seconds for each answer: the first picture waits for the compiler, and a machine that does much else has little time."""
+"""Seconds for each answer: the first picture waits for the compiler, and a machine that does much else is slow."""
 
 
 def check(holds: bool, claim: str) -> None:
