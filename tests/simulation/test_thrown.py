@@ -17,6 +17,7 @@ from scipy.spatial import ConvexHull
 
 from culet.geometry.shape import Shape
 from culet.simulation.bodies import Body, BodyState
+from culet.simulation.rigid_body.rotation import IDENTITY
 from culet.study.contacts.worlds import corners, momenta, triple, turned
 from culet.study.solids import box
 from simulation.worlds import world
@@ -111,3 +112,24 @@ def test_what_is_thrown_at_another_does_not_pass_through_it(thrown: str, at: str
         linear_after, angular_after = momenta(moving)
         assert linear_after == pytest.approx(linear, abs=1e-12 * speed)
         assert angular_after == pytest.approx(angular, abs=OVERLAP * speed)  # what overlaps is moved apart
+
+
+def parting(speed: float) -> list[Body]:
+    """Two wafers far away that slide past each other, always nearer than they are thick, and hardly part."""
+    wafer = SHAPES["wafer"]()
+    thick = 2 * float(wafer.vertices[:, 1].max())
+    return [
+        Body("below", wafer, (0.0, 500.0, 0.0), IDENTITY, (-speed / 2, -1e-3, 0.0), ORIGIN),
+        Body("above", wafer, (0.0, 500.0 + thick + 1e-5, 0.0), IDENTITY, (speed / 2, 1e-3, 0.0), ORIGIN),
+    ]
+
+
+def test_stones_that_part_do_not_take_the_parts_of_a_step_from_those_that_meet() -> None:
+    rng, needle = np.random.default_rng(5), SHAPES["needle"]()
+    throws = [made for _ in range(THROWS) if (made := throw(needle, needle, 400.0, rng)) is not None]
+    assert len(throws) > 0.7 * THROWS
+    for each in throws:
+        moving = world([each.one, each.other, *parting(200.0)], (), gravity=0, time_step=each.step)
+        moving.step()
+        there, where = moving.state.bodies[:2]
+        assert kept_apart(each.one, there, each.other, where, each.met_by)

@@ -143,8 +143,8 @@ def test_a_stone_that_falls_on_a_sleeper_wakes_it_and_what_leans_on_it(box: Shap
     assert math.dist(moving.state.bodies[1].position, before) > 0.01
 
 
-HEADER = 24
-"""Bytes of what the solver saves before its bodies: six counts."""
+HEADER = 32
+"""Bytes of what the solver saves before its bodies: six counts and a time."""
 DAMAGED = {
     "too fast": (HEADER + 7 * 8, "d", 1e31),
     "asleep for ever": (HEADER + 13 * 8, "d", math.inf),
@@ -153,6 +153,8 @@ DAMAGED = {
     "no bed left": (12, "i", 2**31 - 1),
     "more manifolds": (16, "i", 2**31 - 1),
     "more contacts": (20, "i", 2**31 - 1),
+    "after a substep of less than no time": (24, "d", -1e-3),
+    "after a substep of no known time": (24, "d", math.nan),
 }
 """Offset, format and value of a number."""
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_GROWTH 8 /* of an impulse from one substep to the next: a blow in a short one is no force that lasts */
+
 int reserve_contacts(Contacts *contacts, int count, int manifold_count) {
   if (count > contacts->capacity) {
     int capacity = count > 2 * contacts->capacity ? count : 2 * contacts->capacity;
@@ -118,25 +120,27 @@ static int before(const Manifold *one, const Manifold *other) {
   return one->other == NONE ? one->surface < other->surface : one->body < other->body;
 }
 
-/* Contacts that were there in the last substep begin with its impulses: they are nearly the same. */
+/* Contacts that were there in the last substep begin with its impulses: what carries a stone is as a force nearly the
+ * same, and as an impulse in proportion to the length of the substep. */
 static void take_over_impulses(World *world) {
   const Contacts *old = &world->before;
   Contacts *now = &world->now;
+  double ratio = world->before_time > 0 ? smaller(world->now_time / world->before_time, MOST_GROWTH) : 1;
   int k = 0;
   for (int i = 0; i < now->manifold_count; i++) {
     Manifold *manifold = &now->manifolds[i];
     while (k < old->manifold_count && before(&old->manifolds[k], manifold)) k++;
     if (k == old->manifold_count || before(manifold, &old->manifolds[k])) continue;
     const Manifold *last = &old->manifolds[k];
-    manifold->rolling_impulse = last->rolling_impulse;
+    manifold->rolling_impulse = scaled(last->rolling_impulse, ratio);
     for (int p = 0; p < manifold->count; p++) {
       Contact *contact = &now->contacts[manifold->first + p];
       for (int q = 0; q < last->count; q++) {
         const Contact *same = &old->contacts[last->first + q];
         if (same->feature != contact->feature) continue;
         double along = dot(same->slip_impulse, contact->normal);
-        contact->normal_impulse = same->normal_impulse;
-        contact->slip_impulse = sub(same->slip_impulse, scaled(contact->normal, along));
+        contact->normal_impulse = ratio * same->normal_impulse;
+        contact->slip_impulse = scaled(sub(same->slip_impulse, scaled(contact->normal, along)), ratio);
         break;
       }
     }
@@ -158,11 +162,18 @@ static int collect(World *world, double time) {
   return 0;
 }
 
+/* With whose impulses the next substep begins. */
+const Contacts *telling_contacts(const World *world) { return world->now_is_short ? &world->before : &world->now; }
+
 /* 0, or -1 if there is no memory. Wakes sleepers that are touched: these have contacts of their own. */
 int find_contacts(World *world, double time) {
-  Contacts last = world->before;
-  world->before = world->now;
-  world->now = last;
+  if (!world->now_is_short) {
+    Contacts last = world->before;
+    world->before = world->now;
+    world->before_time = world->now_time;
+    world->now = last;
+  }
+  world->now_time = time;
   do {
     if (collect(world, time)) return -1;
   } while (wake_touched(world));

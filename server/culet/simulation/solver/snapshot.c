@@ -8,6 +8,7 @@
 
 typedef struct {
   int32_t version, bodies, surfaces, beds, manifolds, contacts;
+  double time; /* s, the length of the substep that the impulses are of */
 } Header;
 
 typedef struct {
@@ -25,9 +26,9 @@ typedef struct {
   double normal_impulse, slip_impulse[3];
 } SavedContact;
 
-static int contact_count(const World *world) {
+static int contact_count(const Contacts *contacts) {
   int count = 0;
-  for (int i = 0; i < world->now.manifold_count; i++) count += world->now.manifolds[i].count;
+  for (int i = 0; i < contacts->manifold_count; i++) count += contacts->manifolds[i].count;
   return count;
 }
 
@@ -37,7 +38,8 @@ static size_t size_of(int bodies, int manifolds, int contacts) {
 }
 
 size_t culet_world_size(const CuletWorld *world) {
-  return size_of(world->count, world->now.manifold_count, contact_count(world));
+  const Contacts *last = telling_contacts(world);
+  return size_of(world->count, last->manifold_count, contact_count(last));
 }
 
 static char *put(char *at, const void *record, size_t size) {
@@ -51,9 +53,15 @@ static const char *take(const char *at, void *record, size_t size) {
 }
 
 void culet_world_save(const CuletWorld *world, void *bytes) {
+  const Contacts *last = telling_contacts(world);
   char *at = bytes;
-  Header header = {CULET_INTERFACE,           world->count,        world->surface_count, world->beds,
-                   world->now.manifold_count, contact_count(world)};
+  Header header = {CULET_INTERFACE,
+                   world->count,
+                   world->surface_count,
+                   world->beds,
+                   last->manifold_count,
+                   contact_count(last),
+                   world->now_is_short ? world->before_time : world->now_time};
   at = put(at, &header, sizeof header);
   for (int i = 0; i < world->count; i++) {
     const Body *body = &world->bodies[i];
@@ -66,13 +74,13 @@ void culet_world_save(const CuletWorld *world, void *bytes) {
                        body->bed,       0};
     at = put(at, &saved, sizeof saved);
   }
-  for (int i = 0; i < world->now.manifold_count; i++) {
-    const Manifold *manifold = &world->now.manifolds[i];
+  for (int i = 0; i < last->manifold_count; i++) {
+    const Manifold *manifold = &last->manifolds[i];
     Vec3 r = manifold->rolling_impulse;
     SavedManifold saved = {manifold->body, manifold->other, manifold->surface, manifold->count, {r.x, r.y, r.z}};
     at = put(at, &saved, sizeof saved);
     for (int k = 0; k < manifold->count; k++) {
-      const Contact *contact = &world->now.contacts[manifold->first + k];
+      const Contact *contact = &last->contacts[manifold->first + k];
       Vec3 s = contact->slip_impulse;
       SavedContact point = {contact->feature, contact->normal_impulse, {s.x, s.y, s.z}};
       at = put(at, &point, sizeof point);
@@ -106,8 +114,9 @@ static int sound_manifold(const SavedManifold *manifold, const Header *header) {
 /* Whether the bytes are a snapshot of a world with so many bodies and surfaces. */
 static int sound(const World *world, const Header *header, const char *bytes, size_t size) {
   if (header->version != CULET_INTERFACE || header->bodies != world->count ||
-      header->surfaces != world->surface_count || header->beds < 0 || header->beds > MOST_BEDS ||
-      header->manifolds < 0 || header->contacts < 0 || (size_t)header->manifolds > size / sizeof(SavedManifold) ||
+      header->surfaces != world->surface_count || !usable(&header->time, 1) || header->time < 0 || header->beds < 0 ||
+      header->beds > MOST_BEDS || header->manifolds < 0 || header->contacts < 0 ||
+      (size_t)header->manifolds > size / sizeof(SavedManifold) ||
       (size_t)header->contacts > size / sizeof(SavedContact) ||
       size != size_of(header->bodies, header->manifolds, header->contacts))
     return 0;
@@ -140,6 +149,8 @@ int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t size) {
   if (!sound(world, &header, bytes, size)) return -1;
   if (reserve_contacts(&world->now, header.contacts, header.manifolds)) return -2;
   world->beds = header.beds;
+  world->now_time = header.time;
+  world->now_is_short = 0;
   for (int i = 0; i < header.bodies; i++) {
     SavedBody saved;
     at = take(at, &saved, sizeof saved);

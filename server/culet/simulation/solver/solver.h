@@ -132,7 +132,9 @@ struct CuletWorld {
   Body *bodies;
   int count, capacity;
   Course *courses;
-  Contacts now, before;
+  Contacts now, before;         /* of this substep; of the last one that was long enough to tell what carries what */
+  double now_time, before_time; /* s: how long these substeps are */
+  int now_is_short;             /* too short to tell */
   Vec3 *separating; /* (capacity, capacity): an axis that separated the pair lately, in the first one's axes */
   PairRoom *room;
   int32_t beds;
@@ -166,6 +168,7 @@ void pair_pose(const Body *first, const Body *second, Mat3 *turn, Vec3 *offset);
 
 /* contacts.c */
 int find_contacts(World *world, double time);
+const Contacts *telling_contacts(const World *world);
 int reserve_contacts(Contacts *contacts, int count, int manifold_count);
 Vec3 contact_velocity(const World *world, const Contact *contact);
 

@@ -12,6 +12,7 @@
 #define MAX_FURTHER 256 /* substeps of a step, for bodies so thin that it takes more to see where they touch */
 #define PACE 0.5        /* of two bodies' inradii: that they come nearer by in a substep without being looked at */
 #define NEAR 0.1        /* of the smaller inradius: two bodies that are so near are about to touch */
+#define TELLING 0.125   /* of an undivided substep: a shorter part tells little of what carries what */
 #define TOUCHING 1e-6   /* size: what is nearer counts as touching */
 #define FIRST_CONTACTS 256
 
@@ -58,7 +59,7 @@ void culet_world_set_law(CuletWorld *world, const CuletLaw *law) {
   culet_world_wake(world);
 }
 
-/* Forget impulses of contacts that are no more, or are other ones. */
+/* Forgets impulses of contacts that are no more, or are other ones. */
 static void forget_surfaces(Contacts *contacts) {
   int left = 0;
   for (int i = 0; i < contacts->manifold_count; i++)
@@ -71,6 +72,7 @@ void culet_world_set_surfaces(CuletWorld *world, int32_t count, const double *pl
   for (int i = 0; i < world->surface_count; i++)
     world->surfaces[i] = (Surface){vec(planes[4 * i], planes[4 * i + 1], planes[4 * i + 2]), planes[4 * i + 3]};
   forget_surfaces(&world->now);
+  forget_surfaces(&world->before);
   culet_world_wake(world);
 }
 
@@ -115,20 +117,25 @@ int32_t culet_world_add(CuletWorld *world, const CuletHull *hull, const CuletBod
   return world->count++;
 }
 
+static void forget_body(Contacts *contacts, int number) {
+  int left = 0;
+  for (int i = 0; i < contacts->manifold_count; i++) {
+    Manifold manifold = contacts->manifolds[i];
+    if (manifold.body == number || manifold.other == number) continue;
+    manifold.body -= manifold.body > number;
+    manifold.other -= manifold.other > number;
+    contacts->manifolds[left++] = manifold;
+  }
+  contacts->manifold_count = left;
+}
+
 void culet_world_remove(CuletWorld *world, int32_t number) {
   culet_world_wake(world); /* what it carried falls */
   hull_free(&world->bodies[number].hull);
   memmove(&world->bodies[number], &world->bodies[number + 1], sizeof(Body) * (size_t)(world->count - number - 1));
   world->count--;
-  int left = 0;
-  for (int i = 0; i < world->now.manifold_count; i++) {
-    Manifold manifold = world->now.manifolds[i];
-    if (manifold.body == number || manifold.other == number) continue;
-    manifold.body -= manifold.body > number;
-    manifold.other -= manifold.other > number;
-    world->now.manifolds[left++] = manifold;
-  }
-  world->now.manifold_count = left;
+  forget_body(&world->now, number);
+  forget_body(&world->before, number);
   forget_separating_axes(world);
 }
 
@@ -198,7 +205,8 @@ static double turning_speed(const Body *body) {
 
 /* How much of the time two bodies may go on before they are so near that where they touch is known: conservative
  * advancement (Mirtich 1996, "Impulse-based dynamic simulation"). All of it for those that do not come nearer by as much
- * as they are thick, for which contacts ahead are exact enough. */
+ * as they are thick, for which contacts ahead are exact enough, and for those that go apart along the axis that separates
+ * them. */
 static double until_near(World *world, const Body *a, const Body *b, double time) {
   double thick = a->hull.inradius + b->hull.inradius, reach = a->size + b->size;
   Vec3 velocity = sub(a->velocity, b->velocity), apart = sub(b->position, a->position);
@@ -212,9 +220,10 @@ static double until_near(World *world, const Body *a, const Body *b, double time
   pair_pose(a, b, &turn, &offset);
   Axis axis = separation(&a->hull, &b->hull, &turn, offset, way, world->room);
   if (axis.distance > way) return time;
+  double closing = dot(velocity, times(&a->axes, axis.normal)) + turning;
+  if (closing <= 0) return time;
   double near = NEAR * smaller(a->hull.inradius, b->hull.inradius);
   if (axis.distance <= 2 * near) return smaller(time, PACE * thick / (speed + turning));
-  double closing = dot(velocity, times(&a->axes, axis.normal)) + turning;
   return closing * time > axis.distance - near ? (axis.distance - near) / closing : time;
 }
 
@@ -254,6 +263,7 @@ int32_t culet_world_step(CuletWorld *world, double time) {
       double now = further > 0 ? safe_part(world, left) : left;
       if (now < left) further--;
       if (substep(world, now)) return -1;
+      world->now_is_short = now < TELLING * part;
       left -= now;
     }
   return 0;
