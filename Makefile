@@ -71,7 +71,7 @@ format: $(DONE)/dev $(WEB_PACKAGES)
 	cd $(WEB) && npm run format
 
 # Without ARGS only the files that have such tests are read. pytest ends with 5 if it has found no test.
-validate: $(DONE)/validation opencl $(DONE)/solver compilers llvm
+validate: $(DONE)/validation opencl $(DONE)/solver compilers llvm browser $(WEB_BUILD)
 	$(BIN)/pytest -m "validation and not soak" --numprocesses 2 --dist loadfile --no-loadscope-reorder \
 	$(or $(ARGS),$$(grep -rlE 'mark\.validation|video_extra' tests --include='test_*.py')) || [ $$? -eq 5 ]
 

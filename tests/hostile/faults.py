@@ -59,37 +59,39 @@ async def killed(serving: Serving, part: str, times: int, within: float) -> Find
 
 
 async def killed_with_heavy_sessions(serving: Serving, sessions: int, stones: int) -> Finding:
-    """kill -9 of the engine that has sessions of one client whose shapes take long, and one of another client.
+    """kill -9 of the engine that has sessions of two clients whose shapes take long, and one of a third client.
 
     All are at rest by then, so that whatever comes later is of the next engine.
     """
-    opened = [serving.session(_recut(number, stones)) for number in range(sessions)]
+    with _client(serving, "127.0.0.3") as second, _client(serving, OTHER_ADDRESS) as third:
+        owners = [(serving.http, second)[number % 2] for number in range(sessions)]
+        opened = [serving.session(_recut(number, stones), owner) for number, owner in enumerate(owners)]
+        light = serving.session(http=third)
     before = [serving.http.get(f"/api/sessions/{session}").json()["scene"] for session in opened]
-    transport = httpx.AsyncHTTPTransport(local_address=OTHER_ADDRESS)
-    async with httpx.AsyncClient(base_url=serving.url, transport=transport, timeout=PATIENCE) as other:
-        answer = await other.post("/api/sessions", json={"scene": {}})
-        light = str(answer.raise_for_status().json()["id"])
-        async with watching(serving, [light, *opened], (160, 90)) as (first, *watchers):
-            for watcher in (first, *watchers):
-                await watcher.rest()
-            process, moment = serving.engine, time.monotonic()
-            serving.kill(process)
-            quick = await first.frame_after(moment)
-            seconds = [await watcher.frame_after(moment) for watcher in watchers]
-            lost = [
-                notice for watcher in watchers for notice in watcher.notices if notice.get("code") == "session_lost"
-            ]
-        await other.delete(f"/api/sessions/{light}")
+    async with watching(serving, [light, *opened], (160, 90)) as (first, *watchers):
+        for watcher in (first, *watchers):
+            await watcher.rest()
+        process, moment = serving.engine, time.monotonic()
+        serving.kill(process)
+        quick = await first.frame_after(moment)
+        seconds = [await watcher.frame_after(moment) for watcher in watchers]
+        lost = [notice for watcher in watchers for notice in watcher.notices if notice.get("code") == "session_lost"]
     same = before == [serving.http.get(f"/api/sessions/{session}").json()["scene"] for session in opened]
-    serving.forget(*opened)
+    serving.forget(light, *opened)
     return Finding(
         Group.FAULTS,
-        f"kill -9 of the engine with {sessions} sessions of {stones} stones cut anew of one client, and one of another",
-        f"the other's is seen after {quick:.1f} s, all of these after {span(seconds, 's')}; {len(lost)} called lost; "
+        f"kill -9 of the engine with {sessions} sessions of {stones} recut stones of two clients, and one of a third",
+        f"the third's is seen after {quick:.1f} s, all of these after {span(seconds, 's')}; {len(lost)} called lost; "
         f"scenes {'the same' if same else 'changed'}",
-        "the other's before the last of these, none is called lost, all scenes the same",
-        quick < max(seconds) and not lost and same,
+        "the third's before all of these, none is called lost, all scenes the same",
+        quick < min(seconds) and not lost and same,
     )
+
+
+def _client(serving: Serving, address: str) -> httpx.Client:
+    """Of another address of loopback."""
+    transport = httpx.HTTPTransport(local_address=address)
+    return httpx.Client(base_url=serving.url, transport=transport, timeout=PATIENCE)
 
 
 def _recut(session: int, stones: int) -> dict[str, Any]:

@@ -117,11 +117,11 @@ class Serving:
                 continue
         return total / MIB
 
-    def session(self, scene: Mapping[str, Any] | None = None) -> str:
-        """A new session's id."""
+    def session(self, scene: Mapping[str, Any] | None = None, http: httpx.Client | None = None) -> str:
+        """A new session's id; `http` is that of another client."""
         deadline = time.monotonic() + PATIENCE
         while True:
-            answer = self.http.post("/api/sessions", json={"scene": dict(scene or {})})
+            answer = (http or self.http).post("/api/sessions", json={"scene": dict(scene or {})})
             if answer.status_code != 429 or time.monotonic() > deadline:
                 break
             time.sleep(float(answer.headers["Retry-After"]))  # its shapes took long, and are kept for the next try
