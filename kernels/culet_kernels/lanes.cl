@@ -145,6 +145,19 @@ static inline realL gather_lanes(const real *from, intL place) {
 #endif
 }
 
+// The same of numbers of single precision on the device.
+static inline realL gather_floats(__global const float *from, intL place) {
+#if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
+  return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(float));
+#else
+  int own[LANES];
+  real found[LANES];
+  store_ints(place, own);
+  for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];
+  return load_lanes(found);
+#endif
+}
+
 // The lanes that a mask names, in order and without gaps (stream compaction). A whole packet is written, of which `count` lanes are meant.
 #if LANES == 16 && AVX512
 typedef struct {

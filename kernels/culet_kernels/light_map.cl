@@ -16,18 +16,13 @@ static inline void add_level(world_t world, intL surface, int level, realL colum
   const intL left = clamp(reals_to_int(u), (intL)(0), (intL)(MAP_SIZE - 2)),
              upper = clamp(reals_to_int(v), (intL)(0), (intL)(MAP_SIZE - 2));
   const realL right_share = u - ints_to_real(left), lower_share = v - ints_to_real(upper);
-  int place[LANES];
-  store_ints(3 * (((surface * MAP_LEVELS + level) * MAP_SIZE + upper) * MAP_SIZE + left) + channels.first, place);
+  const intL place = 3 * (((surface * MAP_LEVELS + level) * MAP_SIZE + upper) * MAP_SIZE + left) + channels.first;
   EACH (corner, 4) {
     const int right = corner & 1, lower = corner >> 1;
     const realL weight =
         share * (right ? right_share : (real)1 - right_share) * (lower ? lower_share : (real)1 - lower_share);
-    EACH_CHANNEL (k, channels) {
-      real texel[LANES];
-      for (int lane = 0; lane < LANES; lane++)
-        texel[lane] = world.light_map[place[lane] + 3 * (lower * MAP_SIZE + right) + k];
-      sum->channel[k] = fma(weight, load_lanes(texel), sum->channel[k]);
-    }
+    __global const float *texels = world.light_map + 3 * (lower * MAP_SIZE + right);
+    EACH_CHANNEL (k, channels) sum->channel[k] = fma(weight, gather_floats(texels + k, place), sum->channel[k]);
   }
 }
 

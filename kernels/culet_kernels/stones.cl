@@ -228,27 +228,49 @@ static inline maskL any_near(const nearL *near) {
   return widen(all != 0);
 }
 
-// The stones whose spheres rays pass after t_min, coming from this one or from NOBODY.
+// Part of squared distances by which spheres count as larger than they are, for what rounding does to such differences.
+#define NEAR_SLACK ((real)4e-6)
+
+// The stones whose spheres rays pass after t_min, coming from this one or from NOBODY. Of a ray that begins at s from the middle of a
+// group, and a sphere at c from there, q = |s - c|^2 - reach^2 is negative within the sphere; else the ray passes it where it has a
+// way m = (c - s) d > 0 to the point abreast of it, and q < m^2. Each takes four multiply-adds: |s|^2 and s d are of all of a group.
 static inline nearL near_stones(world_t world, vec3L origin, vec3L direction, realL t_min, intL from) {
   nearL near;
   EACH (k, NEAR_WORDS) near.word[k] = (intL)(0);
   for (int i = 0; i < world.scene->groups; i++) {
     __constant const group_t *group = world.groups + i;
-    const maskL passes =
-        passage(origin, direction, t_min, group->centre[0], group->centre[1], group->centre[2], group->reach).passes;
-    if (!any_lane(passes)) continue;
+    const vec3L start = along(
+        vec3(origin.x - group->centre[0], origin.y - group->centre[1], origin.z - group->centre[2]), t_min, direction);
+    const realL way = dot3(start, direction), squared = ((real)1 - NEAR_SLACK) * dot3(start, start);
+    const realL ahead_of_all = fmax(-way, splat(0));
+    if (!any_lane(fma(-ahead_of_all, ahead_of_all, squared) < group->reach * group->reach)) continue;
+    const vec3L twice = scale3(splat(-2), start);
     intL bits = (intL)(0);
     for (int number = group->first; number < group->last; number++) {
       __constant const stone_t *stone = world.stones + number;
-      const maskL past =
-          passage(origin, direction, t_min, stone->centre[0], stone->centre[1], stone->centre[2], stone->reach).passes;
-      const maskL back = GEOMETRY == HULL || stone->convex ? widen(from == (intL)(number)) : passes & !passes;
-      bits |= blend_ints_by(past & !back, (intL)(1 << number % 32), (intL)(0));
+      const realL x = splat(stone->apart[0]), y = splat(stone->apart[1]), z = splat(stone->apart[2]);
+      const realL outside = fma(x, twice.x, fma(y, twice.y, fma(z, twice.z, squared))) + stone->power;
+      const realL ahead = fmax(fma(x, direction.x, fma(y, direction.y, fma(z, direction.z, -way))), splat(0));
+      maskL passes = fma(-ahead, ahead, outside) < 0;
+      if (GEOMETRY == MESH && stone->convex) passes &= !widen(from == (intL)(number));
+      bits |= blend_ints_by(passes, (intL)(1 << number % 32), (intL)(0));
     }
     EACH (k, NEAR_WORDS)
       if (group->first / 32 == k) near.word[k] |= bits;
   }
+  if (GEOMETRY == HULL)
+    EACH (k, NEAR_WORDS) near.word[k] &= ~blend_ints(from >> 5 == (intL)(k), (intL)(1) << (from & 31), (intL)(0));
   return near;
+}
+
+// How far along a ray the sphere around a stone begins, each lane of its own; rounded down.
+static inline realL sphere_begins(world_t world, intL number, vec3L origin, vec3L direction) {
+  const vec3L centre = vector_by_stone(world, COLUMN_CENTRE, number);
+  const realL reach = SPHERE * by_stone(world, COLUMN_RADIUS, number);
+  const vec3L apart = vec3(origin.x - centre.x, origin.y - centre.y, origin.z - centre.z);
+  const realL middle = -dot3(apart, direction);
+  const vec3L foot = along(apart, middle, direction);
+  return middle - sqrt(fmax(fma(reach, reach, -dot3(foot, foot)), splat(0)));
 }
 
 // Takes one of them for each ray; NOBODY where there is none.
@@ -262,6 +284,29 @@ static inline intL take_near(nearL *near) {
     none_yet &= ~here;
   }
   return number;
+}
+
+// Takes the one of them whose sphere each ray enters first; those of the others begin `then` R along the ray at the soonest.
+static inline intL take_nearest(world_t world, nearL *near, vec3L origin, vec3L direction, realL *then) {
+  nearL left = *near;
+  intL nearest = take_near(&left);
+  *then = splat(1e30f);
+  if (!any_lane(any_near(&left))) {
+    *near = left;
+    return nearest;
+  }
+  realL first = sphere_begins(world, nearest, origin, direction);
+  while (any_lane(any_near(&left))) {
+    const intL number = take_near(&left);
+    const maskL there = widen(number >= 0);
+    const realL begins = blend(there, sphere_begins(world, number, origin, direction), splat(1e30f));
+    const maskL sooner = begins < first;
+    *then = fmin(*then, blend(sooner, first, begins));
+    first = blend(sooner, begins, first);
+    nearest = blend_ints_by(sooner, number, nearest);
+  }
+  EACH (k, NEAR_WORDS) near->word[k] &= ~blend_ints(nearest >> 5 == (intL)(k), (intL)(1) << (nearest & 31), (intL)(0));
+  return nearest;
 }
 
 // Looks whether rays enter this stone before the one that they met so far, each ray another one of the same shape. `stone` is any
@@ -299,12 +344,15 @@ static inline void meet_each(world_t world, intL number, vec3L origin, vec3L dir
 #endif
 
 #if STONES == MANY
-// Looks whether each of these rays enters one of the stones that it is near, before the one that it met so far.
+// Looks whether each of these rays enters one of the stones that it is near, before the one that it met so far: that one whose sphere
+// begins first. No stone is left to be asked where all that are left begin beyond.
 static inline void meet_next(world_t world, nearL *near, vec3L origin, vec3L direction, realL t_min, maskL mask,
                              intL from, meetingL *first) {
-  const intL number = take_near(near);
+  realL then;
+  const intL number = take_nearest(world, near, origin, direction, &then);
   meet_each(world, blend_ints(number < 0, (intL)(0), number), origin, direction, t_min, mask & widen(number >= 0), from,
             first);
+  EACH (k, NEAR_WORDS) near->word[k] = blend_ints_by(first->t < then, (intL)(0), near->word[k]);
 }
 #endif
 

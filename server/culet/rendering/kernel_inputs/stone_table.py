@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 
 GROUP = 8
 """Stones of a group, at most."""
+NEAR_SLACK = 4e-6
+"""As in stones.cl."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +157,7 @@ def grouped(stones: Sequence[PlacedStone]) -> list[PlacedStone]:
 
 
 def _groups(rows: NDArray[np.void], real: Real) -> NDArray[np.void]:
-    """GROUP stones each, in their order, in a common sphere."""
+    """GROUP stones each, in their order, in a common sphere. The rows are told where they are in it."""
     count = -(-len(rows) // GROUP)
     groups = np.zeros(max(1, count), struct("group_t", real))
     if not count:
@@ -169,6 +171,9 @@ def _groups(rows: NDArray[np.void], real: Real) -> NDArray[np.void]:
     groups["reach"] = (1 + 1e-6) * (apart + rows["reach"][members]).max(axis=1)
     groups["shade_reach"] = (apart + rows["shade_reach"][members]).max(axis=1)
     groups["first"], groups["last"] = first, last
+    own = centres - groups["centre"].astype(float)[np.arange(len(rows)) // GROUP]
+    rows["apart"] = own
+    rows["power"] = (1 - NEAR_SLACK) * (own * own).sum(axis=1) - rows["reach"].astype(float) ** 2
     return groups
 
 
