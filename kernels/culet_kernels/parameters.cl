@@ -87,8 +87,8 @@ typedef struct {
   int by_triangles;                  // it is met by its tree, not by its half-spaces
   int alike;                         // the first stone of its shape, whose packets it shares; by_triangles: itself
   int few_mirrors;                   // it reflects light into few directions
-  real apart[3];                     // R from the centre of its group; and the square of that
-  real power;                        // less the square of its reach, R^2, rounded down: see near_stones
+  real apart[3];                     // R from the centre of its group,
+  real power;                        // R^2, the square of that less the square of its reach: see near_stones
   int columns[2], rows[2];           // first and last pixel where a ray of the camera may meet it
   int shadow_start[MAX_LIGHTS + 1];  // where each light's planes begin
 } stone_t;

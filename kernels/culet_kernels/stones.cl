@@ -228,12 +228,15 @@ static inline maskL any_near(const nearL *near) {
   return widen(all != 0);
 }
 
-// Part of squared distances by which spheres count as larger than they are, for what rounding does to such differences.
-#define NEAR_SLACK ((real)4e-6)
+// Steps of a number next to 1, in single precision, by which spheres count as larger, as parts of squared distances: twice what rounding
+// does to their differences, some 16 steps at most.
+#define NEAR_STEPS 32
+#define NEAR_SLACK ((real)(NEAR_STEPS * FLT_EPSILON))
 
 // The stones whose spheres rays pass after t_min, coming from this one or from NOBODY. Of a ray that begins at s from the middle of a
 // group, and a sphere at c from there, q = |s - c|^2 - reach^2 is negative within the sphere; else the ray passes it where it has a
-// way m = (c - s) d > 0 to the point abreast of it, and q < m^2. Each takes four multiply-adds: |s|^2 and s d are of all of a group.
+// way m = (c - s) d > 0 to the point abreast of it, and q < m^2. A stone takes seven multiply-adds of that: |s|^2 and s d are of its
+// whole group, |c|^2 - reach^2 is known beforehand.
 static inline nearL near_stones(world_t world, vec3L origin, vec3L direction, realL t_min, intL from) {
   nearL near;
   EACH (k, NEAR_WORDS) near.word[k] = (intL)(0);
@@ -263,14 +266,14 @@ static inline nearL near_stones(world_t world, vec3L origin, vec3L direction, re
   return near;
 }
 
-// How far along a ray the sphere around a stone begins, each lane of its own; rounded down.
+// How far along a ray the sphere around a stone begins, each lane of its own; rounded down, however far away that is.
 static inline realL sphere_begins(world_t world, intL number, vec3L origin, vec3L direction) {
   const vec3L centre = vector_by_stone(world, COLUMN_CENTRE, number);
   const realL reach = SPHERE * by_stone(world, COLUMN_RADIUS, number);
   const vec3L apart = vec3(origin.x - centre.x, origin.y - centre.y, origin.z - centre.z);
-  const realL middle = -dot3(apart, direction);
+  const realL middle = -dot3(apart, direction), squared = NEAR_SLACK * dot3(apart, apart);
   const vec3L foot = along(apart, middle, direction);
-  return middle - sqrt(fmax(fma(reach, reach, -dot3(foot, foot)), splat(0)));
+  return middle - sqrt(fmax(fma(reach, reach, squared - dot3(foot, foot)), splat(0)));
 }
 
 // Takes one of them for each ray; NOBODY where there is none.

@@ -14,9 +14,9 @@
 #define PACKETS_ACROSS (TILE / PACKET_WIDTH)
 #define PACKETS (TILE_PIXELS / LANES)
 
-// A pixel's sum. Where light comes back to the same directions for thousands of reflections, thousands of equal terms are
-// added, each of which single precision would round the same way.
-#if FEW_MIRRORS
+// A pixel's sum. Where light comes back to the same directions for thousands of reflections, or goes to and fro between faces of
+// stones that touch, thousands of small terms are added, each of which single precision would round the same way or leave out.
+#if FEW_MIRRORS || STONES == MANY
 typedef double sum_t;
 static inline void begin_sums(realL value, sum_t *to) {
   real lanes[LANES];

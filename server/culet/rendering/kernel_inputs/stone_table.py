@@ -15,7 +15,7 @@ from culet.rendering.chains import absorption, chains_of_stones
 from culet.rendering.features import Features, Geometry, StoneCount, by_half_spaces
 from culet.rendering.kernel_inputs.footprint import footprints, reach_of
 from culet.rendering.opencl.device import Real
-from culet.rendering.opencl.layout import struct
+from culet.rendering.opencl.layout import constants, struct
 from culet.rendering.projection import Projection
 from culet.rendering.room.studio import contact_forms, shade_reach
 from culet.rendering.room.surfaces import shown_surfaces
@@ -31,8 +31,8 @@ Array = NDArray[np.float64]
 
 GROUP = 8
 """Stones of a group, at most."""
-NEAR_SLACK = 4e-6
-"""As in stones.cl."""
+NEAR_SLACK = constants("stones.cl")["NEAR_STEPS"] * float(np.finfo(np.float32).eps)
+"""Parts of squared distances by which spheres count as larger."""
 
 
 @dataclass(frozen=True, eq=False)
