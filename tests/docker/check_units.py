@@ -103,6 +103,7 @@ async def check_links(site: Site) -> None:
     made = [await site.make() for _ in range(LINKS)]
     held = await site.holders(*(each["id"] for each in made))
     check(all(sum(column) == 1 for column in zip(*held, strict=True)), f"each of {LINKS} sessions is in one unit")
+    streams: list[ClientConnection] = []
     async with AsyncExitStack() as opened:
         for number, each in enumerate(made):
             steers = number % 2 == 1
@@ -112,6 +113,10 @@ async def check_links(site: Site) -> None:
             hello = json.loads(await stream.recv())
             if (hello["type"], hello["watch"], hello["steers"]) != ("hello", each["watch"], steers):
                 check(False, f"a link leads to its session: {hello}")
+            streams.append(stream)
+        for stream, each in zip(
+            streams, made, strict=True
+        ):  # which all are watched, while a unit compiles for the first
             if (await frame_of(stream)).watch.hex() != each["watch"]:
                 check(False, "frames of that session come")
         numbers = [sum(row) for row in held]
