@@ -214,7 +214,8 @@ async def check_killed_unit(site: Site) -> None:
         for page, moment in zip(shown, before, strict=True):
             await until_true(page, f"{TIME_OF} > {moment + 0.5}", "a page shows how it falls on")
         print(f"  = {time.monotonic() - killed:.1f} s from the death to both pages", flush=True)
-        check(all([await page.evaluate("culet.state.falling") for page in shown]), "they say that it falls")
+        for page in shown:
+            await until_true(page, "culet.state.falling", "a page says that it falls")
         held = [has for (has,) in await site.holders(session)]
         check(sum(held) == 1, "both found the same unit")
     await site.delete(session)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -194,7 +195,7 @@ class SlowEngine(EngineLink):
         elif isinstance(message, CloseSession):
             self.closed.append(message.session)
         stage = Stage.of(Scene())
-        return Session("ab" * 16, stage).described() | {"findings": []}, b""
+        return Session("ab" * 16, stage).described() | {"findings": [], "falling": True}, b""
 
 
 async def test_a_session_whose_shapes_take_long_is_given_again_once_for_all_however_long_that_takes() -> None:
@@ -267,3 +268,23 @@ async def test_a_session_made_anew_under_its_name_while_the_one_before_is_given_
         await giving
     assert link.closed == []
     assert sessions.get(before.id) is anew
+
+
+async def test_who_comes_while_a_session_is_being_made_again_is_told_what_became_of_it() -> None:
+    """As the second of two pages of a server that died, which come to the next one by the session's id."""
+    link = SlowEngine(SETTINGS)
+    sessions = Sessions(SETTINGS, link, Uploads(link, 0))
+    link._away_since = -math.inf
+    making = asyncio.create_task(sessions.reopen("ab" * 16, {"floor": {}}, {}))
+    sessions.taken_over.set()
+    while not link.opened:  # noqa: ASYNC110 - it says nothing
+        await asyncio.sleep(0)
+    viewer = sessions.join(sessions.get("ab" * 16))
+    told = [viewer.next_notice(0) for _ in range(3)]
+    assert State(revision=0, scene={"floor": {}}, falling=False) in told
+    link.let.set()
+    session = await making
+    notice = viewer.next_notice(1)
+    assert notice is not None
+    assert (session.state().falling, notice.model_dump()["falling"]) == (True, True)
+    assert notice.model_dump()["revision"] == session.revision

@@ -173,6 +173,7 @@ class Sessions:
             if session.id not in self._sessions:
                 await self.close(session, "others needed room")
                 raise BusyError("others needed the room of this session before it was open; try again")
+            session.tell(session.state())  # to who came by its id while the engine made it
         except BaseException:
             self._sessions.pop(session.id, None)
             raise
