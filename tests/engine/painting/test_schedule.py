@@ -5,7 +5,7 @@ import pytest
 from culet.engine.painting import schedule
 from culet.engine.painting.frame_sender import REPEAT_SECONDS, UNSENT_FRAMES
 from culet.engine.painting.frame_work import FrameWork, WorkKind
-from culet.engine.painting.live_picture import REST_WEIGHT, LivePicture, PictureState
+from culet.engine.painting.live_picture import ANSWER_PART, REST_WEIGHT, LivePicture, PictureState
 from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
@@ -64,6 +64,54 @@ def test_a_frame_that_is_a_little_late_does_not_make_the_next_one_late() -> None
     assert picture.due_at() == pytest.approx(5.2)
     picture.begin(now=5.31)
     assert picture.begun_at == 5.31, "more than a frame is not made up for"
+
+
+def moved(picture: LivePicture, number: int) -> None:
+    """Somebody moves the camera."""
+    camera = SCENE.camera.model_copy(update={"position": (0.0, 2.0, 13.0 + number)})
+    picture.session.change(STAGE.showing(SCENE.model_copy(update={"camera": camera})))
+
+
+def drawn(picture: LivePicture, now: float) -> None:
+    """A frame of what falls is begun and done."""
+    picture.begin(now)
+    picture.session.look(now)
+    picture.painted, picture.painted_size, picture.state = picture.session.shown, picture.size, PictureState.REDUCED
+
+
+def falling_since(now: float) -> LivePicture:
+    picture = live(begun_at=now - 0.1, rate=10)
+    picture.session.set_falling(True)
+    picture.session.motion.look_on(now, 1.0)
+    drawn(picture, now)
+    return picture
+
+
+def test_an_input_that_comes_alone_is_answered_by_a_frame_begun_early() -> None:
+    picture = falling_since(5.0)
+    assert picture.due_at() == pytest.approx(5.1)
+    moved(picture, 1)
+    assert picture.due_at() == pytest.approx(5.0 + ANSWER_PART * 0.1)
+    drawn(picture, 5.07)
+    assert picture.due_at() == pytest.approx(5.15), "the rate is held from there"
+
+
+def test_inputs_of_a_hand_that_goes_on_are_answered_at_the_rate_that_is_held() -> None:
+    picture, now, frames = falling_since(5.0), 5.0, 0
+    for number in range(400):  # 2 s, 200 inputs a second
+        moved(picture, number)
+        now += 0.005
+        if next_of([picture], now) is picture:
+            drawn(picture, now)
+            frames += 1
+    assert 20 <= frames <= 22
+
+
+def test_what_moves_by_itself_is_no_input() -> None:
+    picture = falling_since(5.0)
+    drawn(picture, 5.1)
+    assert not picture.unanswered
+    assert picture.due_at() == pytest.approx(5.2)
 
 
 def test_of_two_frames_due_the_one_begun_longest_ago_goes_first() -> None:

@@ -8,6 +8,7 @@ import type { PictureSize } from "../picture/picture-size";
 import type { VideoCodec } from "../video/codec-string";
 import { FrameDecoder } from "../video/frame-decoder";
 import { loadVideo } from "../video/load";
+import { savesData, VideoChoice } from "../video/video-choice";
 import { words } from "../words/words";
 import type { Target } from "./events";
 import { FramePlayer } from "./frame-player";
@@ -46,6 +47,8 @@ export class Viewer {
   private readonly listener: ViewerListener;
   /** Video that the server makes. */
   private encodes: readonly VideoCodec[] = [];
+  /** Whether the server is to send it. */
+  private readonly video = new VideoChoice(savesData());
   private decodeMs = 0;
   private readonly decoder = new FrameDecoder({
     tell: (codecs) => this.stream.send({ type: "decoders", codecs }),
@@ -126,7 +129,7 @@ export class Viewer {
     if (notice.type === "hello") {
       this.watchId = notice.watch;
       this.encodes = notice.encodes ?? [];
-      if (this.lastFrame) void this.decoder.offer(this.encodes);
+      if (this.lastFrame && this.video.on) void this.decoder.offer(this.encodes);
     }
     if (notice.type === "hello" || notice.type === "engine") this.player.forget();
     if (notice.type === "picked" || notice.type === "outlined" || notice.type === "reached")
@@ -147,11 +150,14 @@ export class Viewer {
   }
 
   private show(picture: ImageBitmap, frame: Frame): void {
-    if (!this.lastFrame) void this.decoder.offer(this.encodes); // nothing is loaded before the first picture
+    const isFirst = this.lastFrame === null; // nothing is loaded before the first picture
     this.lastFrame = frame;
     const time = performance.now();
     this.rate.shown(time);
     this.bottleneck.shown(frame, time, this.decodeMs);
+    const changed = this.video.shown(frame, time, this.bottleneck.at(time));
+    if (this.video.on && (isFirst || changed)) void this.decoder.offer(this.encodes);
+    else if (changed) this.decoder.withdraw();
     this.listener.show(picture, frame, {
       time,
       decodeMs: this.decodeMs,

@@ -63,6 +63,19 @@ describe("the decoder of frames", () => {
     expect(await decoder.decode(key)).toBe("picture");
   });
 
+  it("wants pictures of their own again, and decodes what is still under way", async () => {
+    decoder.withdraw();
+    expect(told).toEqual([]); // nothing was offered
+    await decoder.offer(["h264"]);
+    expect(await decoder.decode(key)).toBe("picture");
+    decoder.withdraw();
+    expect(told).toEqual([["h264"], []]);
+    expect(await decoder.decode(delta)).toBe("picture");
+    await decoder.offer(["h264"]);
+    expect(told.at(-1)).toEqual(["h264"]);
+    expect(loads).toBe(1);
+  });
+
   it("tells nothing where the server makes no video, or no decoder can be trusted", async () => {
     await decoder.offer([]);
     expect(loads).toBe(0);

@@ -1,6 +1,7 @@
 /**
- * Pictures of frames, whatever their codec. Video is an upgrade: the server is told of decoders once they have proven
- * themselves, and of none any more when they fail. A frame of a broken chain has no picture; others follow.
+ * Pictures of frames, whatever their codec. Video is offered where it pays (`VideoChoice`): the server is told of
+ * decoders once they have proven themselves, and of none any more when they fail. A frame of a broken chain has no
+ * picture; others follow.
  */
 
 import { Codec, Flag, type Frame } from "@culet/protocol/frame";
@@ -51,6 +52,11 @@ export class FrameDecoder {
     await this.offered;
     this.broken = false;
     if (this.codecs.length > 0) this.world.tell(this.codecs);
+  }
+
+  /** The server is to send pictures of their own. What is under way of the video is decoded still. */
+  withdraw(): void {
+    if (this.codecs.length > 0) this.world.tell([]);
   }
 
   /** Null: of a chain that is broken. */

@@ -39,6 +39,12 @@ FINE_SAMPLES = 16
 FINE_SECONDS = 0.005
 """That a launch then takes beside others' work, which so waits little: a frame of 60 a second has 16 ms in all."""
 
+ANSWER_SECONDS = 0.1
+"""After which an input that comes alone is answered by a frame begun early: ANSWER_PART of the time between frames
+after the last one. Those of a hand that goes on come faster, and frames at the rate that is held: there would be twice
+as many."""
+ANSWER_PART = 0.5
+
 STALE_SECONDS = 0.25
 """A reduced frame that takes longer is given up for something newer, unless the frame before was given up too."""
 FIRST_LOOK_SECONDS = 0.5
@@ -111,6 +117,8 @@ class LivePicture:
     """s, steady clock: when nobody watched last."""
     begun_at: float = NEVER
     """s, steady clock: when the last frame was begun, or should have been if it was a little late."""
+    answered_at: float = NEVER
+    """s, steady clock: when a frame was last begun that shows what somebody did."""
     frames: Account = field(init=False)
     """Of frames that somebody waits for."""
     rest: Account = field(init=False)
@@ -151,7 +159,7 @@ class LivePicture:
             return None
         if self.session.lock.locked():  # a stone is being made, which may take seconds: others need not wait for it
             return None
-        next_at = self.begun_at + 1 / self.frames_per_second
+        next_at = self._next_at()
         match self.state:
             case PictureState.BLANK:
                 return next_at
@@ -163,6 +171,20 @@ class LivePicture:
                 return None if self.painted is self.session.shown else next_at
             case _:
                 assert_never(self.state)
+
+    def _next_at(self) -> float:
+        """When the frame after the last one is to be begun, if there is to be one."""
+        interval = 1 / self.frames_per_second
+        if not self.unanswered:
+            return self.begun_at + interval
+        return self.begun_at + min(
+            interval, max(ANSWER_PART * interval, self.answered_at + ANSWER_SECONDS - self.begun_at)
+        )
+
+    @property
+    def unanswered(self) -> bool:
+        """Whether somebody did something since the last frame was begun: what moves by itself is looked at then."""
+        return self.painted is not None and self.painted is not self.session.shown
 
     @property
     def next_account(self) -> Account:
@@ -188,6 +210,8 @@ class LivePicture:
     def begin(self, now: float) -> None:
         """A frame is begun. One that is late by less than a frame does not make those after it late."""
         due = self.due_at()
+        if self.unanswered:
+            self.answered_at = now
         little = due is not None and 0 <= now - due < 1 / self.frames_per_second
         self.begun_at = due if due is not None and little else now
 
