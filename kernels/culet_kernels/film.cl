@@ -88,6 +88,7 @@ static inline rgb16 filmic(rgb16 c) {
 static inline rgb16 neutral(rgb16 c) {
   const rgb16 kept = {fmax(c.red, 0.0f), fmax(c.green, 0.0f), fmax(c.blue, 0.0f)};
   const float16 peak = fmax(kept.red, fmax(kept.green, kept.blue));
+  if (!any(peak > COMPRESSED)) return kept; // as most blocks are
   const float room = 1 - COMPRESSED;
   const float16 above = fmax(peak - COMPRESSED, 0.0f), lowered = COMPRESSED + above * room / (above + room);
   const float16 scale = select((float16)(1), lowered / fmax(peak, 1e-20f), peak > COMPRESSED);
@@ -114,7 +115,12 @@ static inline rgb16 developed(rgb16 colour, int tone_map, int inside_gamut) {
   return result;
 }
 
-static inline uchar16 to_bytes(float16 x) { return convert_uchar16_sat_rte(255 * x); }
+// Levels from 0 to 255, to the nearest, and to the even one of two that are as near: the sum's last bits are they. PoCL's
+// conversion takes one lane after the other.
+#define LAST_BITS 12582912.0f // 1.5 x 2^23: the least step of numbers there is 1
+static inline uchar16 to_bytes(float16 x) {
+  return convert_uchar16(as_int16(clamp(255 * x, 0.0f, 255.0f) + LAST_BITS) & 0xff);
+}
 
 // Which sums of samples there are besides the earlier run.
 #define LATER 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from enum import IntEnum
+from weakref import ref
 
 from culet.errors import SceneError
 from culet.geometry.shape import Shape
@@ -118,9 +119,22 @@ def stones_of(scene: Scene) -> StoneCount:
     )
 
 
+_latest: list[tuple[ref[Stage], Features]] = []
+"""What was found last. Stages are compared by what they are, not by what they hold, which takes longer than to find."""
+
+
 def features_of(stage: Stage) -> Features:
     """The program that holds what this stage needs, and nothing else. SceneError where the classic estimator is asked
-    for more than one stone of scale 1."""
+    for more than one stone of scale 1. Of one stage it is asked several times for each frame, and found once."""
+    for known, features in _latest:
+        if known() is stage:
+            return features
+    features = _features_of(stage)
+    _latest[:] = [(ref(stage), features)]
+    return features
+
+
+def _features_of(stage: Stage) -> Features:
     scene, shapes = stage.scene, stage.shapes
     kinds: tuple[Floor, Plane, Environment] = (scene.floor, scene.walls, scene.environment)
     floor, walls, environment = kinds

@@ -20,8 +20,11 @@ from culet.rendering.chains import bands_seen
 from culet.scene import Scene
 from culet_protocol.messages import Balance, balance_rate
 
-SHARE = 0.8
-"""Of a frame's time that the render thread may work for it; the rest is for encoding and the rest of the machine."""
+SHARE = 0.9
+"""Of a frame's time that the render thread may work for it, at most;"""
+RESERVE_SECONDS = 0.0045
+"""but so much less than all of it: encoding, the event loop and the rest of the machine take no less time of a short
+frame."""
 LEAST_SHARE = 0.3
 """Of a frame's time that rendering gets, however long simulation and tone mapping take."""
 SPARE = 0.75
@@ -36,6 +39,9 @@ MEMORY = 0.2
 """Weight of the latest frame in the expected cost,"""
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
+WORTH = 0.98
+"""A setting must miss less than so many times what a cheaper one does: for less, none is worth a change that is
+seen."""
 LEAST_PIXELS = 640 * 360
 """Of a frame, below which none is scaled unless the viewer asked for less, or the cheapest setting at that size is too
 dear for ALONE_RATE and CROWDED_RATE."""
@@ -217,7 +223,7 @@ class Governor:
     def _budget(self, frames_per_second: float, share: float) -> float:
         """For rendering a frame."""
         interval = share / frames_per_second
-        return max(SHARE * interval - self._overhead, LEAST_SHARE * interval)
+        return max(work_share(frames_per_second) * interval - self._overhead, LEAST_SHARE * interval)
 
     def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
         """Make frames of the cheapest setting so small that the least rate is held, and larger when there is time."""
@@ -273,12 +279,17 @@ class Governor:
         return (self._unit or 0) * wanted[0] * wanted[1] * _cost(self._ladder[rung], wanted)
 
 
+def work_share(frames_per_second: float) -> float:
+    """Of a frame's time that the render thread may work for it at that rate: 0.865 at 30 a second, 0.73 at 60."""
+    return max(LEAST_SHARE, min(SHARE, 1 - RESERVE_SECONDS * frames_per_second))
+
+
 @lru_cache(maxsize=64)
 def worthwhile_rungs(ladder: tuple[Setting, ...], errors: SettingErrors, wanted: tuple[int, int]) -> tuple[int, ...]:
     """Of the ladder, for a viewer of that size, the dearest first.
 
     LEAST_PIXELS makes some rungs alike, of which the first was measured at the size nearest to what is drawn, and
-    others no better than cheaper ones. The ladder's first rung is always worth its cost.
+    others hardly better than cheaper ones. The ladder's first rung is always worth its cost.
     """
     drawn: dict[tuple[float, float, int], int] = {}
     for rung, setting in enumerate(ladder):
@@ -287,7 +298,7 @@ def worthwhile_rungs(ladder: tuple[Setting, ...], errors: SettingErrors, wanted:
     least = math.inf
     for how, rung in sorted(drawn.items(), key=lambda item: _cost(ladder[item[1]], wanted)):
         error = errors.shown(*how)
-        if error < least or rung == 0:
+        if error < WORTH * least or rung == 0:
             chosen.insert(0, rung)
             least = min(least, error)
     return tuple(chosen)

@@ -122,11 +122,12 @@ class FrameWork:
 
     def _made(self, renderer: AnyRenderer) -> Generator[object, None, None]:
         width, height = self.wanted if self.plan is None else self.plan.size
-        if not renderer.is_ready(self.stage, self.samples):
+        stage = self.stage
+        if not renderer.is_ready(stage, self.samples):
             raise Unprepared
         if self.picture is None:
             effort = LightEffort.RESTING if self.plan is None else LightEffort.MOVING
-            self.picture = renderer.picture(self.stage, width, height, effort=effort)
+            self.picture = renderer.picture(stage, width, height, effort=effort)
         picture, sampled = self.picture, self.picture.sample_seconds > 0
         small = width * height <= AT_ONCE
         for part in self._samples(picture, renderer):
