@@ -22,6 +22,10 @@ APART = 40
 PIXELS_APART = 500
 """Of 384x216, by which two pictures are to be told apart. A stone covers some 3000."""
 
+SAVE_DATA = "Object.defineProperty(navigator, 'connection', { value: { saveData: true } })"
+"""The browser's user wants few bytes: else the page asks for no video where pictures of their own have room, as they
+have here."""
+
 DAMAGE_PACKETS = """() => {
   const { decode } = VideoDecoder.prototype;
   VideoDecoder.prototype.decode = function ({ type, timestamp, byteLength }) {
@@ -40,6 +44,7 @@ def test_what_moves_comes_as_video_and_as_jpeg_once_the_decoder_has_failed_twice
         stream.on("framereceived", lambda message: came.update(codec_of(message)))
 
     view.page.on("websocket", watch)
+    view.page.add_init_script(SAVE_DATA)
     follow(view)
     one = seen_after(view, 0)
     first = still(view, one.frame["step"], one.pixels)
