@@ -87,8 +87,9 @@ async def test_an_engine_with_keys_serves_who_has_them_and_nobody_else(
                     for keys in (None, tmp_path / "theirs" / "stranger"):
                         with subscribe(frames, keys=keys) as stranger, subscribe(local.frames) as another:
                             await asyncio.to_thread(another.receive, PATIENCE)  # the picture is sent again for that one
+                            await asyncio.to_thread(another.receive, PATIENCE)  # and again, after a while
                             with pytest.raises(SilenceError):
-                                await asyncio.to_thread(stranger.receive, 1.5)
+                                await asyncio.to_thread(stranger.receive, 0.1)
                         with pytest.raises(SilenceError):
                             await asyncio.to_thread(connect, frames, control=control, keys=keys, timeout_seconds=0.5)
                 monkeypatch.setenv("CULET_KEYS", str(tmp_path / "ours" / "viewer"))

@@ -6,6 +6,7 @@ import contextlib
 import os
 import secrets
 from collections.abc import Iterator
+from pathlib import Path
 
 from culet.errors import InputError
 from culet.gateway.settings import GatewaySettings
@@ -22,20 +23,23 @@ def token_kept(settings: GatewaySettings) -> Iterator[None]:
     if file is None:
         yield
         return
-    try:
-        file.unlink(missing_ok=True)
-        if token is not None:
-            part = file.with_name(f".{file.name}.{secrets.token_hex(8)}.part")
-            with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as written:
+    with contextlib.ExitStack() as own:
+        try:
+            file.unlink(missing_ok=True)
+            if token is not None:
+                part = file.with_name(f".{file.name}.{secrets.token_hex(8)}.part")
+                written = own.enter_context(os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w"))
+                own.callback(_remove, file, written.fileno())  # by which it is known, so it stays open until then
                 written.write(token)
-            part.replace(file)
-    except OSError as error:
-        raise InputError(f"token_file: cannot keep the token in {file}: {error.strerror}", "token_file") from error
-    try:
+                written.flush()
+                part.replace(file)
+        except OSError as error:
+            raise InputError(f"token_file: cannot keep the token in {file}: {error.strerror}", "token_file") from error
         yield
-    finally:
-        with contextlib.suppress(OSError):
-            if (
-                token is not None and file.read_bytes() == token.encode()
-            ):  # and not that of a server which was started since
-                file.unlink()
+
+
+def _remove(file: Path, own: int) -> None:
+    """Unless a server that was started since has put its own there, maybe of the same token."""
+    with contextlib.suppress(OSError):
+        if os.path.samestat(file.stat(), os.fstat(own)):
+            file.unlink()

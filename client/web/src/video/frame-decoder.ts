@@ -38,6 +38,8 @@ export class FrameDecoder {
   private codecs: VideoCodec[] = [];
   private failures = 0;
   private broken = false;
+  /** The server was told of decoders, and not of none since. */
+  private wanted = false;
   /** Number of the packet that was decoded last: the next one needs its picture. */
   private decoded: number | null = null;
 
@@ -51,11 +53,13 @@ export class FrameDecoder {
     this.offered ??= this.tryOut(encodes);
     await this.offered;
     this.broken = false;
+    this.wanted = true;
     if (this.codecs.length > 0) this.world.tell(this.codecs);
   }
 
   /** The server is to send pictures of their own. What is under way of the video is decoded still. */
   withdraw(): void {
+    this.wanted = false;
     if (this.codecs.length > 0) this.world.tell([]);
   }
 
@@ -67,7 +71,7 @@ export class FrameDecoder {
     if (!this.work || (this.broken && !isKey)) return null;
     if (!isKey && frame.dependsOn !== this.decoded) {
       this.broken = true; // a packet is missing, which is no fault of the decoder
-      this.world.tell(this.codecs);
+      this.askForKey();
       return null;
     }
     this.broken = false;
@@ -99,7 +103,12 @@ export class FrameDecoder {
       this.codecs = [];
       this.end();
     }
-    this.world.tell(this.codecs);
+    this.askForKey();
+  }
+
+  /** The chain begins anew, unless what is under way is the last of it. */
+  private askForKey(): void {
+    if (this.wanted) this.world.tell(this.codecs);
   }
 
   private end(): void {

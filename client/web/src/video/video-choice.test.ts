@@ -32,6 +32,12 @@ describe("the choice of video", () => {
     expect(choice.on).toBe(true);
   });
 
+  it("is video where the way carries hardly more than a frame a second", () => {
+    const choice = new VideoChoice();
+    for (let time = 0; time <= 3 * NARROW_MS; time += 900) choice.shown(thrifty, time, "network");
+    expect(choice.on).toBe(true);
+  });
+
   it("does not take the first moments of several motions for one narrow way", () => {
     const choice = new VideoChoice();
     for (let motion = 0; motion < 10; motion += 1) {

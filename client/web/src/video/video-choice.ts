@@ -9,7 +9,7 @@ import type { Bottleneck } from "../meter/bottleneck";
 /** For which the way must be too narrow: what the server knows of it in the first moments is little. */
 export const NARROW_MS = 1500;
 /** Frames further apart than this are not of the same motion. */
-const PAUSE_MS = 500;
+const PAUSE_MS = 2000;
 /** After so long pictures of their own are tried again, once things rest: the way may be another one by then. */
 export const AGAIN_MS = 60_000;
 

@@ -25,6 +25,8 @@ SHARE = 0.9
 RESERVE_SECONDS = 0.0045
 """but so much less than all of it: encoding, the event loop and the rest of the machine take no less time of a short
 frame."""
+SHARE_OF_MANY = 0.8
+"""Where others draw too, whose frames are encoded beside this one's."""
 LEAST_SHARE = 0.3
 """Of a frame's time that rendering gets, however long simulation and tone mapping take."""
 SPARE = 0.75
@@ -223,7 +225,8 @@ class Governor:
     def _budget(self, frames_per_second: float, share: float) -> float:
         """For rendering a frame."""
         interval = share / frames_per_second
-        return max(work_share(frames_per_second) * interval - self._overhead, LEAST_SHARE * interval)
+        worked = work_share(frames_per_second) if share >= 1 else SHARE_OF_MANY
+        return max(worked * interval - self._overhead, LEAST_SHARE * interval)
 
     def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
         """Make frames of the cheapest setting so small that the least rate is held, and larger when there is time."""
@@ -280,7 +283,8 @@ class Governor:
 
 
 def work_share(frames_per_second: float) -> float:
-    """Of a frame's time that the render thread may work for it at that rate: 0.865 at 30 a second, 0.73 at 60."""
+    """Of a frame's time that the render thread may work for it at that rate, if nobody else draws: 0.865 at 30 a
+    second, 0.73 at 60."""
     return max(LEAST_SHARE, min(SHARE, 1 - RESERVE_SECONDS * frames_per_second))
 
 

@@ -295,7 +295,7 @@ class FrameSender:
         lesser, started = outgoing.lesser, time.perf_counter()
         try:
             if (lossy := outgoing.first_improving) is not None:
-                codecs, allowance = outgoing.first_streams, outgoing.allowance
+                allowance = outgoing.allowance
                 picture = await self._in_thread(frame.encoded, allowance, final=True)
                 if outgoing.lossy is not lossy:  # nobody watches any more
                     return
@@ -303,7 +303,7 @@ class FrameSender:
                 if picture.looks != lossy.looks:
                     outgoing.message = self._pack_anew(session, frame, picture, started)
                     outgoing.sent(self._now())
-                    self._send_to(codecs, outgoing.message)
+                    self._send_to(outgoing.first_streams, outgoing.message)
             if (lossy := outgoing.lesser_improving) is not None:
                 allowance = lesser.allowance
                 picture = await self._in_thread(lesser.encoded, frame, final=True)

@@ -88,7 +88,8 @@ class LivePainter:
     def _begin(self, live: LivePicture) -> None:
         """Choose what to draw: what is there now of the motion, which waits for no step, and goes on meanwhile."""
         account, now, settled = live.next_account, self._now(), live.settled
-        if live.begun_at > NEVER and (due_at := live.due_at()) is not None:
+        # A frame before its turn is begun for what came since, nobody knows when: nothing is known to have waited.
+        if live.begun_at > NEVER and not live.answers_early(now) and (due_at := live.due_at()) is not None:
             self._tally.durations.frame_wait.add(max(0.0, now - max(due_at, live.unwatched_at)))
         live.begin(now)
         session = live.session

@@ -40,9 +40,10 @@ FINE_SECONDS = 0.005
 """That a launch then takes beside others' work, which so waits little: a frame of 60 a second has 16 ms in all."""
 
 ANSWER_SECONDS = 0.1
-"""After which an input that comes alone is answered by a frame begun early: ANSWER_PART of the time between frames
-after the last one. Those of a hand that goes on come faster, and frames at the rate that is held: there would be twice
-as many."""
+"""After the last answer, and no less than ANSWER_FRAMES of the time between frames, an input that comes alone is
+answered by a frame begun early: ANSWER_PART of that time after the last frame. Those of a hand that goes on come
+faster, and are answered at the rate that is held: there would be twice as many frames."""
+ANSWER_FRAMES = 1.5
 ANSWER_PART = 0.5
 
 STALE_SECONDS = 0.25
@@ -177,9 +178,12 @@ class LivePicture:
         interval = 1 / self.frames_per_second
         if not self.unanswered:
             return self.begun_at + interval
-        return self.begun_at + min(
-            interval, max(ANSWER_PART * interval, self.answered_at + ANSWER_SECONDS - self.begun_at)
-        )
+        alone_at = self.answered_at + max(ANSWER_SECONDS, ANSWER_FRAMES * interval)
+        return min(self.begun_at + interval, max(self.begun_at + ANSWER_PART * interval, alone_at))
+
+    def answers_early(self, now: float) -> bool:
+        """Whether a frame begun now comes before its turn, for what somebody did."""
+        return self.unanswered and now < self.begun_at + 1 / self.frames_per_second
 
     @property
     def unanswered(self) -> bool:
@@ -209,7 +213,7 @@ class LivePicture:
 
     def begin(self, now: float) -> None:
         """A frame is begun. One that is late by less than a frame does not make those after it late."""
-        due = self.due_at()
+        due = None if self.answers_early(now) else self.due_at()
         if self.unanswered:
             self.answered_at = now
         little = due is not None and 0 <= now - due < 1 / self.frames_per_second
