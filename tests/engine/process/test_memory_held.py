@@ -18,9 +18,9 @@ from engine.peer import EngineProcess, Peer, connected, running_engine
 from optics.sky_files.writers import chunk
 
 BUDGET = 2**28
-WIDTH = 2840
+WIDTH = 2800
 SKY_BYTES = 12 * WIDTH * WIDTH // 2
-"""46 MiB of a sky as it is kept: four leave little more than the 64 MiB that reading a file may take."""
+"""45 MiB of a sky as it is kept: four leave 8 MiB more than the 64 MiB that reading a file may take."""
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ async def test_one_session_that_shows_ever_other_skies_levels_off(small_engine: 
         first = (await watcher.next()).step
         before = resident(small_engine)
         steps = []
-        for number in range(7):  # 323 MiB, if all were kept
+        for number in range(7):  # 314 MiB, if all were kept
             assert (await put(peer, f"sky-{number}", 10 * number + 20))["status"] == 200
             assert (await peer.control("set_scene", scene=scene(f"sky-{number}")))["status"] == 200
             step = (await peer.status_of_session())["step"]
