@@ -18,6 +18,7 @@ from culet.scene.room import FLOOR_Y, Plane
 from culet.scene.sky import GradientEnvironment
 from culet.scene.stone import MOST_STONES, IndexMaterial, StoneSettings
 from culet.stage import NOTHING, Library, Stage
+from culet.study.solids import ball
 
 _STONE = StoneSettings(
     id="stone", material=IndexMaterial(ior=(2.41, 2.43, 2.45)), position=(0, 0, 0), orientation=(1, 0, 0, 0)
@@ -37,6 +38,9 @@ CHECKER = LEGACY_DEFAULT.model_copy(
 
 RING = "ring"
 """In place of the id of an upload."""
+
+BALLS = {f"ball-{facets}": facets for facets in (30, 200, 1000)}
+"""Likewise, of stones without symmetry: how many facets they have."""
 
 _DEFAULT = Scene().stones[0]
 _SCALE = 12**-0.5
@@ -69,6 +73,10 @@ def _portuguese(sides: int, scale: float) -> Scene:
     return Scene().model_copy(update={"stones": (_DEFAULT.model_copy(update={"cut": cut, "scale": scale}),)})
 
 
+def _of_mesh(name: str) -> Scene:
+    return LEGACY_DEFAULT.model_copy(update={"stones": (LEGACY_DEFAULT.stones[0].model_copy(update={"mesh": name}),)})
+
+
 OUT_OF_VIEW = Scene().model_copy(
     update={
         "stones": tuple(
@@ -95,9 +103,8 @@ CASES: dict[str, Scene] = {
     "legacy default": LEGACY_DEFAULT,
     "legacy default, 8 bands": LEGACY_DEFAULT.model_copy(update={"optics": Optics(bands=8)}),
     "legacy default, polarised": LEGACY_DEFAULT.model_copy(update={"optics": Optics(polarised=True)}),
-    "legacy default, mesh of 5 000 triangles": LEGACY_DEFAULT.model_copy(
-        update={"stones": (LEGACY_DEFAULT.stones[0].model_copy(update={"mesh": RING}),)}
-    ),
+    "legacy default, mesh of 5 000 triangles": _of_mesh(RING),
+    **{f"legacy default, {facets} facets without symmetry": _of_mesh(name) for name, facets in BALLS.items()},
     "default, twelve stones": TWELVE,
     "default, 64 stones out of view": OUT_OF_VIEW,
     "default, without stones": Scene().model_copy(update={"stones": ()}),
@@ -112,9 +119,15 @@ def ring() -> Shape:
     return shape_from_mesh(torus.export(file_type="obj").encode(), "obj", name="ring.obj")
 
 
+@cache
+def _mesh(name: str) -> Shape:
+    return ring() if name == RING else ball(BALLS[name])()
+
+
 def stage_of(scene: Scene) -> Stage:
     """The stage of one of these scenes."""
-    return Stage.of(scene, Library({RING: ring()}) if any(stone.mesh == RING for stone in scene.stones) else NOTHING)
+    meshes = {stone.mesh: _mesh(stone.mesh) for stone in scene.stones if stone.mesh}
+    return Stage.of(scene, Library(meshes) if meshes else NOTHING)
 
 
 BARE = CHECKER.model_copy(
