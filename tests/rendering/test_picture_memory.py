@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import gc
+import weakref
 
 import pytest
 
+from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import KEPT, Renderer
 from culet.scene.legacy import LEGACY_DEFAULT
+from culet.scene.presets import preset
 from culet.stage import Stage
 from rendering.views import take
 
@@ -87,3 +90,23 @@ def test_what_many_pictures_had_is_given_back_when_others_of_other_sizes_come(ow
     for width in range(640, 320, -16):
         take(own, LEGACY_DEFAULT, size=(width, 400))
     assert own.held()["pictures"] < most, "of which a third would do, and KEPT"
+
+
+def test_what_is_kept_of_moving_light_is_given_back_when_it_is_asked_for(own: Renderer) -> None:
+    gc.disable()
+    try:
+        picture = own.picture(Stage.of(preset("heap")), 32, 18, effort=LightEffort.MOVING)
+        picture.refine()
+        assert picture.light_seconds > 0
+        del picture
+        beams = own.lighting.take_beams()
+        kept = weakref.ref(beams)
+        own.lighting.give_back(beams)
+        del beams
+        assert own.pool.active_bytes > 0, "the map, for the next frame"
+        assert kept() is not None
+        own.release()
+        assert own.pool.managed_bytes == 0
+        assert kept() is None
+    finally:
+        gc.enable()

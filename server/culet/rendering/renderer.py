@@ -128,7 +128,11 @@ class Renderer:
         return {"pictures": int(self.pool.managed_bytes), "device_skies": self.device.panorama_bytes()}
 
     def release(self) -> None:
-        """Give back the memory of pictures that are gone, which is kept for the next ones."""
+        """Give back the memory of pictures and of passes of light that are gone, which is kept for the next ones."""
+        self.lighting.release()
+        self._free_kept()
+
+    def _free_kept(self) -> None:
         self.pool.free_held()
         self._most = self.pool.active_bytes
 
@@ -136,7 +140,7 @@ class Renderer:
         """A buffer of so many bytes, by preference one of a picture that is gone. Those that are kept are given back
         when there are KEPT more than pictures had at most at a time since the last were given back."""
         if self.pool.managed_bytes > self._most + KEPT:
-            self.release()
+            self._free_kept()
         buffer = self.pool.allocate(size)
         self._most = max(self._most, self.pool.active_bytes)
         return buffer

@@ -64,6 +64,14 @@ async def test_a_still_that_is_cancelled_frees_its_place_and_the_render_thread(e
         assert (await peer.ask(type="render", scene=CHEAP, width=16, height=16, samples=1))["status"] == 200
 
 
+async def test_an_engine_that_draws_nothing_gives_back_the_memory_of_pictures(engine: EngineProcess) -> None:
+    async with connected(engine) as (peer, _):
+        assert (await peer.ask(type="render", scene=CHEAP, width=256, height=256, samples=1))["status"] == 200
+        async with asyncio.timeout(PATIENCE):
+            while (await peer.status())["memory_pictures_bytes"] > 0:  # noqa: ASYNC110 - another process knows
+                await asyncio.sleep(0.05)
+
+
 async def test_what_a_gateway_waits_for_that_was_killed_is_given_up(engine: EngineProcess) -> None:
     async with connected(engine) as (peer, _):
         async with connected(engine) as (other, _):

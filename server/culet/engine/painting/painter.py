@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
+from culet.engine.capacity.freed import give_back_freed
 from culet.engine.painting import schedule
 from culet.engine.painting.counters import Counters, Durations, SharedCounters
 from culet.engine.painting.frame_sender import FrameSender
@@ -29,6 +30,9 @@ from culet.rendering.film.target import Target
 from culet.stage import Stage
 from culet_protocol.frame import Codec
 from culet_protocol.watch import Lesser, Stream
+
+IDLE_SECONDS = 2.0
+"""For which nothing is drawn before the memory that is kept for the next pictures is given back."""
 
 
 class Painter:
@@ -60,6 +64,8 @@ class Painter:
         self._tell_of_problem = tell_problem
         self._now = clock
         self._shares = Shares()
+        self._drew_at: float | None = None
+        """s: when something was drawn last. None: nothing since memory was given back last."""
         self._tally = tally = SharedCounters()
         self._changed = asyncio.Event()
         thread = RenderThread(render_thread, self._shares, tally, clock)
@@ -120,6 +126,8 @@ class Painter:
             if not live.watched:
                 live.abandon(now)
         chosen = schedule.next_work(pictures, self._stills, self._shares, now)
+        if chosen is not None:
+            self._drew_at = now
         if isinstance(chosen, LivePicture):
             await self._live_painter.advance(chosen)
         elif chosen is not None and (still := chosen.next()) is not None:
@@ -135,11 +143,24 @@ class Painter:
         await in_daemon_thread(lambda: self._renderer.make_ready(stage, samples))
 
     async def _rest(self) -> None:
+        seconds = schedule.idle_seconds(self.pictures.values(), self._now())
+        if self._drew_at is not None:
+            idle = self._drew_at + IDLE_SECONDS - self._now()
+            if idle <= 0:
+                self._drew_at = None
+                await self._give_back()
+            else:
+                seconds = idle if seconds is None else min(seconds, idle)
         try:
-            async with asyncio.timeout(schedule.idle_seconds(self.pictures.values(), self._now())):
+            async with asyncio.timeout(seconds):
                 await self._changed.wait()
         except TimeoutError:
             pass
+
+    async def _give_back(self) -> None:
+        """Nothing is drawn: what pictures that are gone had goes back to the system."""
+        self._renderer.release()
+        await in_daemon_thread(give_back_freed)
 
     def _share_of(self, live: LivePicture) -> float:
         """The part of the render thread's time that a session can have."""

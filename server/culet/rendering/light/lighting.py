@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from enum import Enum, auto
 from typing import Any, NamedTuple
@@ -102,14 +102,14 @@ class Lighting:
         key = _key(stage)
         known = self._kept.pop(key, None)
         if known is None:
-            before = [other for other, each in self._kept.items() if each.provisional and other[1:] == key[1:]]
+            before = [other for other, each in list(self._kept.items()) if each.provisional and other[1:] == key[1:]]
             for other in before:
-                del self._kept[other]
+                self._kept.pop(other, None)  # another thread may have given it back
             frame = frame_of(stage)
             known = Illumination(self, stage, BoundMap(self._pool.allocate(frame.nbytes), frame))
         self._kept[key] = known
-        while len(self._kept) > KEPT:
-            del self._kept[next(iter(self._kept))]
+        for oldest in list(self._kept)[:-KEPT]:
+            self._kept.pop(oldest, None)
         return known
 
     def is_ready(self, stage: Stage) -> bool:
@@ -145,6 +145,14 @@ class Lighting:
         """All maps; pictures that are being made of them go on."""
         self._kept.clear()
 
+    def release(self) -> None:
+        """Give back what is kept for the next pass, and the maps of moving frames. Pictures and passes that are under
+        way have their own. From any thread."""
+        self._beams.clear()
+        for key, each in list(self._kept.items()):
+            if each.provisional:
+                self._kept.pop(key, None)
+
     def others_end(self, effort: LightEffort) -> Iterator[object]:
         """Let the pass of such an effort that is under way end, whoever it is for, or give it up if nobody waits for
         it; yields between its launches."""
@@ -162,7 +170,7 @@ class Lighting:
 
     def take_beams(self) -> Beams:
         """For one pass; passes of pictures of different efforts may be under way by turns."""
-        if self._beams:
+        with suppress(IndexError):  # another thread may have given back what there was
             return self._beams.pop()
         self._first = self._first or Beams(self.device)
         return Beams(self.device, like=self._first)
