@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator
 
+from culet.remembered import remembered
 from culet.scene.fields import Colour, Fraction, Model, Vector, said
 
 MOST_LAMPS = 24
@@ -116,17 +116,20 @@ Emitter = Annotated[
 AnyEmitter = RoundLamp | BoxLamp | Sun | PointLight
 
 
-def points(emitters: Iterable[AnyEmitter]) -> tuple[PointLight, ...]:
+@remembered
+def points(emitters: tuple[AnyEmitter, ...]) -> tuple[PointLight, ...]:
     """The point lights among them."""
     return tuple(emitter for emitter in emitters if isinstance(emitter, PointLight))
 
 
-def lamps(emitters: Iterable[AnyEmitter]) -> tuple[RoundLamp | BoxLamp | Sun, ...]:
+@remembered
+def lamps(emitters: tuple[AnyEmitter, ...]) -> tuple[RoundLamp | BoxLamp | Sun, ...]:
     """Those in the sky."""
     return tuple(emitter for emitter in emitters if not isinstance(emitter, PointLight))
 
 
-def discs(emitters: Iterable[AnyEmitter]) -> tuple[RoundLamp, ...]:
+@remembered
+def discs(emitters: tuple[AnyEmitter, ...]) -> tuple[RoundLamp, ...]:
     """The round ones in the sky, suns among them."""
     return tuple(
         emitter.disc if isinstance(emitter, Sun) else emitter
@@ -135,7 +138,8 @@ def discs(emitters: Iterable[AnyEmitter]) -> tuple[RoundLamp, ...]:
     )
 
 
-def boxes(emitters: Iterable[AnyEmitter]) -> tuple[BoxLamp, ...]:
+@remembered
+def boxes(emitters: tuple[AnyEmitter, ...]) -> tuple[BoxLamp, ...]:
     """The soft boxes."""
     return tuple(emitter for emitter in emitters if isinstance(emitter, BoxLamp))
 

@@ -5,7 +5,7 @@ Python writes the shortest decimal that reads back as the same double, so nothin
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import fields
 from typing import Annotated, Any, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
@@ -52,5 +52,7 @@ def read_record(kind: type[AnyRecord], data: Any) -> AnyRecord:  # noqa: ANN401 
 
 
 def plain(state: RigidState | BodyState) -> dict[str, Any]:
-    """As JSON's types, field by field."""
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(state).items()}
+    """As JSON's types, field by field: each is a number, or a tuple of them. `asdict`, which copies each number, takes
+    ten times as long, and a stone that moves is told of 20 times a second."""
+    values = ((each.name, getattr(state, each.name)) for each in fields(state))
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values}

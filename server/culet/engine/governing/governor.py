@@ -146,6 +146,8 @@ class Governor:
         self._overhead = 0.0
         """Expected time of the render thread for a frame besides rendering it."""
         self._spared = 0
+        self._rungs: tuple[tuple[int, int], tuple[int, ...]] | None = None
+        """Size that was asked for last, and what is worth its cost then."""
         self._patience = PATIENCE
         self._held: int | None = None
         """Frames for which a better setting has held that is on trial; None if none is."""
@@ -194,7 +196,7 @@ class Governor:
 
     def has_cheaper(self, plan: Plan) -> bool:
         """Whether frames of that size can be cheaper than planned."""
-        cheapest = self._ladder[worthwhile_rungs(self._ladder, self._errors, plan.wanted)[-1]]
+        cheapest = self._ladder[self._worthwhile(plan.wanted)[-1]]
         return plan.setting is not None and _cost(plan.setting, plan.wanted) > _cost(cheapest, plan.wanted)
 
     def rendered(
@@ -231,7 +233,7 @@ class Governor:
     def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
         """Make frames of the cheapest setting so small that the least rate is held, and larger when there is time."""
         cost = self._expected(self._rung, wanted)
-        if self._rung != worthwhile_rungs(self._ladder, self._errors, wanted)[-1] or cost <= 0:
+        if self._rung != self._worthwhile(wanted)[-1] or cost <= 0:
             self._shrunk = 0
             return
         pixels = wanted[0] * wanted[1] * _scale(self.setting, wanted) ** 2
@@ -269,14 +271,20 @@ class Governor:
 
     def _pinned(self, wanted: tuple[int, int], balance: Balance) -> Setting | None:
         """The last rung for speed, up to more than the first one for exactness."""
-        worthwhile = worthwhile_rungs(self._ladder, self._errors, wanted)
+        worthwhile = self._worthwhile(wanted)
         place = round((1 - balance.exactness) * len(worthwhile))
         return self._ladder[worthwhile[place - 1]] if place else None
 
     def _best(self, wanted: tuple[int, int], budget: float) -> int:
         """The best rung that is expected to take no longer, or the cheapest for that size."""
-        worthwhile = worthwhile_rungs(self._ladder, self._errors, wanted)
+        worthwhile = self._worthwhile(wanted)
         return next((rung for rung in worthwhile if self._expected(rung, wanted) <= budget), worthwhile[-1])
+
+    def _worthwhile(self, wanted: tuple[int, int]) -> tuple[int, ...]:
+        """`worthwhile_rungs`, asked for several times a frame: to look it up by the whole ladder takes longer."""
+        if self._rungs is None or self._rungs[0] != wanted:
+            self._rungs = wanted, worthwhile_rungs(self._ladder, self._errors, wanted)
+        return self._rungs[1]
 
     def _expected(self, rung: int, wanted: tuple[int, int]) -> float:
         return (self._unit or 0) * wanted[0] * wanted[1] * _cost(self._ladder[rung], wanted)

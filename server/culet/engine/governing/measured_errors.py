@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,21 +33,27 @@ class SettingErrors:
 
     def shown(self, scale: float, cutoff: float, max_bounces: int) -> float:
         """NaN beyond the settings that were measured."""
-        return self._at(self.shown_errors, scale, cutoff, max_bounces)
+        return _interpolated(self, "shown", scale, cutoff, max_bounces)
 
     def radiance(self, scale: float, cutoff: float, max_bounces: int) -> float:
         """NaN beyond the settings that were measured."""
-        return self._at(self.radiance_errors, scale, cutoff, max_bounces)
+        return _interpolated(self, "radiance", scale, cutoff, max_bounces)
 
-    def _at(self, errors: Grid, scale: float, cutoff: float, max_bounces: int) -> float:
-        axes = np.array(self.scales), np.log(self.cutoffs), np.log(self.max_bounces)
-        for axis, place in zip(axes, (scale, np.log(cutoff), np.log(max_bounces)), strict=True):
-            if not axis[0] <= place <= axis[-1]:
-                return math.nan
-            upper = max(1, int(np.searchsorted(axis, place)))
-            weight = (place - axis[upper - 1]) / (axis[upper] - axis[upper - 1])
-            errors = (1 - weight) * errors[upper - 1] + weight * errors[upper]
-        return float(errors)
+
+@lru_cache(maxsize=256)
+def _interpolated(
+    measured: SettingErrors, kind: Literal["shown", "radiance"], scale: float, cutoff: float, max_bounces: int
+) -> float:
+    """NaN beyond the settings that were measured. Settings come again, frame by frame."""
+    errors = measured.shown_errors if kind == "shown" else measured.radiance_errors
+    axes = np.array(measured.scales), np.log(measured.cutoffs), np.log(measured.max_bounces)
+    for axis, place in zip(axes, (scale, np.log(cutoff), np.log(max_bounces)), strict=True):
+        if not axis[0] <= place <= axis[-1]:
+            return math.nan
+        upper = max(1, int(np.searchsorted(axis, place)))
+        weight = (place - axis[upper - 1]) / (axis[upper] - axis[upper - 1])
+        errors = (1 - weight) * errors[upper - 1] + weight * errors[upper]
+    return float(errors)
 
 
 def read_setting_errors() -> SettingErrors:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from culet.engine.session.viewpoint import axes, half_height
+from culet.remembered import remembered
 from culet.scene import Camera, Vector
 from culet_protocol.frame import Flags
 
@@ -29,7 +31,7 @@ def whereabouts(camera: Camera, stones: Sequence[Ball], aspect: float) -> Flags:
     picture the stone counts as seen. Behind the camera there are no sides. The nearest stone is the one whose ball is
     nearest to the camera.
     """
-    if not stones:
+    if not stones or _may_see_one(camera, stones, aspect):
         return Flags.NONE
     offsets = np.array([ball.position for ball in stones]) - np.array(camera.position, float)
     radii = np.array([ball.radius for ball in stones])
@@ -44,8 +46,6 @@ def whereabouts(camera: Camera, stones: Sequence[Ball], aspect: float) -> Flags:
         # To the planes through the eye and the picture's edges: (across - depth reach) / sqrt(1 + reach^2).
         beyond = (np.abs(along[:, :2]) - depths[:, None] * reaches) / np.sqrt(1 + reaches**2)
     outside = beyond > radii[:, None]
-    if not (behind | outside.any(axis=1)).all():
-        return Flags.NONE
     nearest = int(np.argmin(np.linalg.norm(offsets, axis=1) - radii))
     if behind[nearest]:
         return Flags.BEHIND
@@ -53,3 +53,37 @@ def whereabouts(camera: Camera, stones: Sequence[Ball], aspect: float) -> Flags:
     for axis in np.flatnonzero(outside[nearest]):
         sides |= BESIDE[axis][0 if along[nearest, axis] > 0 else 1]
     return sides
+
+
+def _may_see_one(camera: Camera, stones: Sequence[Ball], aspect: float) -> bool:
+    """Whether the ball of a stone reaches into the picture: mostly that of the first does, and each frame asks."""
+    right, up, forward, half = _view(camera)
+    x0, y0, z0 = camera.position
+    across, parallel = half * aspect, camera.kind == "orthographic"
+    for (x, y, z), radius in stones:
+        offset = (x - x0, y - y0, z - z0)
+        beside, above = abs(_dot(offset, right)), abs(_dot(offset, up))
+        if parallel:
+            seen = beside - across <= radius and above - half <= radius
+        else:
+            depth = _dot(offset, forward)
+            seen = (
+                depth >= -radius
+                and beside - depth * across <= radius * math.hypot(1, across)
+                and above - depth * half <= radius * math.hypot(1, half)
+            )
+        if seen:
+            return True
+    return False
+
+
+@remembered
+def _view(camera: Camera) -> tuple[Vector, Vector, Vector, float]:
+    """`axes` and `half_height`."""
+    right, up, forward = ((float(x), float(y), float(z)) for x, y, z in axes(camera))
+    return right, up, forward, half_height(camera)
+
+
+def _dot(one: Vector, other: Vector) -> float:
+    (a, b, c), (x, y, z) = one, other
+    return a * x + b * y + c * z

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from culet.geometry.shape import Shape
+from culet.remembered import remembered
 from culet.rendering.stones.placed_stone import PlacedStone
 from culet.scene.backdrop import Backdrop, GradientBackdrop, NoBackdrop, PlainBackdrop
-from culet.scene.emitters import BoxLamp, boxes, discs
+from culet.scene.emitters import AnyEmitter, BoxLamp, boxes, discs
 from culet.scene.model import Scene
 from culet.scene.room import FLOOR_Y, StudioFloor
 
@@ -22,14 +23,9 @@ Array = NDArray[np.float64]
 
 def set_studio(p: NDArray[np.void], scene: Scene, origin: Array, width: int, height: int) -> None:
     """Fill in what the scene has of it."""
-    lamps, soft_boxes = discs(scene.shown_lamps), boxes(scene.shown_lamps)
-    for number, lamp in enumerate(lamps):
-        p["lamp"][number] = _unit(lamp.direction)
-        p["lamp_rim"][number], p["lamp_slope"][number] = disc_edge(lamp.half_angle_degrees, lamp.softness)
-        p["lamp_radiance"][number] = lamp.radiance
-    for number, box in enumerate(soft_boxes):
-        _set_box(p, number, box)
-    p["lamps"], p["boxes"] = len(lamps), len(soft_boxes)
+    for name, values in _lamp_columns(scene.shown_lamps).items():
+        p[name][: len(values)] = values
+    p["lamps"], p["boxes"] = len(discs(scene.shown_lamps)), len(boxes(scene.shown_lamps))
     if scene.head is not None:
         p["has_head"] = True
         p["head"] = towards_observer(scene, origin)
@@ -38,6 +34,26 @@ def set_studio(p: NDArray[np.void], scene: Scene, origin: Array, width: int, hei
     _set_backdrop(p, scene.backdrop, width, height)
     if isinstance(scene.floor, StudioFloor):
         _set_floor(p, scene.floor)
+
+
+@remembered
+def _lamp_columns(lamps: tuple[AnyEmitter, ...]) -> dict[str, Array]:
+    """Of lamps that the sky shows, by the parameters' names, a row each. Lamps seldom change, and are asked for in each
+    picture."""
+    round_ones, soft_boxes = discs(lamps), boxes(lamps)
+    columns: dict[str, Array] = {}
+    if round_ones:
+        columns["lamp"] = np.array([_unit(lamp.direction) for lamp in round_ones])
+        edges = np.array([disc_edge(lamp.half_angle_degrees, lamp.softness) for lamp in round_ones])
+        columns["lamp_rim"], columns["lamp_slope"] = edges.T
+        columns["lamp_radiance"] = np.array([lamp.radiance for lamp in round_ones])
+    if soft_boxes:
+        for name, parts in zip(
+            ("box", "box_edge", "box_level"), zip(*map(_box_form, soft_boxes), strict=True), strict=True
+        ):
+            columns[name] = np.array(parts)
+        columns["box_radiance"] = np.array([box.radiance for box in soft_boxes])
+    return columns
 
 
 @lru_cache(maxsize=256)
@@ -71,16 +87,10 @@ def towards_observer(scene: Scene, origin: Array) -> Array:
     return _unit(back if far else from_stone)
 
 
-def _set_box(p: NDArray[np.void], number: int, box: BoxLamp) -> None:
-    """See add_boxes in sky.cl."""
-    p["box"][number], p["box_edge"][number], p["box_level"][number] = _box_form(box)
-    p["box_radiance"][number] = box.radiance
-
-
 @lru_cache(maxsize=256)
 def _box_form(box: BoxLamp) -> tuple[Array, Array, Array]:
-    """(3, 3) the ways to a box, across it and up, scaled so that a share of 1 is where it fades no more, and (2,) edge
-    and (2,) level. Boxes seldom change, and are asked for in each picture."""
+    """See add_boxes in sky.cl: (3, 3) the ways to a box, across it and up, scaled so that a share of 1 is where it
+    fades no more, and (2,) edge and (2,) level."""
     halves = np.radians([box.half_width_degrees, box.half_height_degrees])
     fades = np.sin(box.softness * halves)
     to_box, across, up = box_axes(box)

@@ -173,9 +173,9 @@ def camera_stone(scene: Scene, stones: Sequence[PlacedStone]) -> int | None:
     begin outside."""
     if scene.camera.kind == "orthographic" or not stones:
         return None
-    away = np.linalg.norm(centres_of(stones) - scene.camera.position, axis=1)
-    near = np.flatnonzero(away < np.array([stone.scale for stone in stones])).tolist()
-    depths = {number: stones[number].depth(scene.camera.position) * stones[number].scale for number in near}
+    eye = scene.camera.position
+    near = [number for number, stone in enumerate(stones) if math.dist(stone.settings.position, eye) < stone.scale]
+    depths = {number: stones[number].depth(eye) * stones[number].scale for number in near}
     deepest = max(depths, key=depths.__getitem__, default=None)
     return deepest if deepest is not None and depths[deepest] > 0 else None
 
