@@ -33,6 +33,8 @@ QUICK: dict[str, Callable[[], Iterator[Finding]]] = {
     "cradle": pairs.cradle,
     "stack": pairs.stack,
     "heap": lambda: heaps.heaps(12, (1,)),
+    "heap of needles": lambda: heaps.thin_heaps("needles 20 : 1", 12, (1,)),
+    "starts in each other": lambda: extreme.spinning_starts(range(2)),
 }
 
 
@@ -74,6 +76,18 @@ def test_the_page_shows_every_extreme() -> None:
     page = (Path(__file__).parents[2] / "docs" / "explanation" / "simulation.md").read_text(encoding="utf-8")
     for case in EXTREMES:
         assert f"| {case.name} |" in page
+
+
+def test_snapshots_of_stones_that_lie_on_each_other_go_on_to_the_same_bits() -> None:
+    """Of which points appear as corners now of the one, now of the other: those nearby have their impulses."""
+    moving, other = (heaps.heap(8, 1, heaps.THIN["wafers 20 : 1"]()) for _ in range(2))
+    advance(moving, 1)
+    while not moving.settled and moving.state.time < 10:
+        other.restore(moving.snapshot())
+        for _ in range(5):
+            moving.step()
+            other.step()
+            assert digest(other) == digest(moving)
 
 
 def test_another_process_comes_to_the_same_bits() -> None:
@@ -119,6 +133,12 @@ def test_five_heaps_of_twelve_come_to_rest() -> None:
 @pytest.mark.parametrize("count", [32, 64])
 def test_five_larger_heaps_come_to_rest(count: int) -> None:
     assert failures(heaps.heaps(count)) == []
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(("kind", "count"), heaps.THIN_HEAPS)
+def test_five_heaps_of_needles_and_wafers_come_to_rest(kind: str, count: int) -> None:
+    assert failures(heaps.thin_heaps(kind, count)) == []
 
 
 @pytest.mark.soak

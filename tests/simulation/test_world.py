@@ -148,8 +148,9 @@ HEADER = 32
 DAMAGED = {
     "too fast": (HEADER + 7 * 8, "d", 1e31),
     "asleep for ever": (HEADER + 13 * 8, "d", math.inf),
-    "in no bed": (HEADER + 15 * 8 + 8, "i", -1),
-    "in a bed to come": (HEADER + 15 * 8 + 8, "i", 2**30),
+    "stays nowhere": (HEADER + 15 * 8, "d", math.nan),
+    "in no bed": (HEADER + 22 * 8 + 8, "i", -1),
+    "in a bed to come": (HEADER + 22 * 8 + 8, "i", 2**30),
     "no bed left": (12, "i", 2**31 - 1),
     "more manifolds": (16, "i", 2**31 - 1),
     "more contacts": (20, "i", 2**31 - 1),

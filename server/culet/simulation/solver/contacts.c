@@ -120,6 +120,42 @@ static int before(const Manifold *one, const Manifold *other) {
   return one->other == NONE ? one->surface < other->surface : one->body < other->body;
 }
 
+static void take_over(Contact *contact, const Contact *same, double ratio) {
+  double along = dot(same->slip_impulse, contact->normal);
+  contact->normal_impulse = ratio * same->normal_impulse;
+  contact->slip_impulse = scaled(sub(same->slip_impulse, scaled(contact->normal, along)), ratio);
+}
+
+static Contact *the_same(const Contacts *contacts, const Manifold *manifold, uint64_t feature) {
+  for (int i = 0; i < manifold->count; i++) {
+    Contact *contact = &contacts->contacts[manifold->first + i];
+    if (contact->feature == feature) return contact;
+  }
+  return NULL;
+}
+
+/* Where two faces lie on each other, the points stay, but are corners now of the one face, now of the other, or of edges
+ * that cross: what a point that is no more has carried goes to the nearest new one, if that is near. */
+static void take_over_the_near(World *world, const Manifold *manifold, const Manifold *last, double ratio) {
+  const Body *body = &world->bodies[manifold->body], *other = &world->bodies[manifold->other];
+  double near = SAME * smaller(body->hull.inradius, other->hull.inradius);
+  for (int q = 0; q < last->count; q++) {
+    const Contact *gone = &world->before.contacts[last->first + q];
+    if (gone->normal_impulse == 0 || the_same(&world->now, manifold, gone->feature)) continue;
+    Contact *nearest = NULL;
+    double least = near * near;
+    for (int p = 0; p < manifold->count; p++) {
+      Contact *contact = &world->now.contacts[manifold->first + p];
+      Vec3 apart = sub(contact->arm, gone->arm);
+      double squared = dot(apart, apart);
+      if (squared >= least || contact->normal_impulse > 0 || the_same(&world->before, last, contact->feature)) continue;
+      least = squared;
+      nearest = contact;
+    }
+    if (nearest && dot(nearest->normal, gone->normal) > 0) take_over(nearest, gone, ratio);
+  }
+}
+
 /* Contacts that were there in the last substep begin with its impulses: what carries a stone is as a force nearly the
  * same, and as an impulse in proportion to the length of the substep. */
 static void take_over_impulses(World *world) {
@@ -135,15 +171,10 @@ static void take_over_impulses(World *world) {
     manifold->rolling_impulse = scaled(last->rolling_impulse, ratio);
     for (int p = 0; p < manifold->count; p++) {
       Contact *contact = &now->contacts[manifold->first + p];
-      for (int q = 0; q < last->count; q++) {
-        const Contact *same = &old->contacts[last->first + q];
-        if (same->feature != contact->feature) continue;
-        double along = dot(same->slip_impulse, contact->normal);
-        contact->normal_impulse = ratio * same->normal_impulse;
-        contact->slip_impulse = scaled(sub(same->slip_impulse, scaled(contact->normal, along)), ratio);
-        break;
-      }
+      const Contact *same = the_same(old, last, contact->feature);
+      if (same) take_over(contact, same, ratio);
     }
+    if (manifold->other != NONE) take_over_the_near(world, manifold, last, ratio);
   }
 }
 

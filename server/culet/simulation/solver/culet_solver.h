@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CULET_INTERFACE 3       /* changes whenever a structure or a function of this file does */
+#define CULET_INTERFACE 4       /* changes whenever a structure or a function of this file does */
 
 #define CULET_MAX_VERTICES 1024 /* of a hull: bounds the work and the memory of one pair */
 #define CULET_MAX_SURFACES 16

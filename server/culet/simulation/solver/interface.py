@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_size_t, c_void_p
 
-VERSION = 3
+VERSION = 4
 """CULET_INTERFACE."""
 MAX_VERTICES = 1024
 MAX_SURFACES = 16

@@ -3,12 +3,14 @@
 
 #define STILL 1e-3         /* sqrt(g size): a stone slower than this for STILL_SECONDS may sleep */
 #define STILL_SECONDS 0.3
-#define FIXED 1e-7         /* sqrt(g size): of a stone that leans, which only time tells from one that falls */
-#define FIXED_SECONDS 0.5
+#define FIXED 5e-6         /* size: what a stone that leans may tremble, which only time tells from one that falls */
+#define FIXED_TIME 3.0     /* sqrt(size / g): in this time what falls from a balance gets twenty times as far from it */
+#define FIXED_SECONDS 0.5  /* at least */
 #define WAKING 3e-2        /* sqrt(g size): what is slower does not wake a sleeper by touching it */
 #define WAKING_GAP 1e-3    /* size */
 #define SUPPORT_GAP 1e-4   /* size */
 #define SUPPORT 1e-3       /* size: nearer to the edge of what carries it a stone is balancing */
+#define THIN_SUPPORT 0.1   /* of the inradius, likewise: a needle lies on less than SUPPORT */
 #define LEVEL 0.999        /* cosine: contacts more slanted than this do not make a level base */
 #define MAX_FEET                                                                                                       \
   (2 * CULET_MAX_VERTICES) /* a hull lies on all of its vertices at most, and on a few points of others */
@@ -41,6 +43,26 @@ void wake_body(World *world, int number) {
 
 static double speed(const Body *body) { return length(body->velocity) + length(body->spin) * body->size; }
 
+/* Whether the whole body is slower than that, R/s; a needle may spin about its length. */
+static int slower(const Body *body, double limit) {
+  double along = length(body->velocity);
+  if (along + length(body->spin) * body->size < limit) return 1;
+  return along < limit && along + farthest_moved(body, body->spin) < limit;
+}
+
+/* Whether all of the body is nearer than that, R, to where it was when it began to stay. */
+static int stays(const Body *body, double limit) {
+  Quat q = body->fixed_orientation, turn = product(body->orientation, (Quat){q.w, -q.x, -q.y, -q.z});
+  Vec3 angle = scaled(vec(turn.x, turn.y, turn.z), turn.w < 0 ? -2 : 2);
+  double way = length(sub(body->position, body->fixed_position));
+  if (way + length(angle) * body->size < limit) return 1;
+  return way < limit && way + farthest_moved(body, angle) < limit;
+}
+
+static double fixed_seconds(const World *world, const Body *body) {
+  return larger(FIXED_SECONDS, FIXED_TIME * sqrt(body->size / world->law.gravity));
+}
+
 /* Wakes sleepers that something moving has reached; whether there were any. */
 int wake_touched(World *world) {
   int any = 0;
@@ -64,9 +86,9 @@ int wake_touched(World *world) {
 
 typedef enum { FALLS, LEANS, STANDS } Support;
 
-/* Whether the origin is within the convex polygon of these points, and no nearer to its edges than SUPPORT. The edges are
+/* Whether the origin is within the convex polygon of these points, and no nearer to its edges than `support`. The edges are
  * found one after the other (Jarvis 1973), with all points to their left. */
-static int carried(const double *x, const double *z, int feet, double size) {
+static int carried(const double *x, const double *z, int feet, double size, double support) {
   int start = 0, p;
   for (int i = 1; i < feet; i++)
     if (x[i] < x[start] || (x[i] == x[start] && z[i] < z[start])) start = i;
@@ -83,7 +105,7 @@ static int carried(const double *x, const double *z, int feet, double size) {
       ez = rz;
     }
     if (q == NONE) return 0; /* all in one point */
-    if ((ez * x[p] - ex * z[p]) / sqrt(ex * ex + ez * ez) < SUPPORT * size) return 0;
+    if ((ez * x[p] - ex * z[p]) / sqrt(ex * ex + ez * ez) < support) return 0;
     p = q;
     if (p == start) break;
   }
@@ -108,7 +130,8 @@ static Support support_of(const World *world, int number) {
     x[feet] = arm.x;
     z[feet++] = arm.z;
   }
-  if (feet >= 3 && carried(x, z, feet, body->size)) return STANDS;
+  double support = smaller(SUPPORT * body->size, THIN_SUPPORT * body->hull.inradius);
+  if (feet >= 3 && carried(x, z, feet, body->size, support)) return STANDS;
   return slanted && feet >= 2 ? LEANS : FALLS;
 }
 
@@ -124,9 +147,14 @@ void fall_asleep(World *world, double time) {
   for (int i = 0; i < world->count; i++) {
     Body *body = &world->bodies[i];
     if (body->asleep || body->held) continue;
-    double unit = sqrt(world->law.gravity * body->size), now = speed(body);
-    body->still = now < STILL * unit ? body->still + time : 0;
-    body->fixed = now < FIXED * unit ? body->fixed + time : 0;
+    body->still = slower(body, STILL * sqrt(world->law.gravity * body->size)) ? body->still + time : 0;
+    if (body->still > 0 && body->fixed > 0 && stays(body, FIXED * body->size))
+      body->fixed += time;
+    else {
+      body->fixed = time;
+      body->fixed_position = body->position;
+      body->fixed_orientation = body->orientation;
+    }
     any |= body->still >= STILL_SECONDS;
   }
   if (!any || !world->law.sleeping) return;
@@ -146,7 +174,7 @@ void fall_asleep(World *world, double time) {
     Course *whole = &courses[island(world, i)];
     if (body->asleep || body->held || whole->restless) continue;
     Support support = support_of(world, i);
-    if (support == FALLS || (support == LEANS && body->fixed < FIXED_SECONDS)) whole->restless = 1;
+    if (support == FALLS || (support == LEANS && body->fixed < fixed_seconds(world, body))) whole->restless = 1;
   }
   for (int i = 0; i < world->count; i++) courses[i].bed = -1;
   for (int i = 0; i < world->count; i++) {

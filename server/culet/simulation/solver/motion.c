@@ -9,6 +9,8 @@
 #define SWEEPS 4           /* of pushing apart */
 #define NEAR 1e-2          /* size: contacts farther apart take no part in it */
 #define FARTHEST_PUSH 0.05 /* size, in one substep */
+#define GAIN 1e-10         /* of m g size and of the energy of its spin, that a body may get by being turned apart */
+#define HALVINGS 8         /* of a turn that would give it more */
 
 static double falling(const World *world, const Contact *contact) {
   double acceleration = world->bodies[contact->body].inverse_mass > 0 ? -world->law.gravity : 0;
@@ -118,6 +120,31 @@ static Vec3 shift_at(const World *world, int number, Vec3 arm) {
   return add(world->courses[number].shift, cross(world->courses[number].turn, arm));
 }
 
+static double spin_energy(const Body *body) { return dot(body->spin, body->angular_momentum) / 2; }
+
+/* Turned by d, a body that keeps its angular momentum L has another energy of spin: by d . (omega x L), since L is then
+ * about other axes of the body. What of a turn would add energy is left out: the shift moves it apart as well. */
+static void turn_without_gain(const World *world, Body *body, Vec3 half) {
+  Quat before = body->orientation;
+  double energy = spin_energy(body);
+  double most = energy + GAIN * (energy + body->mass * world->law.gravity * body->size);
+  Vec3 uphill = cross(body->spin, body->angular_momentum);
+  Vec3 across = times(&body->world_inverse_inertia, uphill);
+  double slope = dot(uphill, across);
+  body->orientation = cayley(before, half);
+  refresh(body);
+  if (spin_energy(body) <= most) return;
+  if (slope > 0) half = sub(half, scaled(across, dot(half, uphill) / slope));
+  for (int i = 0; i < HALVINGS; i++) {
+    body->orientation = cayley(before, half);
+    refresh(body);
+    if (spin_energy(body) <= most) return;
+    half = scaled(half, 0.5);
+  }
+  body->orientation = before;
+  refresh(body);
+}
+
 /* Moves apart what overlaps by more than SLOP, by shifts and turns that velocities know nothing of. */
 void push_apart(World *world) {
   Contacts *now = &world->now;
@@ -154,7 +181,6 @@ void push_apart(World *world) {
     double turn = length(course->turn);
     if (turn == 0) continue;
     Vec3 half = scaled(course->turn, turn > FARTHEST_PUSH ? FARTHEST_PUSH / turn / 2 : 0.5);
-    body->orientation = cayley(body->orientation, half);
-    refresh(body);
+    turn_without_gain(world, body, half);
   }
 }

@@ -26,6 +26,17 @@ Vec3 angular_momentum_of(const Body *body, Vec3 spin) {
   return times(&body->axes, times(&body->inertia, transposed_times(&body->axes, spin)));
 }
 
+/* How far a small turn moves any point of the hull, R; or how fast a spin does. A needle's about its length hardly does. */
+double farthest_moved(const Body *body, Vec3 turn) {
+  Vec3 inside = transposed_times(&body->axes, turn);
+  double most = 0;
+  for (int i = 0; i < body->hull.vertex_count; i++) {
+    Vec3 moved = cross(inside, hull_vertex(&body->hull, i));
+    most = larger(most, dot(moved, moved));
+  }
+  return sqrt(most);
+}
+
 /* By Taylor's series within an eighth of a turn: to 1e-16, and the same bits everywhere, as no library promises. */
 static void sine_cosine(double angle, double *sine, double *cosine) {
   double quarters = floor(angle * TWO_OVER_PI + 0.5);

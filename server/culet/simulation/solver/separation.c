@@ -9,8 +9,6 @@
 #include "solver.h"
 
 #define PARALLEL 1e-8 /* sine between edges: their cross product would have lost half its digits */
-#define BETTER 1e-7   /* R: by less an axis of two edges is not preferred to a face, which carries at several points */
-#define TIE 1e-9      /* R: by less the first one's face is kept, so that the choice does not flicker */
 
 /* The best face of `first`; of the second at `offset`, turned by `turn`, all in the first one's axes. */
 static double best_face(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double at_least,
@@ -50,12 +48,15 @@ static int edges_below(const Hull *hull, Vec3 normal, double offset, double band
   return count;
 }
 
-Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, PairRoom *room) {
+/* Above `enough` a lower bound. By less than `favour` (R) no axis is preferred to a face, which carries at several points,
+ * nor the second one's face to the first one's: else the choice would flicker where faces lie on each other. */
+Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, double favour,
+                PairRoom *room) {
   int face = 0, other_face = 0;
   double best = best_face(first, second, turn, offset, -INFINITY, enough, 0, room, &face);
   if (best > enough) return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
   Vec3 back = negated(transposed_times(turn, offset));
-  double other_best = best_face(second, first, turn, back, best - TIE, enough, 1, room, &other_face);
+  double other_best = best_face(second, first, turn, back, best, enough, 1, room, &other_face);
   Vec3 other_normal = times(turn, second->normal[other_face]);
   if (other_best > enough) return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
 
@@ -93,7 +94,8 @@ Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 of
       if (distance > edges.distance) edges = (Axis){distance, TWO_EDGES, room->edges[i], room->other_edges[j], normal};
     }
   }
-  if (edges.distance > larger(best, other_best) + BETTER) return edges;
-  if (best >= other_best - TIE) return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
+  double chosen = best >= other_best - favour ? best : other_best;
+  if (edges.distance > chosen + favour) return edges;
+  if (chosen == best) return (Axis){best, FIRST_FACE, face, 0, first->normal[face]};
   return (Axis){other_best, SECOND_FACE, 0, other_face, negated(other_normal)};
 }

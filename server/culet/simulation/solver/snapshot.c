@@ -13,6 +13,7 @@ typedef struct {
 
 typedef struct {
   double position[3], orientation[4], velocity[3], angular_momentum[3], still, fixed;
+  double fixed_position[3], fixed_orientation[4];
   int32_t asleep, held, bed, unused;
 } SavedBody;
 
@@ -23,7 +24,7 @@ typedef struct {
 
 typedef struct {
   uint64_t feature;
-  double normal_impulse, slip_impulse[3];
+  double normal_impulse, slip_impulse[3], normal[3], arm[3];
 } SavedContact;
 
 static int contact_count(const Contacts *contacts) {
@@ -66,12 +67,20 @@ void culet_world_save(const CuletWorld *world, void *bytes) {
   for (int i = 0; i < world->count; i++) {
     const Body *body = &world->bodies[i];
     Vec3 p = body->position, v = body->velocity, momentum = body->angular_momentum;
-    Quat q = body->orientation;
-    SavedBody saved = {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z},
-                       {v.x, v.y, v.z}, {momentum.x, momentum.y, momentum.z},
-                       body->still,     body->fixed,
-                       body->asleep,    body->held,
-                       body->bed,       0};
+    Vec3 there = body->fixed_position;
+    Quat q = body->orientation, turned = body->fixed_orientation;
+    SavedBody saved = {{p.x, p.y, p.z},
+                       {q.w, q.x, q.y, q.z},
+                       {v.x, v.y, v.z},
+                       {momentum.x, momentum.y, momentum.z},
+                       body->still,
+                       body->fixed,
+                       {there.x, there.y, there.z},
+                       {turned.w, turned.x, turned.y, turned.z},
+                       body->asleep,
+                       body->held,
+                       body->bed,
+                       0};
     at = put(at, &saved, sizeof saved);
   }
   for (int i = 0; i < last->manifold_count; i++) {
@@ -81,8 +90,9 @@ void culet_world_save(const CuletWorld *world, void *bytes) {
     at = put(at, &saved, sizeof saved);
     for (int k = 0; k < manifold->count; k++) {
       const Contact *contact = &last->contacts[manifold->first + k];
-      Vec3 s = contact->slip_impulse;
-      SavedContact point = {contact->feature, contact->normal_impulse, {s.x, s.y, s.z}};
+      Vec3 s = contact->slip_impulse, n = contact->normal, arm = contact->arm;
+      SavedContact point = {
+          contact->feature, contact->normal_impulse, {s.x, s.y, s.z}, {n.x, n.y, n.z}, {arm.x, arm.y, arm.z}};
       at = put(at, &point, sizeof point);
     }
   }
@@ -100,8 +110,8 @@ static int sound_body(const SavedBody *body, const Header *header) {
   double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return usable(body->position, 3) && fabs(norm - 1) < 1e-9 && usable(body->velocity, 3) &&
          usable(body->angular_momentum, 3) && usable(&body->still, 1) && body->still >= 0 && usable(&body->fixed, 1) &&
-         body->fixed >= 0 && (body->asleep & ~1) == 0 && (body->held & ~1) == 0 && body->bed >= 0 &&
-         body->bed < header->beds;
+         body->fixed >= 0 && usable(body->fixed_position, 3) && usable(body->fixed_orientation, 4) &&
+         (body->asleep & ~1) == 0 && (body->held & ~1) == 0 && body->bed >= 0 && body->bed < header->beds;
 }
 
 static int sound_manifold(const SavedManifold *manifold, const Header *header) {
@@ -135,7 +145,8 @@ static int sound(const World *world, const Header *header, const char *bytes, si
     for (int k = 0; k < manifold.count; k++) {
       SavedContact contact;
       at = take(at, &contact, sizeof contact);
-      if (!usable(&contact.normal_impulse, 1) || contact.normal_impulse < 0 || !usable(contact.slip_impulse, 3))
+      if (!usable(&contact.normal_impulse, 1) || contact.normal_impulse < 0 || !usable(contact.slip_impulse, 3) ||
+          !usable(contact.normal, 3) || !usable(contact.arm, 3))
         return 0;
     }
   }
@@ -156,12 +167,15 @@ int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t size) {
     at = take(at, &saved, sizeof saved);
     Body *body = &world->bodies[i];
     const double *p = saved.position, *q = saved.orientation, *v = saved.velocity, *l = saved.angular_momentum;
+    const double *there = saved.fixed_position, *turned = saved.fixed_orientation;
     body->position = vec(p[0], p[1], p[2]);
     body->orientation = (Quat){q[0], q[1], q[2], q[3]};
     body->velocity = vec(v[0], v[1], v[2]);
     body->angular_momentum = vec(l[0], l[1], l[2]);
     body->still = saved.still;
     body->fixed = saved.fixed;
+    body->fixed_position = vec(there[0], there[1], there[2]);
+    body->fixed_orientation = (Quat){turned[0], turned[1], turned[2], turned[3]};
     body->asleep = saved.asleep;
     body->held = saved.held;
     body->bed = saved.bed;
@@ -181,10 +195,12 @@ int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t size) {
       at = take(at, &point, sizeof point);
       Contact *contact = &now->contacts[now->count++];
       memset(contact, 0, sizeof *contact);
-      const double *s = point.slip_impulse;
+      const double *s = point.slip_impulse, *n = point.normal, *arm = point.arm;
       contact->feature = point.feature;
       contact->normal_impulse = point.normal_impulse;
       contact->slip_impulse = vec(s[0], s[1], s[2]);
+      contact->normal = vec(n[0], n[1], n[2]);
+      contact->arm = vec(arm[0], arm[1], arm[2]);
       contact->body = saved.body;
       contact->other = saved.other;
       contact->gap = INFINITY; /* until the next substep finds it */

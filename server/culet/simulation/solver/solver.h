@@ -15,6 +15,8 @@
 #define MARGIN 1e-3
 /* R of the smaller stone. Overlap that is left as it is: pushing it out would make contacts come and go. */
 #define SLOP 1e-5
+/* Of the smaller inradius. Nearer to each other, two points of a pair are taken for one. */
+#define SAME 0.1
 
 typedef struct {
   int vertex_count, face_count, edge_count;
@@ -46,7 +48,9 @@ typedef struct {
   int asleep, held;
   int32_t bed;  /* what fell asleep together, or onto what slept, wakes together */
   double still; /* s, since when it hardly moves */
-  double fixed; /* s, since when it does not move at all */
+  double fixed; /* s, since when it stays where it was then */
+  Vec3 fixed_position;
+  Quat fixed_orientation;
 } Body;
 
 /* One point where a body touches, or is about to touch, a surface or another body. Impulses are on `body`; `other` gets
@@ -121,7 +125,8 @@ typedef struct {
   Vec3 vertices[CULET_MAX_VERTICES];
   Vec3 face[MAX_EDGES], other_face[MAX_EDGES];
   Vec3 polygon[MAX_CORNERS], clipped[MAX_CORNERS];
-  uint32_t names[MAX_CORNERS], clipped_names[MAX_CORNERS];
+  uint32_t names[MAX_CORNERS], clipped_names[MAX_CORNERS]; /* of the corners */
+  uint32_t sides[MAX_CORNERS], clipped_sides[MAX_CORNERS]; /* that begin there */
   PairPoint points[MAX_CORNERS + 1];
 } PairRoom;
 
@@ -160,7 +165,8 @@ int hull_lowest_vertex(const Hull *hull, Vec3 direction);
 static inline Vec3 hull_vertex(const Hull *hull, int i) { return vec(hull->x[i], hull->y[i], hull->z[i]); }
 
 /* separation.c */
-Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, PairRoom *room);
+Axis separation(const Hull *first, const Hull *second, const Mat3 *turn, Vec3 offset, double enough, double favour,
+                PairRoom *room);
 
 /* manifold.c */
 int pair_points(World *world, int one, int other, double margin, Vec3 *normal);
@@ -182,6 +188,7 @@ void limit_energy(World *world, double time);
 /* rotation.c */
 void refresh(Body *body);
 Vec3 angular_momentum_of(const Body *body, Vec3 spin);
+double farthest_moved(const Body *body, Vec3 turn);
 void rotate_freely(Body *body, double time);
 
 /* motion.c */

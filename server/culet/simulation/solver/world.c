@@ -192,17 +192,6 @@ static int substeps_of(const World *world, double time) {
   return needed < MAX_SUBSTEPS ? (int)ceil(needed) : MAX_SUBSTEPS;
 }
 
-/* How fast the spin moves any point of the hull now, R/s: of a needle that spins about its length, hardly. */
-static double turning_speed(const Body *body) {
-  Vec3 spin = transposed_times(&body->axes, body->spin);
-  double most = 0;
-  for (int i = 0; i < body->hull.vertex_count; i++) {
-    Vec3 moved = cross(spin, hull_vertex(&body->hull, i));
-    most = larger(most, dot(moved, moved));
-  }
-  return sqrt(most);
-}
-
 /* How much of the time two bodies may go on before they are so near that where they touch is known: conservative
  * advancement (Mirtich 1996, "Impulse-based dynamic simulation"). All of it for those that do not come nearer by as much
  * as they are thick, for which contacts ahead are exact enough, and for those that go apart along the axis that separates
@@ -212,13 +201,13 @@ static double until_near(World *world, const Body *a, const Body *b, double time
   Vec3 velocity = sub(a->velocity, b->velocity), apart = sub(b->position, a->position);
   double speed = length(velocity);
   if ((speed + length(a->spin) * a->size + length(b->spin) * b->size) * time <= PACE * thick) return time;
-  double turning = turning_speed(a) + turning_speed(b), way = (speed + turning) * time;
+  double turning = farthest_moved(a, a->spin) + farthest_moved(b, b->spin), way = (speed + turning) * time;
   if (speed + turning <= world->law.gravity * time) return time; /* it is gravity that moves them in this substep */
   if (way <= PACE * thick || length(apart) > reach + way) return time;
   Mat3 turn;
   Vec3 offset;
   pair_pose(a, b, &turn, &offset);
-  Axis axis = separation(&a->hull, &b->hull, &turn, offset, way, world->room);
+  Axis axis = separation(&a->hull, &b->hull, &turn, offset, way, 0, world->room);
   if (axis.distance > way) return time;
   double closing = dot(velocity, times(&a->axes, axis.normal)) + turning;
   if (closing <= 0) return time;
@@ -301,7 +290,7 @@ double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, dou
   Mat3 turn;
   Vec3 offset;
   pair_pose(a, b, &turn, &offset);
-  Axis best = separation(&a->hull, &b->hull, &turn, offset, enough, world->room);
+  Axis best = separation(&a->hull, &b->hull, &turn, offset, enough, 0, world->room);
   Vec3 along = times(&a->axes, best.normal);
   axis[0] = along.x, axis[1] = along.y, axis[2] = along.z;
   return best.distance;

@@ -16,7 +16,7 @@ from culet.simulation.rigid_body.state import Triple
 from culet.simulation.rigid_body.surfaces import FLOOR, WALLS, Surface
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
-from culet.study.contacts.worlds import BOWL, Course, law, triple, turned, watch
+from culet.study.contacts.worlds import BOWL, Course, law, momenta, triple, turned, watch
 from culet.study.solids import ball, box, brilliant, tetrahedron
 
 OVERLAP = 1e-3
@@ -201,6 +201,34 @@ def leaving_speed(case: str) -> Finding:
     moving.step()
     speed = max(math.hypot(*state.velocity) for state in moving.state.bodies)
     return Finding(f"{case}: speed after a step", speed, moving.law.gravity * moving.law.time_step * (1 + 1e-9), "R/s")
+
+
+SPINNING = {
+    "needles 1000 : 1": (box(1, 1e-3, 1e-3), 5e-4),
+    "needles 20 : 1": (box(1, 0.05, 0.05), 0.05),
+    "wafers 20 : 1": (box(1, 0.05, 1), 0.05),
+    "brilliants": (brilliant, 0.3),
+}
+"""Two of them, and how far their centres of mass are from each other, R."""
+
+
+def spinning_starts(seeds: Sequence[int] = range(20)) -> Iterator[Finding]:
+    """Of two that start in each other and spin at some 15 rad/s, without gravity: the worst until they are apart."""
+    for kind, (shape, way) in SPINNING.items():
+        made, rise, deepest, impulse = shape(), 0.0, -math.inf, 0.0
+        for seed in seeds:
+            rng = np.random.default_rng(seed)
+            places = {"one": (0.0, 0.0, 0.0), "other": (0.0, way, 0.0)}
+            stones = [
+                Body(name, made, at, turned(rng), spin=triple(15 * rng.normal(size=3))) for name, at in places.items()
+            ]
+            moving = World(stones, (), law(gravity=0))
+            course = watch(moving, 0.5, every=60)
+            rise, deepest = max(rise, course.rise / course.energy), max(deepest, course.final)
+            impulse = max(impulse, float(np.linalg.norm(momenta(moving)[0])))
+        yield Finding(f"spinning {kind} that start in each other, rise of energy, relative", rise, RISE)
+        yield Finding(f"spinning {kind} that start in each other, momentum, R/s", impulse, 1e-12)
+        yield Finding(f"spinning {kind} that start in each other, overlap after 0.5 s", deepest, 2e-5, "R")
 
 
 def findings() -> Iterator[Finding]:

@@ -1,9 +1,10 @@
-"""Heaps of brilliants in a bowl of three walls: overlaps, energy, sleep, and what they cost."""
+"""Heaps of stones in a bowl of three walls: overlaps, energy, sleep, and what they cost."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from time import thread_time
 
 import numpy as np
@@ -13,13 +14,22 @@ from culet.simulation.bodies import Body
 from culet.simulation.world import World
 from culet.study.contacts.finding import Finding
 from culet.study.contacts.worlds import BOWL, G, advance, law, overlap, triple, turned
-from culet.study.solids import brilliant
+from culet.study.solids import box, brilliant
 
 SEEDS = (1, 2, 3, 4, 5)
 DEEPEST = {12: 1e-3, 32: 2e-3, 64: 5e-3}
 """R, at any time; by the number of stones."""
 ASLEEP = {12: 14.0, 32: 15.0, 64: 20.0}
 """s, the latest."""
+THIN = {
+    "needles 20 : 1": box(1, 0.05, 0.05),
+    "wafers 20 : 1": box(1, 0.05, 1),
+    "needles 1000 : 1": box(1, 1e-3, 1e-3),
+    "wafers 1000 : 1": box(1, 1e-3, 1),
+}
+THIN_HEAPS = (*((kind, 12) for kind in THIN), ("needles 20 : 1", 32), ("wafers 20 : 1", 32))
+THIN_ASLEEP = 25.0
+"""s, the latest: what leans waits until it is clear that it does not fall."""
 COST = {12: 2.0, 32: 6.0, 64: 14.0}
 """Of the dearest quarter of the steps, in units of what one stone in contact costs by the solver of one."""
 
@@ -42,28 +52,62 @@ def heap(count: int, seed: int, shape: Shape | None = None) -> World:
     return World(scattered(count, shape or brilliant(), seed), BOWL, law(rolling_resistance=0.02))
 
 
+@dataclass(frozen=True)
+class _Fall:
+    """What has come of a heap."""
+
+    ever: float
+    """Overlap at any time, R."""
+    settled: float
+    """Overlap at rest, R."""
+    rise: float
+    """Of the energy above the lowest before, mass R^2/s^2."""
+    energy: float
+    """At the start."""
+    asleep_after: float
+    """s; where some are awake still, as long as it was looked at."""
+    drift: float
+    """Of any in the second after that, R."""
+
+
+def _fall(moving: World, patience: float) -> _Fall:
+    start = lowest = moving.energy()
+    ever = rise = 0.0
+    while not moving.settled and moving.state.time < patience:
+        moving.step()
+        energy = moving.energy()
+        rise, lowest = max(rise, energy - lowest), min(lowest, energy)
+        if moving.state.step % 10 == 0:
+            ever = max(ever, overlap(moving))
+    settled, asleep_after = overlap(moving), moving.state.time
+    before = [state.position for state in moving.state.bodies]
+    advance(moving, 1)
+    drift = max(math.dist(a, b.position) for a, b in zip(before, moving.state.bodies, strict=True))
+    return _Fall(max(ever, settled), settled, rise, start, asleep_after, drift)
+
+
 def heaps(count: int, seeds: tuple[int, ...] = SEEDS) -> Iterator[Finding]:
     """The worst of some heaps of so many."""
-    ever = settled = rise = latest = drift = -math.inf
-    for seed in seeds:
-        moving = heap(count, seed)
-        lowest = moving.energy()
-        while not moving.settled and moving.state.time < ASLEEP[count] + 10:
-            moving.step()
-            energy = moving.energy()
-            rise, lowest = max(rise, energy - lowest), min(lowest, energy)
-            if moving.state.step % 10 == 0:
-                ever = max(ever, overlap(moving))
-        settled, latest = max(settled, overlap(moving)), max(latest, moving.state.time)
-        before = [state.position for state in moving.state.bodies]
-        advance(moving, 1)
-        drift = max(drift, *(math.dist(a, b.position) for a, b in zip(before, moving.state.bodies, strict=True)))
+    falls = [_fall(heap(count, seed), ASLEEP[count] + 10) for seed in seeds]
     name = f"heaps of {count}"
-    yield Finding(f"{name}, overlap at any time", max(ever, settled), DEEPEST[count], "R")
-    yield Finding(f"{name}, overlap at rest", settled, 2e-5, "R")
-    yield Finding(f"{name}, rise of energy", rise / G, 1e-5, "m g R")
-    yield Finding(f"{name}, all asleep after", latest, ASLEEP[count], "s")
-    yield Finding(f"{name}, drift asleep", drift, 0, "R")
+    yield Finding(f"{name}, overlap at any time", max(fall.ever for fall in falls), DEEPEST[count], "R")
+    yield Finding(f"{name}, overlap at rest", max(fall.settled for fall in falls), 2e-5, "R")
+    yield Finding(f"{name}, rise of energy", max(fall.rise for fall in falls) / G, 1e-5, "m g R")
+    yield Finding(f"{name}, all asleep after", max(fall.asleep_after for fall in falls), ASLEEP[count], "s")
+    yield Finding(f"{name}, drift asleep", max(fall.drift for fall in falls), 0, "R")
+
+
+def thin_heaps(kind: str, count: int, seeds: tuple[int, ...] = SEEDS) -> Iterator[Finding]:
+    """The worst of some heaps of so many needles or wafers, held to what extremes are held to."""
+    shape = THIN[kind]()
+    falls = [_fall(heap(count, seed, shape), THIN_ASLEEP + 5) for seed in seeds]
+    name = f"heaps of {count} {kind}"
+    yield Finding(f"{name}, overlap at any time", max(fall.ever for fall in falls), 1e-3, "R")
+    yield Finding(f"{name}, overlap at rest", max(fall.settled for fall in falls), 2e-5, "R")
+    rise = max(fall.rise / fall.energy for fall in falls)
+    yield Finding(f"{name}, rise of energy, of that at the start", rise, 1e-5)
+    yield Finding(f"{name}, all asleep after", max(fall.asleep_after for fall in falls), THIN_ASLEEP, "s")
+    yield Finding(f"{name}, drift asleep", max(fall.drift for fall in falls), 0, "R")
 
 
 def cost_of_one(seeds: tuple[int, ...] = (0, 1, 2)) -> float:

@@ -34,11 +34,15 @@ def trials(*, quick: bool) -> dict[str, Trial]:
         "one stone": partial(one_stone.findings, quick=quick),
         "pairs": pairs.findings,
         "extremes": extreme.findings,
+        "starts in each other": extreme.spinning_starts,
     }
     for count in (12,) if quick else (12, 32, 64):
         found[f"cost of {count}"] = partial(heaps.costs, count)
         for seed in heaps.SEEDS[: 1 if quick else None]:
             found[f"heap of {count}, seed {seed}"] = partial(heaps.heaps, count, (seed,))
+    for kind, count in heaps.THIN_HEAPS[: 1 if quick else None]:
+        for seed in heaps.SEEDS[: 1 if quick else None]:
+            found[f"heap of {count} {kind}, seed {seed}"] = partial(heaps.thin_heaps, kind, count, (seed,))
     return found
 
 
