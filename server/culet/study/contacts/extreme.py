@@ -215,7 +215,7 @@ SPINNING = {
 def spinning_starts(seeds: Sequence[int] = range(20)) -> Iterator[Finding]:
     """Of two that start in each other and spin at some 15 rad/s, without gravity: the worst until they are apart."""
     for kind, (shape, way) in SPINNING.items():
-        made, rise, deepest, impulse = shape(), 0.0, -math.inf, 0.0
+        made, rise, deepest, impulse = shape(), 0.0, 0.0, 0.0
         for seed in seeds:
             rng = np.random.default_rng(seed)
             places = {"one": (0.0, 0.0, 0.0), "other": (0.0, way, 0.0)}
