@@ -701,7 +701,9 @@ async def test_waiting_for_a_session_is_not_counted_as_work_for_a_frame(
             world.spend(1.5)
             return await super().acquire()
 
-    def rendered(_: Governor, _plan: Plan, _seconds: float, overhead: float, _rate: float, _share: float) -> None:
+    def rendered(
+        _: Governor, _plan: Plan, _seconds: float, overhead: float, _rate: float, _share: float, **_how: bool
+    ) -> None:
         overheads.append(overhead)
 
     monkeypatch.setattr(Governor, "rendered", rendered)

@@ -5,7 +5,7 @@ import pytest
 from culet.engine.painting import schedule
 from culet.engine.painting.frame_sender import REPEAT_SECONDS, UNSENT_FRAMES
 from culet.engine.painting.frame_work import FrameWork, WorkKind
-from culet.engine.painting.live_picture import ANSWER_PART, REST_WEIGHT, LivePicture, PictureState
+from culet.engine.painting.live_picture import ANSWER_PART, REST_WEIGHT, STEERED_SECONDS, LivePicture, PictureState
 from culet.engine.painting.shares import Shares
 from culet.engine.painting.still import STILLS_WEIGHT, Still, StillQueue
 from culet.engine.session.session import Session
@@ -116,6 +116,17 @@ def test_what_moves_by_itself_is_no_input() -> None:
     drawn(picture, 5.1)
     assert not picture.unanswered
     assert picture.due_at() == pytest.approx(5.2)
+
+
+def test_somebody_steers_from_an_input_s_frame_on_until_there_was_none_for_a_while() -> None:
+    picture = falling_since(5.0)
+    assert not picture.steered(5.05)
+    moved(picture, 1)
+    drawn(picture, 5.07)
+    assert picture.steered(5.08)
+    drawn(picture, 5.17)  # of what moves by itself
+    assert picture.steered(5.07 + 0.9 * STEERED_SECONDS)
+    assert not picture.steered(5.07 + STEERED_SECONDS)
 
 
 def test_of_two_frames_due_the_one_begun_longest_ago_goes_first() -> None:

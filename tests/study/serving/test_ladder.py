@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import pairwise, product
 
 import numpy as np
+import pytest
 
 from culet.engine.governing.governor import Setting
 from culet.engine.governing.measured_errors import SettingErrors
-from culet.study.serving.ladder import BOUNCES, CUTOFFS, SCALES, MeasuredSetting, errors_of, ladder_of
+from culet.study.serving.ladder import BOUNCES, CUTOFFS, SCALES, MeasuredSetting, errors_of, ladder_of, smoothed
 
 
 def error(scale: float, cutoff: float, bounces: int) -> float:
@@ -41,3 +42,15 @@ def test_the_engine_reads_the_errors_as_they_were_measured() -> None:
         place = each.setting.scale, each.setting.cutoff, each.setting.max_bounces
         assert read.shown(*place) == round(each.setting.error, 4)
         assert read.radiance(*place) == round(each.radiance_error, 4)
+
+
+def test_a_time_s_noise_is_smoothed_by_what_other_sizes_took() -> None:
+    chance = np.random.default_rng(1)
+    settings = list(product(SCALES, CUTOFFS, BOUNCES))
+    true = [scale**1.9 * (0.01 / cutoff) ** 0.2 * (bounces / 256) ** 0.1 for scale, cutoff, bounces in settings]
+    exact = smoothed(settings, true)
+    assert exact == pytest.approx(true, rel=1e-9)
+    noisy = smoothed(
+        settings, [seconds * factor for seconds, factor in zip(true, chance.lognormal(0, 0.05, len(true)), strict=True)]
+    )
+    assert max(abs(np.log(np.array(noisy) / true))) < 0.05

@@ -22,22 +22,26 @@ from culet_protocol.messages import Balance, balance_rate
 
 SHARE = 0.9
 """Of a frame's time that the render thread may work for it, at most;"""
-RESERVE_SECONDS = 0.0045
+RESERVE_SECONDS = 0.004
 """but so much less than all of it: encoding, the event loop and the rest of the machine take no less time of a short
 frame."""
 SHARE_OF_MANY = 0.8
 """Where others draw too, whose frames are encoded beside this one's."""
+STEERED = 0.75
+"""Part of either that is filled while somebody steers: what an input changes waits for the frame before it, and is then
+drawn, encoded and decoded, all of which takes as long as a frame is dear."""
 LEAST_SHARE = 0.3
 """Of a frame's time that rendering gets, however long simulation and tone mapping take."""
-SPARE = 0.75
-"""A better setting must be expected to take less than this part of the time before it is tried."""
+SPARE = 0.8
+"""A better setting must be expected to take less than this part of the time before it is tried: of a fall's frames nine
+of ten differ by less than a tenth from the one before."""
 PATIENCE = 12
 """Frames with time to spare before a better setting is tried: 0.4 s at 30 frames/s, or quality would flicker."""
 TRIAL = 60
 """Frames for which a better setting must hold: if it does not, twice as many frames pass before the next try."""
 MOST_PATIENCE = 4 * PATIENCE
 """Until one has held, and the failures are forgotten."""
-MEMORY = 0.2
+MEMORY = 0.15
 """Weight of the latest frame in the expected cost,"""
 LATE = 1.5
 """but one that took so many frames' time (50 ms at 30 frames/s) counts in full: the next must not be as late."""
@@ -180,7 +184,14 @@ class Governor:
         return Plan(simplified, size, wanted, setting, error)
 
     def rested(
-        self, scene: Scene, size: tuple[int, int], seconds: float, frames_per_second: float, share: float = 1.0
+        self,
+        scene: Scene,
+        size: tuple[int, int],
+        seconds: float,
+        frames_per_second: float,
+        share: float = 1.0,
+        *,
+        steered: bool = False,
     ) -> None:
         """The first sample of a picture in full took that long to render: as long as no moving frame has told, it says
         what they will take. Without, the first one would be drawn in the dearest setting, however late it comes.
@@ -192,7 +203,7 @@ class Governor:
         optics = scene.optics
         dearer = bands_seen(scene, 1) / MOVING_BANDS * (POLARISED_COST if optics.polarised else 1.0)
         self._unit = seconds / (size[0] * size[1] * dearer * self._ladder[0].pixel_cost)
-        self._adapt(size, frames_per_second, share)
+        self._adapt(size, frames_per_second, share, steered=steered)
 
     def has_cheaper(self, plan: Plan) -> bool:
         """Whether frames of that size can be cheaper than planned."""
@@ -200,10 +211,17 @@ class Governor:
         return plan.setting is not None and _cost(plan.setting, plan.wanted) > _cost(cheapest, plan.wanted)
 
     def rendered(
-        self, plan: Plan, seconds: float, overhead: float, frames_per_second: float, share: float = 1.0
+        self,
+        plan: Plan,
+        seconds: float,
+        overhead: float,
+        frames_per_second: float,
+        share: float = 1.0,
+        *,
+        steered: bool = False,
     ) -> None:
         """A moving frame took that long to render, and that long besides; the next ones are to come at that rate, with
-        that share of the render thread's time.
+        that share of the render thread's time, and `steered` by somebody.
 
         Chooses the next setting.
         """
@@ -217,17 +235,18 @@ class Governor:
             self._unit = unit
         self._unit += MEMORY * (unit - self._unit)
         self._overhead += MEMORY * (overhead - self._overhead)
-        self._adapt(plan.wanted, frames_per_second, share)
+        self._adapt(plan.wanted, frames_per_second, share, steered=steered)
 
-    def _adapt(self, wanted: tuple[int, int], frames_per_second: float, share: float) -> None:
+    def _adapt(self, wanted: tuple[int, int], frames_per_second: float, share: float, *, steered: bool) -> None:
         """Setting and size to what is expected."""
-        self._choose(wanted, self._budget(frames_per_second, share))
+        self._choose(wanted, self._budget(frames_per_second, share, steered=steered))
         self._shrink(wanted, self._budget(_least_rate(frames_per_second, share), share), share)
 
-    def _budget(self, frames_per_second: float, share: float) -> float:
+    def _budget(self, frames_per_second: float, share: float, *, steered: bool = False) -> float:
         """For rendering a frame."""
         interval = share / frames_per_second
         worked = work_share(frames_per_second) if share >= 1 else SHARE_OF_MANY
+        worked *= STEERED if steered else 1
         return max(worked * interval - self._overhead, LEAST_SHARE * interval)
 
     def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
@@ -291,8 +310,8 @@ class Governor:
 
 
 def work_share(frames_per_second: float) -> float:
-    """Of a frame's time that the render thread may work for it at that rate, if nobody else draws: 0.865 at 30 a
-    second, 0.73 at 60."""
+    """Of a frame's time that the render thread may work for it at that rate, if nobody else draws: 0.88 at 30 a
+    second, 0.76 at 60."""
     return max(LEAST_SHARE, min(SHARE, 1 - RESERVE_SECONDS * frames_per_second))
 
 

@@ -169,11 +169,11 @@ class LivePainter:
         else:
             self._tally.counters.frames_rendered += 1
         governor, seconds = live.quality.governor, work.picture.seconds
-        asked = live.frames_per_second, self._share_of(live)
+        asked, steered = (live.frames_per_second, self._share_of(live)), live.steered(self._now())
         if work.plan is not None:
-            governor.rendered(work.plan, seconds, work.spent - seconds, *asked)
+            governor.rendered(work.plan, seconds, work.spent - seconds, *asked, steered=steered)
         elif work.first_seconds is not None:
-            governor.rested(work.shown.scene, work.wanted, work.first_seconds, *asked)
+            governor.rested(work.shown.scene, work.wanted, work.first_seconds, *asked, steered=steered)
         live.outgoing.lesser.room = live.quality.room(live.balance, live.outgoing.lesser.allowance)
         self._sender.publish(live.session, live.outgoing, live.quality.encoded, work.frame, work.begun_at)
 

@@ -46,6 +46,9 @@ faster, and are answered at the rate that is held: there would be twice as many 
 ANSWER_FRAMES = 1.5
 ANSWER_PART = 0.5
 
+STEERED_SECONDS = 1.0
+"""After an input was answered last, for which somebody counts as steering: keys are pressed a few times a second."""
+
 STALE_SECONDS = 0.25
 """A reduced frame that takes longer is given up for something newer, unless the frame before was given up too."""
 FIRST_LOOK_SECONDS = 0.5
@@ -184,6 +187,10 @@ class LivePicture:
     def answers_early(self, now: float) -> bool:
         """Whether a frame begun now comes before its turn, for what somebody did."""
         return self.unanswered and now < self.begun_at + 1 / self.frames_per_second
+
+    def steered(self, now: float) -> bool:
+        """Whether somebody is at it: what they do is to be seen soon."""
+        return now - self.answered_at < STEERED_SECONDS
 
     @property
     def unanswered(self) -> bool:

@@ -3,7 +3,8 @@
     python -m culet.study.serving.ladder > server/culet/engine/governing/ladder.json
 
 Each setting draws the legacy default scene at one sample a pixel, as a moving frame is. They take turns, and what
-counts is the processor's time over that of the best setting in the same turn: a busy machine is busy for all of them.
+counts is the least of the processor's times, since other work only ever adds to them, and of those what all sizes
+together say of a cut-off and bounces: 5 % of noise in one of them would put a setting off the frontier.
 The picture is brought to full size as a browser does, and compared, as it is shown and in radiance, with a converged
 one.
 Besides the ladder, the errors of all settings are kept: what is drawn may be a rung at another size.
@@ -13,7 +14,6 @@ from __future__ import annotations
 
 import datetime as dt
 import json
-import statistics
 import sys
 import time
 from dataclasses import asdict, dataclass, replace
@@ -32,7 +32,7 @@ from culet.study.findings.provenance import provenance
 from culet.study.likeness.radiance_error import Image, enlarged, radiance_error
 
 SIZE = 1280, 720
-SCALES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3
+SCALES = 1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65, 0.6, 0.55, 0.5, 0.4, 0.3
 LEAST_SCALE = 0.5
 """Of this size: 640x360, below which the governor does not go. What is smaller follows, for larger pictures."""
 CUTOFFS = 0.01, 0.02, 0.05
@@ -102,18 +102,28 @@ def _frontier(settings: list[Setting], cost: float) -> list[Setting]:
 def _measured(renderer: Renderer, stage: Stage, reference: DevicePicture) -> list[MeasuredSetting]:
     size = reference.width, reference.height
     settings = list(product(SCALES, CUTOFFS, BOUNCES))
-    ratios: list[list[float]] = [[] for _ in settings]
     pictures = [_draw(renderer, stage, size, *setting)[1] for setting in settings]  # which pays for the compiler
-    for _ in range(TURNS):
-        seconds = [_draw(renderer, stage, size, *setting)[0] for setting in settings]
-        for taken, of_setting in zip(seconds, ratios, strict=True):
-            of_setting.append(taken / seconds[0])
+    turns = [[_draw(renderer, stage, size, *setting)[0] for setting in settings] for _ in range(TURNS)]
+    seconds = smoothed(settings, [min(of_setting) for of_setting in zip(*turns, strict=True)])
     truth = reference.linear(), tone_map(reference.linear())
     measured = []
-    for setting, costs, picture in zip(settings, ratios, pictures, strict=True):
+    for setting, taken, picture in zip(settings, seconds, pictures, strict=True):
         radiance, shown = (_error(p, t) for p, t in zip(picture, truth, strict=True))
-        measured.append(MeasuredSetting(Setting(*setting, statistics.median(costs), shown), radiance))
+        measured.append(MeasuredSetting(Setting(*setting, taken / seconds[0], shown), radiance))
     return measured
+
+
+def smoothed(settings: list[tuple[float, float, int]], seconds: list[float]) -> list[float]:
+    """Times of settings (scale, cut-off, bounces) by the law that fits them best (least squares of the logarithms): a
+    pixel takes a time by cut-off and bounces, times a power of the scale, as smaller pictures have less coherent rays.
+    """
+    kinds = sorted({(cutoff, bounces) for _, cutoff, bounces in settings})
+    law = np.zeros((len(settings), len(kinds) + 1))
+    for number, (scale, *kind) in enumerate(settings):
+        law[number, kinds.index((kind[0], int(kind[1])))] = 1
+        law[number, -1] = np.log(scale)
+    found = np.linalg.lstsq(law, np.log(seconds), rcond=None)[0]
+    return [float(value) for value in np.exp(law @ found)]
 
 
 def _draw(
