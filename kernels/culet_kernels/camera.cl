@@ -1,7 +1,7 @@
 // Primary rays of a pinhole camera.
 #ifndef CULET_CAMERA
 #define CULET_CAMERA
-#include "parameters.cl"
+#include "batch.cl"
 #include "vector.cl"
 
 typedef struct {
@@ -10,10 +10,9 @@ typedef struct {
   realL eye;       // where on the ray the eye is: nothing before it is seen
 } primaryL;
 
-// The rays through a packet of pixels; column and row are those of its first pixel, the jitter is within a pixel.
-static inline primaryL primary_rays(__constant const parameters_t *scene, int column, int row, double jitter_x,
-                                    double jitter_y) {
-  const doubleL x = ints_to_double(PACKET_X) + (column + jitter_x), y = ints_to_double(PACKET_Y) + (row + jitter_y);
+// A packet's rays.
+static inline primaryL primary_rays(__constant const parameters_t *scene, const spotsL *spots) {
+  const doubleL x = spots->x, y = spots->y;
   const vec3L foot = vec3(from_double(scene->foot[0] + x * scene->foot_column[0] + y * scene->foot_row[0]),
                           from_double(scene->foot[1] + x * scene->foot_column[1] + y * scene->foot_row[1]),
                           from_double(scene->foot[2] + x * scene->foot_column[2] + y * scene->foot_row[2]));

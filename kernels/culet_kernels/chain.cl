@@ -25,12 +25,11 @@ static inline void take_up(meetingL *met, maskL mask, meetingL other) {
 // Stones in a studio floor: of `glossy` rays, which end at the floor, those that a smooth floor would send to a stone.
 // For them `ray` goes on there, with the floor's reflectance for its weight, and what they showed gives way to it. From
 // sample to sample the floor is tilted a little, which softens what is seen far above it.
-static inline maskL mirrored_in_floor(world_t world, rayL *ray, maskL glossy, double jitter_x, double jitter_y,
-                                      meetingL *met, radianceL *radiance) {
+static inline maskL mirrored_in_floor(world_t world, rayL *ray, maskL glossy, const spotsL *spots, meetingL *met,
+                                      radianceL *radiance) {
   __constant const parameters_t *scene = world.scene;
-  const real tilt_x = scene->floor_roughness * (real)clamp(2 * jitter_x - 1, -1.0, 1.0),
-             tilt_z = scene->floor_roughness * (real)clamp(2 * jitter_y - 1, -1.0, 1.0);
-  const vec3L up = normalise(vec3(splat(tilt_x), splat(1), splat(tilt_z)));
+  const vec3L up =
+      normalise(vec3(scene->floor_roughness * spots->tilt_x, splat(1), scene->floor_roughness * spots->tilt_z));
   const vec3L onward = reflect3(ray->direction, dot3(ray->direction, up), up);
   const maskL heading = glossy & passes_stones(world, ray->origin, onward, splat(0));
   if (!any_lane(heading)) return heading;
@@ -56,14 +55,15 @@ typedef struct {
   int count;
 } candidates_t;
 
-static inline candidates_t candidates_of(world_t world, int column, int row) {
+static inline candidates_t candidates_of(world_t world, batch_t batch, int column, int row) {
   candidates_t found;
   found.count = 0;
 #if STONES == MANY
+  const int first_column = column >> batch.level, first_row = row >> batch.level, side = TILE >> batch.level;
   for (int number = 0; number < world.scene->stones; number++) {
     __constant const stone_t *stone = world.stones + number;
-    const int across = stone->columns[0] < column + TILE && stone->columns[1] >= column,
-              down = stone->rows[0] < row + TILE && stone->rows[1] >= row;
+    const int across = stone->columns[0] < first_column + side && stone->columns[1] >= first_column,
+              down = stone->rows[0] < first_row + side && stone->rows[1] >= first_row;
     if (across && down) found.stone[found.count++] = number;
   }
 #endif
@@ -87,31 +87,34 @@ typedef struct {
   tile_t tile;
   hits_t hits;
   pools_t pools;
-  int number; // of the tile in the picture
-  int packet; // of its pixels, the first that was not looked at
-  int chain;  // that is being followed, the first of a group of them
-  int hit;    // the first whose chain has not begun
+  spectrum_t spectrum; // of the chain that is being followed
+  int number;          // of the tile in the picture
+  int packet;          // of its pixels, the first that was not looked at
+  int chain;           // that is being followed, the first of a group of them
+  int hit;             // the first whose chain has not begun
 } chain_work_t;
 
 // What each pixel of the tile sees without the stone, directly or by way of mirrors, and where its ray meets a stone.
-static inline void see(world_t world, chain_work_t *work, int column, int row, double jitter_x, double jitter_y,
-                       int *steps) {
+static inline void see(world_t world, chain_work_t *work, batch_t batch, int column, int row, int *steps) {
   tile_t *tile = &work->tile;
   hits_t *hits = &work->hits;
   const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
   const int has_backdrop = DECIDED(BACKDROP, world.scene->has_backdrop);
-  const int columns = shown(column, world.scene->width), rows = shown(row, world.scene->height);
-  const candidates_t candidates = candidates_of(world, column, row);
+  const int columns = shown(batch, column, world.scene->width), rows = shown(batch, row, world.scene->height);
+  const candidates_t candidates = candidates_of(world, batch, column, row);
+  spotsL spots;
+  int known = -1;
   for (; work->packet < PACKETS && *steps > 0; work->packet++) {
     const int x = work->packet % PACKETS_ACROSS * PACKET_WIDTH, y = work->packet / PACKETS_ACROSS * PACKET_HEIGHT;
     if (x >= columns || y >= rows) continue;
     --*steps;
-    const primaryL primary = primary_rays(world.scene, column + x, row + y, jitter_x, jitter_y);
+    move_spots(&spots, batch, column + x, row + y, &known);
+    const primaryL primary = primary_rays(world.scene, &spots);
     rayL ray = {primary.origin, primary.direction, primary.eye, splat(1), unpolarised(primary.direction)};
 #if RECORDED
     ray.event = NOWHERE;
 #endif
-    const maskL all = in_picture(world.scene, column + x, row + y), none = all & !all;
+    const maskL all = in_picture(world.scene, &spots), none = all & !all;
     const int host = world.scene->camera_stone;
     meetingL met = from_inside(world, host, along(primary.origin, primary.eye, primary.direction), primary.direction);
     met.hit = camera_inside ? all : none;
@@ -121,7 +124,7 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
       heading = open & passes_stones(world, ray.origin, ray.direction, ray.start);
     bool direct = true;
     radianceL radiance = black(), behind = black();
-    if (has_backdrop) behind = backdrop_at(world.scene, column + x, row + y, jitter_x, jitter_y, all_channels());
+    if (has_backdrop) behind = backdrop_at(world.scene, &spots, all_channels());
     realL cut = splat(0);
     while (any_lane(open)) {
       if (any_lane(heading)) {
@@ -139,13 +142,13 @@ static inline void see(world_t world, chain_work_t *work, int column, int row, d
           gather(world, &ray, splat(1), BY_CAMERA, has_backdrop ? &behind : 0, &heading, &glossy, &cut, all_channels());
       EACH (k, 3) radiance.channel[k] += seen.channel[k];
       if (GEOMETRY != EMPTY && world.scene->stones > 0 && any_lane(glossy))
-        mirrored_in_floor(world, &ray, glossy, jitter_x, jitter_y, &met, &radiance);
+        mirrored_in_floor(world, &ray, glossy, &spots, &met, &radiance);
       open = heading;
     }
     const int first = first_pixel(x, y);
     EACH (k, 3) begin_sums(radiance.channel[k], tile->radiance[k] + first);
     store_lanes(3 * cut, tile->cut + first);
-    const intL tag = first + LANE_INDEX + (groups_of(x, y, world.scene->sample) << PIXEL_BITS);
+    const intL tag = first + LANE_INDEX + (groups_of(&spots, world.scene->sample) << PIXEL_BITS);
     if (any_lane(met.hit)) note(world, hits, met, ray, tag);
   }
 }
@@ -192,16 +195,16 @@ static inline void begin_chain_tile(chain_work_t *work, int number) {
 
 // Goes on with a tile for as many steps as are left, each of which takes some tenths of a microsecond to some
 // microseconds; returns whether the tile is done.
-static inline bool advance_chain_tile(world_t world, chain_work_t *work, int column, int row, double jitter_x,
-                                      double jitter_y, int *steps) {
+static inline bool advance_chain_tile(world_t world, chain_work_t *work, batch_t batch, int column, int row,
+                                      int *steps) {
   __constant const parameters_t *scene = world.scene;
-  see(world, work, column, row, jitter_x, jitter_y, steps);
+  see(world, work, batch, column, row, steps);
   if (work->packet < PACKETS) return false;
   if (GEOMETRY == EMPTY || work->hits.count == 0) return true;
   fill(&work->hits);
   while (work->chain < scene->chains) {
     const uint seed = (((uint)scene->sample * 256 + work->chain) * 8191 + row / TILE) * 8191 + column / TILE;
-    const task_t task = task_of(world, work->chain, seed);
+    const task_t task = task_of(world, batch.level, work->chain, seed, &work->spectrum);
     trace(world, work, task, steps);
     if (*steps <= 0) return false;
     work->chain += GROUPS;

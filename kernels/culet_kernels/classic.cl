@@ -129,21 +129,23 @@ static inline void begin_classic_tile(classic_work_t *work, int number) {
 }
 
 // Goes on with a tile for as many steps as are left, each of them a packet's meeting; returns whether the tile is done.
-static inline bool advance_classic_tile(world_t world, classic_work_t *work, int column, int row, double jitter_x,
-                                        double jitter_y, int *steps) {
+static inline bool advance_classic_tile(world_t world, classic_work_t *work, batch_t batch, int column, int row,
+                                        int *steps) {
   __constant const parameters_t *scene = world.scene;
   tile_t *tile = &work->tile;
-  const int columns = shown(column, scene->width), rows = shown(row, scene->height);
+  const int columns = shown(batch, column, scene->width), rows = shown(batch, row, scene->height);
+  spotsL spots;
+  int known = -1;
   for (; work->packet < PACKETS; work->packet++, work->channel = 0) {
     const int x = work->packet % PACKETS_ACROSS * PACKET_WIDTH, y = work->packet / PACKETS_ACROSS * PACKET_HEIGHT;
     if (x >= columns || y >= rows) continue;
     const int first = first_pixel(x, y);
+    move_spots(&spots, batch, column + x, row + y, &known);
     for (; work->channel < 3; work->channel++, work->path.meetings = 0) {
       if (work->path.meetings == 0)
-        begin_path(world, &work->path, primary_rays(scene, column + x, row + y, jitter_x, jitter_y),
-                   in_picture(scene, column + x, row + y));
+        begin_path(world, &work->path, primary_rays(scene, &spots), in_picture(scene, &spots));
       const channels_t channels = {work->channel, 1};
-      const radianceL behind = backdrop_at(scene, column + x, row + y, jitter_x, jitter_y, channels);
+      const radianceL behind = backdrop_at(scene, &spots, channels);
       if (!advance_path(world, &work->path, work->channel, DECIDED(BACKDROP, scene->has_backdrop) ? &behind : 0,
                         &tile->segments, steps))
         return false;

@@ -111,6 +111,7 @@ static inline intL blend_ints_by(maskL mask, intL yes, intL no) {
 
 #if LANES == 1
 typedef double doubleL;
+static inline doubleL load_doubles(const double *from) { return *from; }
 static inline doubleL to_double(realL value) { return value; }
 static inline realL ints_to_real(intL value) { return (real)value; }
 static inline intL reals_to_int(realL value) { return (int)value; }
@@ -119,6 +120,7 @@ static inline doubleL ints_to_double(intL value) { return value; }
 static inline realL from_double(doubleL value) { return (real)value; }
 #else
 typedef JOIN(double, LANES) doubleL;
+static inline doubleL load_doubles(const double *from) { return JOIN(vload, LANES)(0, from); }
 static inline doubleL to_double(realL value) { return JOIN(convert_double, LANES)(value); }
 static inline realL ints_to_real(intL value) { return JOIN(JOIN(convert_, REAL), LANES)(value); }
 static inline intL reals_to_int(realL value) { return JOIN(convert_int, LANES)(value); }
@@ -145,7 +147,20 @@ static inline realL gather_lanes(const real *from, intL place) {
 #endif
 }
 
-// The same of numbers of single precision on the device.
+// The same of numbers on the device.
+static inline realL gather_reals(__global const real *from, intL place) {
+#if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
+  return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(real));
+#else
+  int own[LANES];
+  real found[LANES];
+  store_ints(place, own);
+  for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];
+  return load_lanes(found);
+#endif
+}
+
+// The same of numbers of single precision there.
 static inline realL gather_floats(__global const float *from, intL place) {
 #if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
   return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(float));

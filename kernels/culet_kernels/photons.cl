@@ -33,6 +33,7 @@ typedef struct {
   tile_t tile; // of which a photon's place is a pixel, whose cut weight is counted
   pools_t pools;
   int bundle[BATCH];
+  spectrum_t spectrum;
 } photons_t;
 
 typedef struct {
@@ -199,7 +200,7 @@ __kernel void shoot(WORLD_BUFFERS(AS_ARGUMENT) __constant const map_frame_t *fra
   for (int job = first + item; job < last; job += get_global_size(0)) {
     const int number = job / steps % bundle_count, round = job / steps / bundle_count, chain = job % steps * GROUPS;
     __global const bundle_t *bundle = bundles + number;
-    const task_t task = task_of(world, chain, job);
+    const task_t task = task_of(world, 0, chain, job, &photons.spectrum);
     clear_pools(&photons.pools);
     photons.tile.segments = (intL)(0);
     const real flux = CHANNELS == 3 ? (bundle->flux[0] + bundle->flux[1] + bundle->flux[2]) / 3

@@ -15,11 +15,12 @@ typedef chain_work_t work_t;
 // A sample takes as many launches as it needs: each work-item makes `steps` steps, then keeps the tile that it is at in
 // `kept` and ends, so that no launch lasts long, whatever a pixel costs. The next launch goes on where this one ended: the
 // picture is the same to the last bit.
-__kernel void render(WORLD_BUFFERS(AS_ARGUMENT) __global real4 *image, double jitter_x, double jitter_y, int count,
-                     volatile __global uint *progress, int accumulate, __global float *tallies, __global work_t *kept,
-                     int steps) {
+__kernel void render(WORLD_BUFFERS(AS_ARGUMENT) __global real4 *image, __global const double *jitter, int level,
+                     int count, volatile __global uint *progress, int accumulate, __global float *tallies,
+                     __global work_t *kept, int steps) {
   const world_t world = {WORLD_BUFFERS(AS_VALUE)};
-  const int across = tiles_across(scene);
+  const batch_t batch = {jitter, level};
+  const int across = tiles_across(scene, batch);
   volatile __global uint *own = progress + OF_ITEMS + ITEM_NUMBERS * get_global_id(0);
   int left = steps;
   work_t work;
@@ -32,8 +33,8 @@ __kernel void render(WORLD_BUFFERS(AS_ARGUMENT) __global real4 *image, double ji
       begin_tile(&work, number);
     }
     const int tile_column = work.number % across, tile_row = work.number / across;
-    under_way = !advance_tile(world, &work, tile_column * TILE, tile_row * TILE, jitter_x, jitter_y, &left);
-    if (!under_way) write_tile(&work.tile, image, tallies, scene, tile_column, tile_row, accumulate);
+    under_way = !advance_tile(world, &work, batch, tile_column * TILE, tile_row * TILE, &left);
+    if (!under_way) write_tile(&work.tile, batch, image, tallies, scene, tile_column, tile_row, accumulate);
   }
   if (under_way) kept[get_global_id(0)] = work;
   own[UNDER_WAY] = under_way;

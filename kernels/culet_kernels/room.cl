@@ -2,6 +2,7 @@
 // it; a mirror returns four fifths, and shows a little light of its own.
 #ifndef CULET_ROOM
 #define CULET_ROOM
+#include "batch.cl"
 #include "light_map.cl"
 #include "polarisation.cl"
 #include "stones.cl"
@@ -98,9 +99,9 @@ static inline maskL hidden_by_room(world_t world, rayL ray, realL t) {
 }
 
 // What the camera sees in place of the sky, and of a studio floor, at a packet of pixels.
-static inline radianceL backdrop_at(__constant const parameters_t *scene, int column, int row, double jitter_x,
-                                    double jitter_y, channels_t channels) {
-  const realL x = ints_to_real(column + PACKET_X) + (real)jitter_x, y = ints_to_real(row + PACKET_Y) + (real)jitter_y;
+static inline radianceL backdrop_at(__constant const parameters_t *scene, const spotsL *spots, channels_t channels) {
+  const realL x = ints_to_real(spots->column) + from_double(spots->right),
+              y = ints_to_real(spots->row) + from_double(spots->down);
   const realL across = scene->backdrop_scale[0] * (x - scene->backdrop_focus[0]),
               down = scene->backdrop_scale[1] * (y - scene->backdrop_focus[1]);
   const realL part = fmin(sqrt(across * across + down * down), splat(1)), share = part * part * ((real)3 - 2 * part);

@@ -5,21 +5,48 @@
 #include "sky.cl"
 #include "stones.cl"
 
+// Of sampled wavelengths a chain's numbers differ by the group of a pixel and by its sample: they are looked up by the place in its
+// square that a ray is of, and by the group.
+#define CHAIN_NUMBERS ((int)(sizeof(chain_t) / sizeof(real)))
+#define CHAIN_PLACES (SQUARE * SPECTRAL_GROUPS)
+#define COLUMN_OF_SAMPLE CHAIN_NUMBERS // of MANY stones: numbers from its first chain's column to a place's own
+#if SPECTRAL
+typedef struct {
+  real number[CHAIN_NUMBERS + 1][CHAIN_PLACES];
+} spectrum_t;
+#else
+typedef int spectrum_t; // there is none
+#endif
+
 // What all rays of a pool have in common while it is worked on.
 typedef struct {
-  __global const chain_t *chains; // by group of pixels; of MANY stones those of the first
+  __global const chain_t *chains; // by sample of the batch and group of pixels; of MANY stones those of the first
+#if SPECTRAL
+  const spectrum_t *spectrum;     // the same by place
+#endif
 #if STONES == MANY
-  int chain;                      // its number, of each stone's
+  int chain; // its number, of each stone's
 #endif
   int first_channel;
   uint seed; // of chance
 } task_t;
 
-static inline task_t task_of(world_t world, int chain, uint seed) {
+// `spectrum` is to be filled, and has to stay. Of each chain, or each four of them, those of all samples of a batch follow each other.
+static inline task_t task_of(world_t world, int level, int chain, uint seed, spectrum_t *spectrum) {
   task_t task;
-  task.chains = world.chains + chain;
+  const int first = SPECTRAL ? chain << 2 * level : chain;
+  task.chains = world.chains + first;
+#if SPECTRAL
+  for (int place = 0; place < CHAIN_PLACES; place++) {
+    const int of_samples = GROUPS * sample_of(level, place % SQUARE) + place / SQUARE;
+    __global const real *numbers = (__global const real *)(task.chains + of_samples);
+    for (int k = 0; k < CHAIN_NUMBERS; k++) spectrum->number[k][place] = numbers[k];
+    spectrum->number[COLUMN_OF_SAMPLE][place] = CHAIN_COLUMNS * MAX_STONES * of_samples;
+  }
+  task.spectrum = spectrum;
+#endif
 #if STONES == MANY
-  task.chain = chain;
+  task.chain = first;
 #endif
   task.first_channel = CHANNELS == 3 ? 0 : chain;
   task.seed = seed * 0x9e3779b9u;
@@ -34,12 +61,18 @@ static inline channels_t channels_of(task_t task) {
 
 // A quantity of each lane's chain.
 #if SPECTRAL
-#define OF_CHAIN(task, tag, quantity)                                                                                  \
-  by_group(tag, splat((task).chains[0].quantity), splat((task).chains[1].quantity), splat((task).chains[2].quantity),  \
-           splat((task).chains[3].quantity))
-static inline realL by_group(intL tag, realL first, realL second, realL third, realL fourth) {
-  const maskL odd = widen((tag >> PIXEL_BITS & 1) != 0), high = widen((tag >> PIXEL_BITS & 2) != 0);
-  return blend(high, blend(odd, fourth, third), blend(odd, second, first));
+#define OF_CHAIN(task, tag, quantity) by_place(task, tag, (int)(__builtin_offsetof(chain_t, quantity) / sizeof(real)))
+static inline realL by_place(task_t task, intL tag, int number) {
+  const real *numbers = task.spectrum->number[number];
+#if LANES == 16 && AVX512
+  const intL place = (tag & (SQUARE - 1)) | (tag >> (PIXEL_BITS - 4) & SQUARE); // and the lower bit of the group
+  const realL low = __builtin_ia32_vpermi2varps512(load_lanes(numbers), place, load_lanes(numbers + LANES));
+  const realL high =
+      __builtin_ia32_vpermi2varps512(load_lanes(numbers + 2 * LANES), place, load_lanes(numbers + 3 * LANES));
+  return blend(widen((tag & 2 << PIXEL_BITS) != 0), high, low);
+#else
+  return gather_lanes(numbers, (tag & (SQUARE - 1)) | (tag >> (PIXEL_BITS - 4) & (SQUARE * (GROUPS - 1))));
+#endif
 }
 #else
 #define OF_CHAIN(task, tag, quantity) ((task).chains[0].quantity)
@@ -51,13 +84,11 @@ static inline realL by_group(intL tag, realL first, realL second, realL third, r
 #define CHAIN_ABSORPTION 1
 static inline realL of_stones_chain(world_t world, task_t task, int quantity, const packetL *packet) {
   const int column = COLUMNS + CHAIN_COLUMNS * task.chain + quantity;
-  const realL first = by_stone(world, column, packet->stone);
 #if SPECTRAL
-  return by_group(packet->tag, first, by_stone(world, column + CHAIN_COLUMNS, packet->stone),
-                  by_stone(world, column + 2 * CHAIN_COLUMNS, packet->stone),
-                  by_stone(world, column + 3 * CHAIN_COLUMNS, packet->stone));
+  const intL before = reals_to_int(by_place(task, packet->tag, COLUMN_OF_SAMPLE));
+  return gather_reals(world.columns + column * MAX_STONES, before + (packet->stone & (intL)(MAX_STONES - 1)));
 #else
-  return first;
+  return by_stone(world, column, packet->stone);
 #endif
 }
 static inline chainL eta_of(world_t world, task_t task, const packetL *packet) {

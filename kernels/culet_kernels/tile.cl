@@ -1,8 +1,7 @@
 // The tile of pixels that a work-item is at: how it gets it, and how the tile reaches the picture.
 #ifndef CULET_TILE
 #define CULET_TILE
-#include "features.cl"
-#include "parameters.cl"
+#include "batch.cl"
 
 // Pixels on each side: a multiple of a packet's sides, at most 64, for the bits of a ray's tag. Rays of each of several stones
 // gather to packets of their own, which takes more of them.
@@ -34,27 +33,17 @@ typedef struct {
   intL segments;                  // inside the stone
 } tile_t;
 
-// Pixels lie packet by packet in a tile, so that a packet is stored as it is.
+// Pixels lie packet by packet in a tile, so that a packet is stored as it is, and the packets of a square one after the other, so that a pixel's number tells where it is in its square.
 static inline int first_pixel(int x, int y) {
-  return (y / PACKET_HEIGHT * (TILE / PACKET_WIDTH) + x / PACKET_WIDTH) * LANES;
+  return (y / SQUARE_SIDE * (TILE / SQUARE_SIDE) + x / SQUARE_SIDE) * SQUARE + first_in_square(x, y);
 }
 
 static inline int pixel_at(int x, int y) {
   return first_pixel(x, y) + y % PACKET_HEIGHT * PACKET_WIDTH + x % PACKET_WIDTH;
 }
 
-// The tile's rows, or columns, that are in the picture.
-static inline int shown(int first, int size) { return min(TILE, size - first); }
-
-// Which pixels of a packet are in the picture.
-static inline maskL in_picture(__constant const parameters_t *scene, int x, int y) {
-  return widen((x + PACKET_X < (intL)(scene->width)) & (y + PACKET_Y < (intL)(scene->height)));
-}
-
-// The groups that a packet's pixels belong to: the four of each square, in the next sample the next ones.
-static inline intL groups_of(int x, int y, int sample) {
-  return ((((PACKET_X + x) & 1) + 2 * ((PACKET_Y + y) & 1) + sample) & 3) % GROUPS;
-}
+// The tile's rows, or columns, that are in the picture, of a batch.
+static inline int shown(batch_t batch, int first, int size) { return min(TILE, (size << batch.level) - first); }
 
 // Of one sample, by tile: how many segments its chains had inside the stone, and the weight that they dropped, summed over
 // pixels. A float counts segments exactly up to 2^24.
@@ -62,7 +51,9 @@ static inline intL groups_of(int x, int y, int sample) {
 #define DROPPED 1
 #define TALLIES 2
 
-static inline int tiles_across(__constant const parameters_t *scene) { return (scene->width + TILE - 1) / TILE; }
+static inline int tiles_across(__constant const parameters_t *scene, batch_t batch) {
+  return ((scene->width << batch.level) + TILE - 1) / TILE;
+}
 
 // How far a sample is, over all of its launches. The host sets it to 0 before the first of them.
 #define TILES_DEALT 0 // so many tiles were taken, maybe more than there are
@@ -93,30 +84,51 @@ static inline void expect_row(__global const real4 *sums, int pixels) {
 #endif
 }
 
-// Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.
-static inline void write_tile(const tile_t *tile, __global real4 *image, __global float *tallies,
-                              __constant const parameters_t *scene, int tile_column, int tile_row, int accumulate) {
-  const int column = tile_column * TILE, row = tile_row * TILE;
+static inline real4 one_of(const tile_t *tile, int pixel) {
+  return (real4)((real)tile->radiance[0][pixel], (real)tile->radiance[1][pixel], (real)tile->radiance[2][pixel],
+                 tile->cut[pixel] / 3);
+}
+
+// The sum of a pixel's 4^level samples in a tile, from this column and row on.
+static inline real4 sum_of_samples(const tile_t *tile, int level, int x, int y) {
+  real4 sum = one_of(tile, pixel_at(x, y));
+  for (int i = 1; i < 1 << 2 * level; i++)
+    sum += one_of(tile, pixel_at(x + (i & ((1 << level) - 1)), y + (i >> level)));
+  return sum;
+}
+
+// Adds a row of a tile's pixels to the picture's sums, or begins them; returns the weight that was dropped.
+static inline real add_row(const tile_t *tile, int level, int y, __global real4 *sums, int columns, int accumulate) {
   real dropped = 0;
-  const int columns = shown(column, scene->width), rows = shown(row, scene->height);
+  for (int x = 0; x < columns; x++) {
+    const real4 samples = sum_of_samples(tile, level, x << level, y << level);
+    sums[x] = accumulate ? sums[x] + samples : samples;
+    dropped += samples.w;
+  }
+  return dropped;
+}
+
+// Adds the tile to the picture's sums, or begins them. The fourth component is the mean over the channels of what was cut.
+static inline void write_tile(const tile_t *tile, batch_t batch, __global real4 *image, __global float *tallies,
+                              __constant const parameters_t *scene, int tile_column, int tile_row, int accumulate) {
+  const int side = TILE >> batch.level, column = tile_column * side, row = tile_row * side;
+  real dropped = 0;
+  const int columns = min(side, scene->width - column), rows = min(side, scene->height - row);
   __global real4 *sums = image + (size_t)row * scene->width + column;
   for (int y = 0; y < min(rows, ROWS_AHEAD); y++) expect_row(sums + (size_t)y * scene->width, columns);
   for (int y = 0; y < rows; y++) {
     if (y + ROWS_AHEAD < rows) expect_row(sums + (size_t)(y + ROWS_AHEAD) * scene->width, columns);
-    for (int x = 0; x < columns; x++) {
-      const int pixel = pixel_at(x, y);
-      const real4 sample = (real4)((real)tile->radiance[0][pixel], (real)tile->radiance[1][pixel],
-                                   (real)tile->radiance[2][pixel], tile->cut[pixel] / 3);
-      __global real4 *sum = sums + (size_t)y * scene->width + x;
-      *sum = accumulate ? *sum + sample : sample;
-      dropped += sample.w;
-    }
+    __global real4 *own = sums + (size_t)y * scene->width;
+    if (batch.level == 0)
+      dropped += add_row(tile, 0, y, own, columns, accumulate);
+    else
+      dropped += add_row(tile, batch.level, y, own, columns, accumulate);
   }
   int counts[LANES];
   store_ints(tile->segments, counts);
   float total = 0;
   for (int lane = 0; lane < LANES; lane++) total += counts[lane];
-  __global float *tally = tallies + TALLIES * (tile_row * tiles_across(scene) + tile_column);
+  __global float *tally = tallies + TALLIES * (tile_row * tiles_across(scene, batch) + tile_column);
   tally[SEGMENTS] = total;
   tally[DROPPED] = dropped;
 }

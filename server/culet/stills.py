@@ -264,10 +264,12 @@ def render_stage(
         picture = make(stage, width, height)
         began, segments, paths = time.perf_counter(), 0, 0
         while not picture.reached(target):
+            before = picture.samples
             for part in picture.refine_until(target, PIECE_SECONDS, pause=lambda: True):
                 if progress is not None:
                     progress(part)
-            segments, paths = segments + picture.segments(), paths + 1
+            made = picture.samples - before if picture.samples > before else picture.samples  # it may begin anew
+            segments, paths = segments + made * picture.segments(), paths + made
         rgb = picture.rgb()
         cost = Cost(picture.samples, paths * width * height + segments, time.perf_counter() - began)
         met = None if error is None else picture.meets(target)

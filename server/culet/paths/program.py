@@ -53,10 +53,10 @@ def make_path(device: Device, features: Features, variant: Variant) -> PathKerne
             device.context, zeros, hostbuf=np.zeros(struct("parameters_t", np.float64).itemsize, np.uint8)
         )
         work = cl.Buffer(device.context, zeros, hostbuf=np.zeros(kept, np.uint8))
-        nothing, start = np.int32(0), np.float64(0)
+        nothing = np.int32(0)
         kernel = cl.Kernel(program, "path")
         kernel(
-            queue, (1,), (1,), *(scratch for _ in buffers()), scratch, scratch, nothing, nothing, start, start, work,
+            queue, (1,), (1,), *(scratch for _ in buffers()), scratch, scratch, nothing, nothing, scratch, work,
             nothing, nothing,
         )  # fmt: skip
         queue.finish()

@@ -143,19 +143,20 @@ class PathRecorder:
         bound = None if light is None else light.bound
         inputs = Inputs(self._device, stage, *size, features, self._real, bound, wavelengths)
         given = inputs.of_sample(0)
-        x, y = jitter(0, stage.scene.sampling.filter)
+        first = np.array(jitter(0, stage.scene.sampling.filter))
         kernel, kept_bytes = self._program(features)
         queue, flags = self._device.queue, cl.mem_flags
         head = np.zeros((), struct("record_t", self._real, "record.cl"))
         head["most"] = EVENTS
         happening = struct("happening_t", self._real, "record.cl")
         record = cl.Buffer(self._device.context, flags.READ_WRITE | flags.COPY_HOST_PTR, hostbuf=head)
+        place = cl.Buffer(self._device.context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=first)
         events, kept = self._allocate(EVENTS * happening.itemsize), self._allocate(kept_bytes)
         for launch in range(LAUNCHES):
             _check(waited_for)
             kernel(
                 queue, (1,), (1,), *(given[name] for name in buffers()), record, events, *map(np.int32, pixel),
-                np.float64(x), np.float64(y), kept, np.int32(launch == 0), np.int32(STEPS),
+                place, kept, np.int32(launch == 0), np.int32(STEPS),
             )  # fmt: skip
             cl.enqueue_copy(queue, head, record)
             if head["done"]:

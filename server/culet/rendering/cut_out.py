@@ -48,6 +48,7 @@ class CutOut(DevicePicture):
             self._lighter.begin_anew()
         for part in super()._one_sample():
             yield part / 2
+        self._lighter._level = self._level
         before, self._lighter.launch_seconds = self._lighter.seconds, self.launch_seconds
         for part in self._lighter._one_sample():
             yield (1 + part) / 2

@@ -55,6 +55,10 @@ DEVELOP_GROUP = 16
 """Work-items of a group. Always as many, or PoCL would make machine code anew for many a picture's size: 0.2 s each."""
 DEVELOPED = 2**19
 """Pixels that are developed at a time: some 7 ms. With more than 65535 work-items PoCL would make machine code anew."""
+LEVELS = 2, 1
+"""Of batches, by preference: 4^level samples of each pixel that are drawn at once."""
+LARGEST_BATCH = 2**24
+"""Samples of all pixels: some seconds. Of larger pictures fewer are drawn at once, for whoever runs out of time."""
 KEPT = 2**24
 """Bytes that are kept beyond what pictures had at most at a time: frames that change their sizes would else leave some
 of each size. Less would free, and have cleared by the system anew, what the next frame needs."""
@@ -233,11 +237,15 @@ class DevicePicture:
         self.sample_seconds = 0.0
         """Spent on the last whole sample."""
         self._sampling: Iterator[float] | None = None
-        """The sample under way. A picture that is left amid one goes on with it."""
+        """The sample, or batch, under way. A picture that is left amid one goes on with it."""
+        self._level = 0
+        """Of that batch; of a sample by itself 0."""
+        self._tallied = 0
+        """That of which tallies are on the device."""
         self._lighting: Iterator[object] | None = None
         """The light on its way to be good enough, the same."""
         self._under_way_seconds = self._part = 0.0
-        """Spent on the sample under way, s, and the part of its tiles that are done."""
+        """Spent on the sample, or batch, under way, s, and the part of its tiles that are done."""
         self._light_spent = self._samples_spent = 0.0
         """s on passes of light, and on samples, while the light got better."""
         self._renderer = renderer
@@ -279,7 +287,9 @@ class DevicePicture:
         film = stage.scene.film
         hides = film.fireflies == "hide" and not film.cut_out
         self._fireflies = renderer.fireflies(width * height, film.exposure) if hides else None
-        self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1])
+        self._batches = self._fireflies is None and stage.scene.optics.end != "roulette"
+        """Whether several samples may be drawn at once. Chance is drawn by tile and sample."""
+        self._tallies = self._allocate(TALLIES * 4 * self._tiles[0] * self._tiles[1] * (16 if self._batches else 1))
         self._tallies_before = np.zeros((self._tiles[0] * self._tiles[1], TALLIES), np.float32)
         """Of the sample before the one that is under way."""
         self._seen = np.zeros(self._tiles[0] * self._tiles[1], bool)
@@ -338,8 +348,8 @@ class DevicePicture:
             for _ in self._lit():
                 yield max(0, self.samples - before) / samples
             done = self.samples - before
-            for part in self._sampled():
-                yield max(0.0, done + part) / samples
+            for part in self._sampled(self._level_of(samples - max(0, done))):
+                yield max(0.0, done + part * self._batch) / samples
         self._samples_spent = 0.0  # nobody could leave them: light owes them no time
 
     def refine_until(
@@ -356,8 +366,10 @@ class DevicePicture:
         After each sample `pause` is asked whether to leave it at that for now. `due` tells whether somebody is to see
         the picture within so many seconds: it is left when that is so, amid a sample too if that does not end SOON
         (`overlaid`), or after a sample if the next one would not be whole in time; and a picture at rest shows samples
-        in the light that there is, as many as it needs, while that gets better. The picture that reaches the target is
-        the same to the last bit however often it was left, as long as its first two samples were not made otherwise.
+        in the light that there is, as many as it needs, while that gets better. Samples are drawn together as far as
+        they are there before one is due. The picture that reaches the target is the same however often it was left, as
+        long as its first two samples were not made otherwise: to the last bit where no batch was smaller for it, else
+        up to the order of sums.
         """
         self.compare_as_shown()
         self.seconds = self.light_seconds = 0.0
@@ -367,8 +379,9 @@ class DevicePicture:
             for _ in self._lit(due if wanted else lambda _: False):
                 yield min(self.samples / self._needed(target), 1.0)
             before, begun = self.samples, self.seconds
-            for part in self._sampled():
-                yield min((before + part) / self._needed(target), 1.0)
+            together = self._needed(target) - before if self._in_final_light else 1
+            for part in self._sampled(self._level_of(together, due)):
+                yield min((before + part * self._batch) / self._needed(target), 1.0)
                 spent = self.seconds - begun
                 tiles = self._fireflies is None and part < ALMOST  # what comes after them is short
                 if tiles and self._left > SOON and spent > 0 and due(0):
@@ -469,9 +482,25 @@ class DevicePicture:
         self._light_errors = self._light_errors[len(self._light_errors) - kept :]
         self._light_bounds = self._light_bounds[len(self._light_bounds) - kept :]
 
-    def _sampled(self) -> Iterator[float]:
-        """The sample under way, or the next one, as `_one_sample` makes it."""
-        self._sampling = self._sampling or self._one_sample()
+    def _level_of(self, samples: int, due: Callable[[float], bool] = lambda _: False) -> int:
+        """Of the batch that comes next, of at most so many samples: one that is there before somebody is to see it."""
+        if self._batches:
+            for level in LEVELS:
+                batch = 4**level
+                fits = batch <= min(samples, self._sums.room, LARGEST_BATCH // (self.width * self.height))
+                if fits and not due(batch * self.sample_seconds - SOON):
+                    return level
+        return 0
+
+    @property
+    def _batch(self) -> int:
+        """Samples under way."""
+        return 1 << 2 * self._level
+
+    def _sampled(self, level: int) -> Iterator[float]:
+        """The sample or batch under way, or the next one, of that level, as `_one_sample` makes it."""
+        if self._sampling is None:
+            self._level, self._sampling = level, self._one_sample()
         before = self.seconds
         try:
             for part in self._sampling:
@@ -493,35 +522,42 @@ class DevicePicture:
             return self.sample_seconds
         if self._part > 0:
             return self._under_way_seconds * (1 - self._part) / self._part
-        as_before = self.sample_seconds - self._under_way_seconds
+        as_before = self._batch * self.sample_seconds - self._under_way_seconds
         return as_before if as_before > 0 else math.inf
 
     def _one_sample(self) -> Iterator[float]:
         """Yields the part of the tiles that are done, between launches, and at last 1."""
-        device, count = self._renderer.device, self._tiles[0] * self._tiles[1]
+        device, batch = self._renderer.device, self._batch
+        across, down = self._tiles_of_batch(self._level)
+        count = across * down
         tracing = self._tracings.of(self.samples)
-        x, y = jitter(self.samples, self.scene.sampling.filter)
+        kind = self.scene.sampling.filter
+        places = np.array([jitter(self.samples + k, kind) for k in range(batch)])
+        self._light_errors += self._light_errors[-1:] * (batch - 1)  # all see the light that `_lit` noted
+        self._light_bounds += self._light_bounds[-1:] * (batch - 1)
         run, adds = self._sums.target()
         target, accumulate = (run, adds) if self._fireflies is None else (self._fireflies.sample, False)
         progress = np.zeros(progress_size(device.units), np.uint32)
         of_items = progress[OF_ITEMS:].reshape(device.units, 2)
         buffer, kept = self._allocate(progress.nbytes), self._allocate(device.units * tracing.kernel.kept_bytes)
+        jitters = cl.Buffer(device.context, cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR, hostbuf=places)
         start = time.perf_counter()
         self._under_way_seconds = self._part = 0.0
         if self._effort is LightEffort.RESTING:
             self._mark_tiles()
+        self._tallied = self._level
         cl.enqueue_copy(device.queue, buffer, progress, is_blocking=False)
         while True:
             event = tracing.kernel.launch(
                 device.queue,
                 device.units,
                 {
-                    **tracing.inputs.of_sample(self.samples),
+                    **tracing.inputs.of_sample(self.samples, self._level),
                     "image": target,
                     "accumulate": accumulate,
                     "tallies": self._tallies,
-                    "jitter_x": x,
-                    "jitter_y": y,
+                    "jitter": jitters,
+                    "level": self._level,
                     "steps": tracing.pace.steps(self.launch_seconds),
                     "count": count,
                     "progress": buffer,
@@ -542,10 +578,10 @@ class DevicePicture:
                 break
             yield done / count
             start = time.perf_counter()
-        self.sample_seconds = self._under_way_seconds
+        self.sample_seconds = self._under_way_seconds / batch
         if self._fireflies is not None:
             self._fireflies.collect(run, add=adds, sample=self.samples)
-        for _ in self._sums.added():
+        for _ in self._sums.added(batch):
             yield ALMOST
         yield 1.0
 
@@ -563,7 +599,7 @@ class DevicePicture:
         return self._sums.mean()[..., 3]
 
     def cut(self) -> float:
-        """Mean of the whole picture's cut weight, of the last sample."""
+        """Mean of the whole picture's cut weight, of the last sample or batch."""
         return float(self._tally()[:, 1].sum(dtype=float)) / (self.width * self.height)
 
     def truncation_bound(self) -> float:
@@ -571,7 +607,7 @@ class DevicePicture:
         return self.cut() * largest_radiance(self.stage)
 
     def segments(self) -> int:
-        """Interior segments of the last sample."""
+        """Interior segments of the last sample; of a batch the mean of its samples."""
         return int(self._tally()[:, 0].sum(dtype=float))
 
     def rgb(self) -> NDArray[np.uint8]:
@@ -619,7 +655,8 @@ class DevicePicture:
         masks: list[tuple[slice, NDArray[np.bool_]]] = []
         for number in np.flatnonzero(new.any(axis=1)):
             rows = slice(int(number) * tile, min((int(number) + 1) * tile, self.height))
-            for _ in self._fill(developed, rows.start, rows.stop, self.samples + 1, later=self.samples > 0):
+            many = self.samples + self._batch
+            for _ in self._fill(developed, rows.start, rows.stop, many, later=self.samples > 0):
                 yield shown
             mask = np.repeat(new[number], tile)[: self.width]
             shown[rows][:, mask] = developed[rows][:, mask]
@@ -673,13 +710,25 @@ class DevicePicture:
         else:  # what their buffer holds is another picture's
             self._tallies_before[:] = 0
         self._seen[:] = False
-        cl.enqueue_copy(self._renderer.device.queue, self._tallies, np.full_like(self._tallies_before, np.nan))
+        across, down = self._tiles_of_batch(self._level)
+        unknown = np.full((across * down, TALLIES), np.nan, np.float32)
+        cl.enqueue_copy(self._renderer.device.queue, self._tallies, unknown)
+
+    def _tiles_of_batch(self, level: int) -> tuple[int, int]:
+        """Columns and rows of tiles, which have all samples of a batch and as many fewer pixels."""
+        return math.ceil((self.width << level) / self._tile), math.ceil((self.height << level) / self._tile)
 
     def _read_tallies(self) -> NDArray[np.float32]:
-        """By tile: segments, and the weight that was cut; NaN of tiles that the sample under way does not have yet."""
-        tallies = np.empty_like(self._tallies_before)
+        """By tile of a single sample: segments, and the weight that was cut, of a sample; NaN of those that the sample,
+        or batch, under way does not have yet."""
+        across, down = self._tiles_of_batch(self._tallied)
+        tallies = np.empty((down, across, TALLIES), np.float32)
         cl.enqueue_copy(self._renderer.device.queue, tallies, self._tallies)
-        return tallies
+        parts = 1 << self._tallied
+        whole = np.zeros((self._tiles[1] * parts, self._tiles[0] * parts, TALLIES), np.float32)
+        whole[:down, :across] = tallies
+        by_tile = whole.reshape(self._tiles[1], parts, self._tiles[0], parts, TALLIES).sum(axis=(1, 3), dtype=float)
+        return np.asarray(by_tile / parts**2, np.float32).reshape(-1, TALLIES)
 
     def _tally(self) -> NDArray[np.float32]:
         """By tile: segments, and the weight that was cut; of the last sample."""

@@ -63,7 +63,7 @@ def test_arguments_are_told_by_name_and_a_wrong_one_is_refused() -> None:
     values = in_order(given)
     names = [argument.name for argument in arguments()]
     assert names[0] == "scene"
-    assert isinstance(values[names.index("jitter_x")], np.float64)
+    assert values[names.index("jitter")] is given["jitter"]  # a buffer
     assert isinstance(values[names.index("steps")], np.int32)
     with pytest.raises(TypeError, match="expected the arguments"):
         in_order({**given, "scenes": 0})

@@ -117,14 +117,20 @@ class Sums:
         self.aside, self.samples_aside = None, 0
 
     def target(self) -> tuple[Any, bool]:
-        """Where the next sample goes, and whether it is added to what is there."""
+        """Where the next samples go, and whether they are added to what is there."""
         if self.samples > 0 and self._later is None:
             self._later = self._allocate(self._size)
         return self.buffers[min(1, self.samples)], self.later > 0
 
-    def added(self) -> Iterator[None]:
-        """The sample is there, in all pixels. To be run to its end; yields between pieces of work."""
-        self.samples += 1
+    @property
+    def room(self) -> int:
+        """Samples that the run that the next one goes to still takes, before the two are compared."""
+        return 1 if self.samples == 0 else 2 * self.earlier - self.samples
+
+    def added(self, samples: int = 1) -> Iterator[None]:
+        """So many samples are there, in all pixels: at most `room`. To be run to its end; yields between pieces of
+        work."""
+        self.samples += samples
         if self.samples >= self.samples_aside:
             self.forget_aside()
         if self.samples > 1 and self.samples == self.earlier:

@@ -53,9 +53,11 @@ class Inputs:
         self.shown = tuple(shown)
         """The stones, by their rows in the table."""
         self._changes = bool(stones) and (is_spectral(scene) or scene.optics.end == "roulette")
-        self._sample = -1
+        self._made: tuple[int, int] | None = None
+        """The sample, and level, that was asked for last."""
         self.chains = np.zeros(0, struct("chain_t", real))
-        """The table of the sample that was asked for last."""
+        """The table of the sample that was asked for last; of a batch each four neighbouring wavelengths of all of its
+        samples, one sample after the other."""
         self._struct = parameters(stage, shown, projection, width, height, real)
         self._light_map = light_map
         if light_map is not None:
@@ -83,19 +85,24 @@ class Inputs:
             "shadows": self._upload(self._table.shadows.astype(real)),
         }
 
-    def of_sample(self, sample: int) -> dict[str, Any]:
-        """The kernels' arguments for that sample."""
-        if self._sample < 0 or (self._changes and sample != self._sample):
+    def of_sample(self, sample: int, level: int = 0) -> dict[str, Any]:
+        """The kernels' arguments for that sample; or for a batch of 4^level, of which it is the first."""
+        if self._made is None or (self._changes and self._made != (sample, level)):
             scene = self._scene if self._scene.stones else Scene()
-            chains = chain_table(scene, sample, self._real, common=self._common, wavelengths=self._wavelengths)
-            sets = len(chains_of_stones(self._scene)[1])
-            self._struct["sample"], self._struct["chains"] = sample, len(chains) // max(1, sets)
+            many = 4**level if is_spectral(scene) else 1  # else samples do not differ
+            tables = [
+                chain_table(scene, sample + k, self._real, common=self._common, wavelengths=self._wavelengths)
+                for k in range(many)
+            ]
+            count = len(tables[0]) // max(1, len(chains_of_stones(self._scene)[1]))  # of a stone
+            chains = tables[0] if many == 1 else np.stack([table.reshape(-1, GROUPS) for table in tables], 1).ravel()
+            self._struct["sample"], self._struct["chains"] = sample, count
             stones = self._table.stones.copy()
-            stones["first_chain"] *= self._struct["chains"]
+            stones["first_chain"] *= many * count
             self.chains = chains
-            columns = stone_columns(stones, chains, int(self._struct["chains"])).astype(self._real)
+            columns = stone_columns(stones, chains, many * count).astype(self._real)
             self._uploaded = tuple(self._upload(array) for array in (self._struct, stones, columns, chains))
-            self._sample = sample
+            self._made = sample, level
         struct, table, columns, chains = self._uploaded
         return {
             "scene": struct, "stones": table, "columns": columns, **self._fixed, "chains": chains,

@@ -90,11 +90,10 @@ def buffers() -> tuple[str, ...]:
 def arguments() -> tuple[Argument, ...]:
     """Those of the render kernel, in its order: the world's buffers, then the others."""
     (declared,) = _RENDER.findall(_text("render.cl"))
-    scalars: dict[str, type[np.generic]] = {"double": np.float64, **_WHOLE}
     others = [declaration.split() for declaration in declared.split(",")]
     return (
         *(Argument(name, None) for name in buffers()),
-        *(Argument(words[-1].lstrip("*"), None if "*" in words[-1] else scalars[words[0]]) for words in others),
+        *(Argument(words[-1].lstrip("*"), None if "*" in words[-1] else _WHOLE[words[0]]) for words in others),
     )
 
 
