@@ -156,7 +156,8 @@ def test_a_tile_that_is_dealt_is_not_done_and_says_nothing_yet(
 ) -> None:
     """A picture of one tile, where there was another picture's."""
     picture = renderer.picture(Stage.of(SCENE), 40, 30, effort=LightEffort.RESTING)
-    cl.enqueue_fill_buffer(renderer.device.queue, picture._tallies, np.full(1, 9, np.float32), 0, picture._tallies.size)
+    size = picture._tallies_before.nbytes
+    cl.enqueue_fill_buffer(renderer.device.queue, picture._tallies, np.full(1, 9, np.float32), 0, size)
     monkeypatch.setattr(KernelPace, "steps", lambda _pace, _seconds: 20)
     for part in picture.refine_until(Target(1), 1.0, due=lambda _: True):
         assert part == 0
