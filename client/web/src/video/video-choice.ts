@@ -6,8 +6,11 @@
 import { Flag, type Frame } from "@culet/protocol/frame";
 import type { Bottleneck } from "../meter/bottleneck";
 
-/** For which the way must be too narrow: what the server knows of it in the first moments is little. */
-export const NARROW_MS = 1500;
+/**
+ * For which the way must be too narrow. A browser on a busy machine acknowledges late, which looks like a narrow way for
+ * a second or two.
+ */
+export const NARROW_MS = 4000;
 /** Frames further apart than this are not of the same motion. */
 const PAUSE_MS = 2000;
 /** After so long pictures of their own are tried again, once things rest: the way may be another one by then. */
