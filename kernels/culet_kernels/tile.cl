@@ -33,7 +33,8 @@ typedef struct {
   intL segments;                  // inside the stone
 } tile_t;
 
-// Pixels lie packet by packet in a tile, so that a packet is stored as it is, and the packets of a square one after the other, so that a pixel's number tells where it is in its square.
+// Pixels lie packet by packet in a tile, so that a packet is stored as it is, and the packets of a square one after the
+// other, so that a pixel's number tells where it is in its square.
 static inline int first_pixel(int x, int y) {
   return (y / SQUARE_SIDE * (TILE / SQUARE_SIDE) + x / SQUARE_SIDE) * SQUARE + first_in_square(x, y);
 }

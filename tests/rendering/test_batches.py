@@ -95,6 +95,15 @@ def test_in_packets_of_any_width(renderer_of: RendererOf, lanes: int, level: int
         assert radiance(together) == pytest.approx(radiance(alone), abs=3e-6)
 
 
+@LEVELS
+def test_of_several_stones_in_packets_of_sixteen(renderer_of: RendererOf, level: int) -> None:
+    """Where the processor looks numbers up by stone and by sample in one go."""
+    renderer, scene = renderer_of(16, np.float32), legacy(KINDS["two materials, wavelengths"])
+    (alone, _), (together, _) = drawn(renderer, scene), drawn(renderer, scene, level)
+    with compared(radiance(together), radiance(alone)):
+        assert radiance(together) == pytest.approx(radiance(alone), abs=3e-6), "measured 6.6e-7"
+
+
 def test_chance_and_fireflies_have_each_sample_by_itself(renderer: Renderer) -> None:
     """Chance is drawn by tile; and of all samples of a pixel the brightest is told."""
     for part in ({"optics": {"end": "roulette"}}, {"film": {"fireflies": "hide"}}):

@@ -58,7 +58,7 @@ DEVELOPED = 2**19
 LEVELS = 2, 1
 """Of batches, by preference: 4^level samples of each pixel that are drawn at once."""
 LARGEST_BATCH = 2**24
-"""Samples of all pixels: some seconds. Of larger pictures fewer are drawn at once, for whoever runs out of time."""
+"""Samples of all pixels: some seconds of the default scene, by which a still that runs out of time ends later."""
 KEPT = 2**24
 """Bytes that are kept beyond what pictures had at most at a time: frames that change their sizes would else leave some
 of each size. Less would free, and have cleared by the system anew, what the next frame needs."""

@@ -203,7 +203,9 @@ class Together:
             fault = self._library.culet_world_load(self._world, content, len(content))
         if fault == interface.NO_MEMORY:  # -1: not of this world
             raise InputError(
-                f"simulation snapshot: expected one of {len(self._bodies)} stones between the same surfaces", "contacts"
+                f"simulation snapshot: expected one of {len(self._bodies)} stones between the same surfaces, saved by "
+                f"solver version {interface.VERSION}",
+                "contacts",
             )
         if fault:
             raise MemoryError("the contacts of a snapshot")

@@ -21,8 +21,6 @@ from culet.engine.governing.governor import (
     SHARE,
     SHARE_OF_MANY,
     SMALLEST_PIXELS,
-    SPARE,
-    STEERED,
     WORTH,
     Governor,
     Plan,
@@ -79,16 +77,29 @@ def play(
     return played
 
 
-def test_a_frame_is_less_dear_while_somebody_steers_and_as_good_as_before_soon_after() -> None:
-    governor, budget = Governor(LADDER), work_share(RATE) / RATE
-    costs = steady((STEERED + SPARE) / 2 * budget, 2 * PATIENCE)
+@pytest.mark.parametrize("part", [0.78, 0.85, 0.92, 0.99])
+def test_a_frame_is_less_dear_while_somebody_steers_and_as_good_as_before_after_it(part: float) -> None:
+    governor = Governor(LADDER)
+    costs = steady(part * work_share(RATE) / RATE, 2 * PATIENCE)
     assert set(settings(play(governor, costs))) == {LADDER[0]}
-    first, *others = settings(play(governor, costs, steered=True))
-    assert first == LADDER[0]
-    assert set(others) == {LADDER[1]}
-    after = settings(play(governor, costs))
-    assert after[0] == LADDER[1], "a pause between two keys is no change of quality"
-    assert after[-1] == LADDER[0]
+    for _ in range(3):
+        first, *others = settings(play(governor, costs, steered=True))
+        assert first == LADDER[0]
+        assert set(others) == {LADDER[1]}
+        first, *others = settings(play(governor, costs))
+        assert first == LADDER[1]
+        assert set(others) == {LADDER[0]}, "which steering is no trial of"
+
+
+def test_a_stall_while_somebody_steers_is_forgotten_before_they_end() -> None:
+    governor = Governor(MEASURED)
+    play(governor, steady(0.03, 4 * PATIENCE))
+    *_, before = settings(play(governor, steady(0.03, PATIENCE), steered=True))
+    stalled, *_, after = settings(play(governor, [0.3, *steady(0.03, 8 * PATIENCE)], steered=True))[1:]
+    assert stalled is not None
+    assert before is not None
+    assert after is not None
+    assert stalled.cost < 0.7 * before.cost < after.cost, "which takes SPARE of the time, or a rung less"
 
 
 def settings(played: Iterable[Played]) -> list[Setting | None]:

@@ -57,6 +57,15 @@ describe("a session that the server has lost", () => {
     expect(given.sort()).toEqual(["sky.hdr", "stone.obj"]);
   });
 
+  it("is made again without its motion, if that is of another version", async () => {
+    files.keep(MESH, new File([], "stone.obj"), give);
+    const foreign = new ProblemError(422, "expected a snapshot of solver version 4", "snapshot.contacts");
+    expect(await recover(lost, files, server(foreign, lacking, null))).toBe(true);
+    const still = { ...lost, snapshot: null };
+    expect(asked).toEqual([lost, still, still]);
+    await expect(recover(still, files, server(foreign))).rejects.toBe(foreign);
+  });
+
   it("is waited for, where only others may make it again", async () => {
     const tokenless = new ProblemError(401, "expected this server's token");
     expect(await recover(lost, files, server(tokenless))).toBe(false);

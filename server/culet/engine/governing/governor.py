@@ -141,6 +141,10 @@ class Governor:
         self._ladder = ladder
         self._errors = errors
         self._rung = 0
+        self._eased: int | None = None
+        """The rung, cheaper as a rule, that is drawn while somebody steers,"""
+        self._eased_spared = 0
+        """and the frames with time to spare for a better one."""
         self._shrunk = 0
         """How many times frames are made smaller than the cheapest setting has them."""
         self._easier = 0
@@ -159,7 +163,7 @@ class Governor:
     @property
     def setting(self) -> Setting:
         """For the next moving frame, unless one is pinned."""
-        return self._ladder[self._rung]
+        return self._ladder[self._rung if self._eased is None else self._eased]
 
     def plan(self, scene: Scene, wanted: tuple[int, int], balance: Balance, reduced: float = 1.0) -> Plan:
         """For the next moving frame: three indices, without polarisation; cut-off, bounces and size by the setting.
@@ -239,15 +243,31 @@ class Governor:
 
     def _adapt(self, wanted: tuple[int, int], frames_per_second: float, share: float, *, steered: bool) -> None:
         """Setting and size to what is expected."""
-        self._choose(wanted, self._budget(frames_per_second, share, steered=steered))
+        budget = self._budget(frames_per_second, share)
+        self._choose(wanted, budget, drawn=not steered)
+        self._ease(wanted, STEERED * budget if steered else None)
         self._shrink(wanted, self._budget(_least_rate(frames_per_second, share), share), share)
 
-    def _budget(self, frames_per_second: float, share: float, *, steered: bool = False) -> float:
+    def _budget(self, frames_per_second: float, share: float) -> float:
         """For rendering a frame."""
         interval = share / frames_per_second
         worked = work_share(frames_per_second) if share >= 1 else SHARE_OF_MANY
-        worked *= STEERED if steered else 1
         return max(worked * interval - self._overhead, LEAST_SHARE * interval)
+
+    def _ease(self, wanted: tuple[int, int], budget: float | None) -> None:
+        """Draw a rung of that budget, if there is one, in place of the one that was chosen, which stays as it is."""
+        if budget is None:
+            self._eased, self._eased_spared = None, 0
+            return
+        eased = self._rung if self._eased is None else self._eased
+        cost = self._expected(eased, wanted)
+        best, better = self._best(wanted, budget), self._best(wanted, SPARE * budget)
+        self._eased_spared = self._eased_spared + 1 if self._expected(better, wanted) > cost else 0
+        if self._expected(best, wanted) < cost:
+            eased = best
+        elif self._eased_spared >= PATIENCE:
+            eased, self._eased_spared = better, 0
+        self._eased = min(eased, self._rung, key=lambda rung: self._expected(rung, wanted))
 
     def _shrink(self, wanted: tuple[int, int], budget: float, share: float) -> None:
         """Make frames of the cheapest setting so small that the least rate is held, and larger when there is time."""
@@ -267,7 +287,9 @@ class Governor:
         if self._easier >= PATIENCE or self._shrunk > most:
             self._shrunk, self._easier = self._shrunk - 1, 0
 
-    def _choose(self, wanted: tuple[int, int], budget: float) -> None:
+    def _choose(self, wanted: tuple[int, int], budget: float, *, drawn: bool) -> None:
+        """A cheaper rung at once where one is needed, a better one that there was time for again and again. A rung that
+        is not `drawn`, but a cheaper one in its place, does not stand its trial."""
         cost = self._expected(self._rung, wanted)
         best = self._best(wanted, budget)
         if self._expected(best, wanted) < cost:
@@ -275,7 +297,8 @@ class Governor:
                 self._patience = min(2 * self._patience, MOST_PATIENCE)
             self._rung, self._spared, self._held = best, 0, None
             return
-        self._hold()
+        if drawn:
+            self._hold()
         better = self._best(wanted, SPARE * budget)
         self._spared = self._spared + 1 if self._expected(better, wanted) > cost else 0
         if self._spared >= self._patience:
