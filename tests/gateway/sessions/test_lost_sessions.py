@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from typing import Any
 
 import pytest
@@ -116,6 +117,19 @@ async def test_what_is_no_snapshot_is_refused_by_its_field(
     if field:
         assert refused.json()["field"].startswith(field)
     assert (await gateway.http.get(f"/api/sessions/{UNKNOWN}")).status_code == 404
+
+
+async def test_a_snapshot_of_another_solver_s_version_is_refused_by_that_reason(gateway: Gateway) -> None:
+    """Of several stones the page then has the session made again without it."""
+    scene = {"stones": [{"id": "a"}, {"id": "b", "position": [3, 1, 0]}]}
+    snapshot = await snapshot_of(gateway, scene)
+    content = bytearray(base64.b64decode(snapshot["simulation"]["saved"]))
+    content[0] -= 1  # the version's lowest byte
+    older = snapshot["simulation"] | {"saved": base64.b64encode(content).decode()}
+    asked = {"id": UNKNOWN, "scene": scene, "snapshot": snapshot | {"simulation": older}}
+    refused = await gateway.http.post("/api/sessions", json=asked)
+    assert refused.status_code == 422, refused.text
+    assert "solver version" in refused.json()["detail"]
 
 
 @pytest.mark.parametrize(

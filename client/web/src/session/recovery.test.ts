@@ -57,7 +57,7 @@ describe("a session that the server has lost", () => {
     expect(given.sort()).toEqual(["sky.hdr", "stone.obj"]);
   });
 
-  it("is made again without its motion, if that is of another version", async () => {
+  it("begins with its scene alone, if its snapshot is of another version", async () => {
     files.keep(MESH, new File([], "stone.obj"), give);
     const foreign = new ProblemError(422, "expected a snapshot of solver version 4", "snapshot.contacts");
     expect(await recover(lost, files, server(foreign, lacking, null))).toBe(true);

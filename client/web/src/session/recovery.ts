@@ -28,11 +28,6 @@ export function lacksFile({ status, field }: ProblemError): boolean {
   return status === 422 && ["mesh", "image"].includes(field?.split(".").at(-1) ?? "");
 }
 
-/** Whether the motion that a snapshot has is refused: the server is of another version than the one that it is from. */
-function refusesMotion({ status, field }: ProblemError): boolean {
-  return status === 422 && field?.split(".").at(-1) === "contacts";
-}
-
 /** What of the server a recovery needs. */
 export interface Server {
   reopen: (lost: Lost) => Promise<void>;
@@ -40,8 +35,8 @@ export interface Server {
 }
 
 /**
- * Have a session made again, with the files that it needs, and without its motion if that is refused: better its stones
- * are where they began than lost. Whether that was done here. A page that came by a link may
+ * Have a session made again, with the files that it needs. If its snapshot is refused, as one of a server of another
+ * version, the session begins with its scene alone: better than to be lost. Whether that was done here. A page that came by a link may
  * not do that without the server's token: somebody else's page must have done it.
  *
  * Throws ProblemError if that cannot be; of status 404 if nobody else has made the session again so far.
@@ -55,9 +50,12 @@ export async function recover(lost: Lost, files: OpenedFiles, server: Server): P
       await server.find(lost.id);
       return false;
     }
-    if (refusesMotion(error) && lost.snapshot !== null) return recover({ ...lost, snapshot: null }, files, server);
-    if (!(lacksFile(error) && (await files.giveAgain(lost.scene)))) throw error;
-    await server.reopen(lost);
+    if (lacksFile(error)) {
+      if (!(await files.giveAgain(lost.scene))) throw error;
+      await server.reopen(lost);
+    } else if (error.status === 422 && lost.snapshot !== null)
+      return recover({ ...lost, snapshot: null }, files, server);
+    else throw error;
   }
   return true;
 }
