@@ -209,7 +209,7 @@ def test_what_a_moving_picture_reads_is_made_during_the_first_launch_of_its_ligh
         launch(own, kernel, buffers, begin, end, *more)
         done.append("launch")
 
-    def asked(inputs: Inputs, sample: int, level: int) -> dict[str, Any]:
+    def asked(inputs: Inputs, sample: int, level: int = 0) -> dict[str, Any]:
         done.append("read")
         return read(inputs, sample, level)
 
