@@ -134,44 +134,26 @@ static inline realL from_double(doubleL value) { return JOIN(JOIN(convert_, REAL
 // Which bit it is that is set, if one is.
 static inline intL bit_number(intL bit) { return exponent_of(bit) - 127; }
 
-// Numbers that lie anywhere, by their places.
-static inline realL gather_lanes(const real *from, intL place) {
+// Numbers that lie anywhere, by their places: those of a work-item, those on the device, and those of single precision there.
 #if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
-  return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(real));
+#define GATHER(name, numbers)                                                                                          \
+  static inline realL name(numbers from, intL place) {                                                                 \
+    return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof *from);                                  \
+  }
 #else
-  int own[LANES];
-  real found[LANES];
-  store_ints(place, own);
-  for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];
-  return load_lanes(found);
+#define GATHER(name, numbers)                                                                                          \
+  static inline realL name(numbers from, intL place) {                                                                 \
+    int own[LANES];                                                                                                    \
+    real found[LANES];                                                                                                 \
+    store_ints(place, own);                                                                                            \
+    for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];                                            \
+    return load_lanes(found);                                                                                          \
+  }
 #endif
-}
-
-// The same of numbers on the device.
-static inline realL gather_reals(__global const real *from, intL place) {
-#if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
-  return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(real));
-#else
-  int own[LANES];
-  real found[LANES];
-  store_ints(place, own);
-  for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];
-  return load_lanes(found);
-#endif
-}
-
-// The same of numbers of single precision there.
-static inline realL gather_floats(__global const float *from, intL place) {
-#if LANES == 16 && AVX512 && __has_builtin(__builtin_ia32_gathersiv16sf)
-  return __builtin_ia32_gathersiv16sf((realL)0, from, place, 0xffff, sizeof(float));
-#else
-  int own[LANES];
-  real found[LANES];
-  store_ints(place, own);
-  for (int lane = 0; lane < LANES; lane++) found[lane] = from[own[lane]];
-  return load_lanes(found);
-#endif
-}
+GATHER(gather_lanes, const real *)
+GATHER(gather_reals, __global const real *)
+GATHER(gather_floats, __global const float *)
+#undef GATHER
 
 // The lanes that a mask names, in order and without gaps (stream compaction). A whole packet is written, of which `count` lanes are meant.
 #if LANES == 16 && AVX512
