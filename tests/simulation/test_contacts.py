@@ -34,7 +34,7 @@ QUICK: dict[str, Callable[[], Iterator[Finding]]] = {
     "stack": pairs.stack,
     "heap": lambda: heaps.heaps(12, (1,)),
     "heap of needles": lambda: heaps.thin_heaps("needles 20 : 1", 12, (1,)),
-    "starts in each other": lambda: extreme.spinning_starts(range(2)),
+    "starts in each other": lambda: extreme.spinning_starts((3, 4)),  # which gained energy by their turns once
 }
 
 
