@@ -351,6 +351,30 @@ def governor(
 
 
 @app.command()
+def memory(
+    scene: SceneFile = None,
+    preset: PresetOption = "heap",
+    sessions: Annotated[int, typer.Option(min=1, max=256, help="That are watched at a time.")] = 10,
+    seconds: Annotated[float, typer.Option(min=2, help="Of falling, and of being refined.")] = 30,
+    width: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that each viewer asks for.")] = 960,
+    height: Annotated[int, typer.Option(min=16, max=4096, help="Pixels that each viewer asks for.")] = 540,
+    final: Annotated[bool, typer.Option(help="Wait until all pictures at rest are as good as they become.")] = True,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="JSON with every sample.")] = None,
+) -> None:
+    """Watch many sessions whose stones fall, anew every 4 s, and then come to rest: how much memory has the engine?"""
+    from culet.study.serving.memory_study import described, document, measure
+
+    with errors_in_one_line():
+        stage, size = read_stage(scene, None if scene is not None else preset, None, None), (width, height)
+        with opened(out) as file:
+            measured = asyncio.run(measure(stage.scene, sessions, size, seconds, final=final))
+            if file is not None:
+                file.truncate(0)
+                file.write(document(measured, sessions, size) + "\n")
+        typer.echo(described(measured))
+
+
+@app.command()
 def diff(before: ReportFile, after: ReportFile) -> None:
     """Compare two reports of the same study, as ratios after / before."""
     from culet.study.findings.comparison import compare_reports

@@ -98,7 +98,7 @@ class Service:
     def _spent(self) -> dict[int, float]:
         """s of the processor by process. One that compiles may end meanwhile, and does not count."""
         found = {}
-        for process in _family(self._process):
+        for process in family_of(self._process):
             with contextlib.suppress(OSError):
                 found[process] = processor_seconds(process)
         return found
@@ -171,11 +171,11 @@ async def _unless_ended(tasks: list[asyncio.Task[None]], seconds: float) -> None
         raise CuletError("expected streams that stay open, one ended") from task.exception()
 
 
-def _family(process: int) -> list[int]:
+def family_of(process: int) -> list[int]:
     """A process and all that descend from it (proc(5): children of each thread)."""
     found = [process]
     for file in Path(f"/proc/{process}/task").glob("*/children"):
         with contextlib.suppress(OSError):
             for child in file.read_text(encoding="utf-8").split():
-                found += _family(int(child))
+                found += family_of(int(child))
     return found
