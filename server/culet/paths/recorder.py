@@ -83,7 +83,7 @@ class PathRecorder:
         launch of this one waits for a compiler. A scene's light map may take `light_seconds`."""
         self._device, self._real, self._apart, self._light_seconds = device, real, apart, light_seconds
         self._pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(device.queue))
-        self._lighting = Lighting(device, self._pool)
+        self._lighting = Lighting(device, self._pool.allocate)
         self._programs: dict[Features, PathKernel] = {}
 
     def record(

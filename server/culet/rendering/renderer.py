@@ -60,8 +60,10 @@ LEVELS = 2, 1
 LARGEST_BATCH = 2**24
 """Samples of all pixels: some seconds of the default scene, by which a still that runs out of time ends later."""
 KEPT = 2**24
-"""Bytes that are kept beyond what pictures had at most at a time: frames that change their sizes would else leave some
-of each size. Less would free, and have cleared by the system anew, what the next frame needs."""
+"""Bytes that are kept beyond what pictures had at most at a time lately: frames that change their sizes would else
+leave some of each size. Less would free, and have cleared by the system anew, what the next frame needs."""
+LATELY = 1.0
+"""s; longer than the time between the frames of whoever looks at something that moves."""
 
 
 class Renderer:
@@ -83,10 +85,11 @@ class Renderer:
         self.programs = Programs(self.device)
         self._background_compile, self._special_programs = background_compile, special_programs
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
-        self._most = 0
-        """Bytes that pictures had at most at a time, since what was kept was given back last."""
+        self._most, self._most_before, self._since = 0, 0, time.monotonic()
+        """Bytes that pictures had at most at a time: since a moment less than LATELY ago, in as long before that, and
+        that moment."""
         self.fold = Fold(self.device, self.variant)
-        self.lighting = Lighting(self.device, self.pool)
+        self.lighting = Lighting(self.device, self.allocate)
         self._paces: dict[tuple[Any, int], KernelPace] = {}
         film = build(self.device, "film.cl", self.variant.options)
         self.develop = cl.Kernel(film, "develop")
@@ -121,6 +124,7 @@ class Renderer:
         `effort` on its light map; or a map that was made elsewhere. With neither only points throw shadows, and nothing
         throws caustics.
         """
+        self.lighting.give_up_left()
         return DevicePicture(self, stage, width, height, features, light_map, effort)
 
     def forget(self, panorama: Panorama) -> None:
@@ -138,12 +142,19 @@ class Renderer:
 
     def _free_kept(self) -> None:
         self.pool.free_held()
-        self._most = self.pool.active_bytes
+        self._most = self._most_before = self.pool.active_bytes
 
     def allocate(self, size: int) -> Any:  # noqa: ANN401 - pyopencl has no types
         """A buffer of so many bytes, by preference one of a picture that is gone. Those that are kept are given back
-        when there are KEPT more than pictures had at most at a time since the last were given back."""
-        if self.pool.managed_bytes > self._most + KEPT:
+        when there are KEPT more than pictures had at most at a time in the last second or two, or since the last were
+        given back."""
+        now = time.monotonic()
+        if now - self._since >= LATELY:
+            # What is there now was there when the time was up, or is of pictures that came since.
+            long_ago = now - self._since >= 2 * LATELY
+            self._most_before = self.pool.active_bytes if long_ago else self._most
+            self._most, self._since = self.pool.active_bytes, now
+        if self.pool.managed_bytes > max(self._most, self._most_before) + KEPT:
             self._free_kept()
         buffer = self.pool.allocate(size)
         self._most = max(self._most, self.pool.active_bytes)

@@ -57,7 +57,7 @@ class Tracings:
 
     def prepare(self, sample: int) -> None:
         """Have on the device what that sample reads."""
-        self.of(sample).inputs.of_sample(sample)
+        self.of(sample).inputs.prepare(sample)
 
 
 def needed_features(stage: Stage, samples: int) -> Features:

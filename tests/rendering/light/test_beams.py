@@ -225,7 +225,7 @@ def test_pieces_of_a_pass_make_the_map_of_a_whole_one(beams: Beams) -> None:
     frame = frame_of(stage)
     target = cl.Buffer(beams.device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
     made = np.empty(frame.shape, np.float32)
-    parts = list(beams.pieces(stage, [sun()], frame, target, cutoff=1e-3, seconds=1e-4))
+    parts = list(beams.pieces(stage, [sun()], frame, lambda: target, cutoff=1e-3, seconds=1e-4))
     assert len(parts) > 3
     assert parts == sorted(parts)
     cl.enqueue_copy(beams.device.queue, made, target)
@@ -254,7 +254,7 @@ def test_a_pass_of_more_stones_begins_with_few_jobs_for_nobody_knows_how_long_th
         frame = frame_of(stage)
         target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
         launched.clear()
-        for _ in noting.pieces(stage, [sun()] * 2, frame, target, cutoff=0.5, seconds=60):
+        for _ in noting.pieces(stage, [sun()] * 2, frame, lambda: target, cutoff=0.5, seconds=60):
             pass
         return launched[1]  # after the one of shadows
 

@@ -193,6 +193,16 @@ def test_of_frames_that_move_the_last_map_is_kept_and_of_pictures_at_rest_severa
     assert resting is made[0]()
 
 
+def test_of_large_maps_at_rest_only_the_last_is_kept(renderer: Renderer) -> None:
+    """One of floor and walls has 24 MiB."""
+    walls = {"walls": {"kind": "matte"}}
+    stages = [Stage.of(scene_of(stones=[{"position": [x, 1, 0]}], **walls)) for x in (0.0, 0.1, 0.2)]
+    renderer.lighting.forget()
+    made = [ref(lit(renderer, stage, LightEffort.RESTING)[1]) for stage in stages]
+    gc.collect()
+    assert [each() is not None for each in made] == [False, False, True]
+
+
 def test_what_a_moving_picture_reads_is_made_during_the_first_launch_of_its_light(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -203,18 +213,18 @@ def test_what_a_moving_picture_reads_is_made_during_the_first_launch_of_its_ligh
     before.prepare()
     before.refine()
     done: list[str] = []
-    launch, read = Beams._launch, Inputs.of_sample
+    launch, read = Beams._launch, Inputs.prepare
 
     def launched(own: Beams, kernel: object, buffers: Sequence[object], begin: int, end: int, *more: int) -> None:
         launch(own, kernel, buffers, begin, end, *more)
         done.append("launch")
 
-    def asked(inputs: Inputs, sample: int, level: int = 0) -> dict[str, Any]:
+    def asked(inputs: Inputs, sample: int, level: int = 0) -> None:
         done.append("read")
-        return read(inputs, sample, level)
+        read(inputs, sample, level)
 
     monkeypatch.setattr(Beams, "_launch", launched)
-    monkeypatch.setattr(Inputs, "of_sample", asked)
+    monkeypatch.setattr(Inputs, "prepare", asked)
     renderer.lighting.forget()
     picture = renderer.picture(stage, *SIZE, effort=LightEffort.MOVING)
     assert done == [], "nothing is made before its light"
@@ -236,7 +246,7 @@ def test_a_launch_that_may_have_ended_before_it_was_waited_for_makes_no_pace_slo
     monkeypatch.setattr(beams, "NO_WAIT", 0.0 if waited else math.inf)
     for _ in range(2):
         own._paces.update(dict.fromkeys(own._paces, 1e-9))  # of the second pass: quicker than any launch is
-        for _ in own.pieces(stage, rays, frame, target, cutoff=1e-3, seconds=1.0, meanwhile=lambda: None):
+        for _ in own.pieces(stage, rays, frame, lambda: target, cutoff=1e-3, seconds=1.0, meanwhile=lambda: None):
             pass
     assert own._paces
     assert all((pace > 1e-9) == waited for pace in own._paces.values())

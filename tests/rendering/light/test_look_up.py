@@ -51,7 +51,7 @@ def bound(renderer: Renderer, scene: Scene, light: Any = slopes) -> BoundMap:  #
             u, v = np.meshgrid(*frame.texels(surface, level))
             texels[surface, level] = light(surface, u, v) if callable(light) else light
     flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
-    return BoundMap(cl.Buffer(renderer.device.context, flags, hostbuf=texels), frame)
+    return BoundMap(frame, lambda _: cl.Buffer(renderer.device.context, flags, hostbuf=texels))
 
 
 def share(scene: Scene, which: NDArray[np.integer], point: Array) -> Array:

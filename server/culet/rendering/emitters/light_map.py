@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -109,13 +110,21 @@ def frame_of(stage: Stage) -> MapFrame:
     return MapFrame(mapped_surfaces(stage), (x, y, z), centres, (half, COARSER * half))
 
 
-@dataclass(frozen=True, eq=False)
 class BoundMap:
     """A map on the device, and where it lies."""
 
-    buffer: Any
-    """pyopencl's: float32 of `frame.shape`."""
-    frame: MapFrame
+    def __init__(self, frame: MapFrame, allocate: Callable[[int], Any]) -> None:
+        """`allocate` makes its buffer, of so many bytes, when that is first asked for."""
+        self.frame = frame
+        self._allocate = allocate
+        self._buffer: Any = None
+
+    @property
+    def buffer(self) -> Any:  # noqa: ANN401 - pyopencl has no types
+        """Float32 of `frame.shape`; what is there means nothing before somebody has written it."""
+        if self._buffer is None:
+            self._buffer = self._allocate(self.frame.nbytes)
+        return self._buffer
 
 
 @dataclass(frozen=True)

@@ -85,8 +85,8 @@ class Inputs:
             "shadows": self._upload(self._table.shadows.astype(real)),
         }
 
-    def of_sample(self, sample: int, level: int = 0) -> dict[str, Any]:
-        """The kernels' arguments for that sample; or for a batch of 4^level, of which it is the first."""
+    def prepare(self, sample: int, level: int = 0) -> None:
+        """Have on the device what `of_sample` tells, but for the light map, which may not be there yet."""
         if self._made is None or (self._changes and self._made != (sample, level)):
             scene = self._scene if self._scene.stones else Scene()
             many = 4**level if is_spectral(scene) else 1  # else samples do not differ
@@ -103,6 +103,10 @@ class Inputs:
             columns = stone_columns(stones, chains, many * count).astype(self._real)
             self._uploaded = tuple(self._upload(array) for array in (self._struct, stones, columns, chains))
             self._made = sample, level
+
+    def of_sample(self, sample: int, level: int = 0) -> dict[str, Any]:
+        """The kernels' arguments for that sample; or for a batch of 4^level, of which it is the first."""
+        self.prepare(sample, level)
         struct, table, columns, chains = self._uploaded
         return {
             "scene": struct, "stones": table, "columns": columns, **self._fixed, "chains": chains,

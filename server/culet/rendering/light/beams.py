@@ -20,6 +20,7 @@ from culet.rendering.features import FRESNEL
 from culet.rendering.light.solids import Solids, takes_beams
 from culet.rendering.opencl.device import Device, Real
 from culet.rendering.opencl.layout import constants, struct
+from culet.rendering.opencl.zeros import zeros
 from culet.rendering.programs.build import build
 from culet.rendering.stones.placed_stone import PlacedStone, placed_stones
 from culet.scene.model import Scene
@@ -77,7 +78,8 @@ class Beams:
         self._paces: dict[_Kind, float] = {} if like is None else like._paces
         """s that a job took."""
         self._scratch: dict[tuple[int, int], tuple[Any, ...]] = {}
-        self._clean = True
+        self.clean = True
+        """Whether what is kept is all 0, as a pass that is done leaves it."""
 
     def make(
         self,
@@ -92,9 +94,9 @@ class Beams:
         gain: float = 1.0,
         piece: float = PIECE,
     ) -> Figures:
-        """See `pieces`."""
+        """See `pieces`; the target is a buffer."""
         found = self.pieces(
-            stage, rays, frame, target, cutoff=cutoff, seconds=math.inf, number=number, keep=keep, gain=gain,
+            stage, rays, frame, lambda: target, cutoff=cutoff, seconds=math.inf, number=number, keep=keep, gain=gain,
             piece=piece,
         )  # fmt: skip
         try:
@@ -109,7 +111,7 @@ class Beams:
         stage: Stage,
         rays: Sequence[LightRay],
         frame: MapFrame,
-        target: Any,  # noqa: ANN401
+        target: Callable[[], Any],
         *,
         cutoff: float,
         seconds: float,
@@ -121,7 +123,8 @@ class Beams:
     ) -> Generator[float, None, Figures]:
         """Throw the light of these rays: the target, of `frame.nbytes`, becomes `keep` times what it was, plus `gain`
         times what shadows and caustics add to each texel's radiance of a white surface. In launches of about so many
-        seconds; yields the part that is done, and returns the figures.
+        seconds; yields the part that is done, and returns the figures. The target is asked for when all light is
+        thrown: until then it needs no memory.
 
         `cutoff`: flux of a beam that ends, in R^2 of the brightest emitter's irradiance. `number` of the pass chooses
         the wavelengths of a spectral scene. Stones that take no beams are left out: see `takes_beams`. `meanwhile` is
@@ -152,7 +155,7 @@ class Beams:
         tally_buffer = self._upload(tallies)
         brightest = _brightness(rays)
         point_lights = self._upload(_lights(points, brightest, gauged, stones, frame, self.real))
-        self._clean = False
+        self.clean = False
         beside = iter([] if meanwhile is None else [meanwhile])
         for diverging, group in enumerate((parallel, points)):
             if not group or not stones:
@@ -177,9 +180,9 @@ class Beams:
                 yield 0.0
             if any(ray.follows for ray in group):
                 yield from throw("throw_light", entries)
-        self._sum(self._upload(room), point_lights, scratch, target, keep, gain)
+        self._sum(self._upload(room), point_lights, scratch, target(), keep, gain)
         cl.enqueue_copy(queue, tallies, tally_buffer)
-        self._clean = True
+        self.clean = True
         self.tally = BeamTally(**{name: float(tallies[name].sum()) for name in tally_type.names or ()})
         return self._figures(self.tally, frame, cutoff, time.perf_counter() - began)
 
@@ -264,18 +267,12 @@ class Beams:
     def _buffers(self, held: int, points: int) -> tuple[Any, ...]:
         """Where light and the shadows of points accumulate, of all work-items, and which texels do; empty."""
         key = held, points
-        if key not in self._scratch:
+        if key not in self._scratch or not self.clean:
             self._scratch.clear()
             rows = self.items * held * LEVELS * SIZE
             sizes = 16 * rows * STRIDE, 4 * rows * STRIDE * points, 4 * rows, 4 * rows * points
-            self._scratch[key] = tuple(
-                cl.Buffer(self.device.context, cl.mem_flags.READ_WRITE, max(size, 16)) for size in sizes
-            )
-            self._clean = False
-        if not self._clean:
-            for buffer in self._scratch[key]:
-                cl.enqueue_fill_buffer(self.device.queue, buffer, np.array(0, np.float32), 0, buffer.size)
-            self._clean = True
+            self._scratch[key] = tuple(zeros(self.device, max(size, 16)) for size in sizes)
+            self.clean = True
         return self._scratch[key]
 
     def _upload(self, array: NDArray[Any]) -> Any:  # noqa: ANN401

@@ -28,10 +28,13 @@ from culet.rendering.opencl.device import Device
 from culet.rendering.room.surfaces import shown
 from culet.stage import Stage
 
-KEPT = 4
-"""Stages whose maps are kept, the latest used last. A map of a floor takes 6 MiB, with walls 24. One of a moving
-picture is kept until one is made of the same stones elsewhere: each frame has its own, of which only the last may be
-shown again, at rest. Pictures keep theirs besides."""
+KEPT = 2**25
+"""Bytes of maps that are kept, the latest used last: five of a floor, of 6 MiB each, or one of floor and walls, of 24.
+One of a moving picture is kept until one is made of the same stones elsewhere: each frame has its own, of which only
+the last may be shown again, at rest. Pictures keep theirs besides."""
+LEFT_SECONDS = 2.0
+"""For which a pass at rest is kept that nobody waits for any more: the next picture of the same stage goes on with it,
+as after a frame that showed something sooner."""
 TARGET = 2e-3
 """Estimated root mean square error at which a map is good enough, in parts of the brightest emitter's irradiance over
 pi: a quarter of a step of 8 bits in the middle of the scale."""
@@ -79,10 +82,10 @@ class Maker(Enum):
 class Lighting:
     """Of one device. One thread at a time makes maps."""
 
-    def __init__(self, device: Device, pool: Any) -> None:  # noqa: ANN401 - pyopencl has no types
-        """Memory of maps is taken from that pool."""
+    def __init__(self, device: Device, allocate: Callable[[int], Any]) -> None:
+        """`allocate` makes a buffer of so many bytes on the device, for maps."""
         self.device = device
-        self._pool = pool
+        self._allocate = allocate
         self._kept: dict[_Key, Illumination] = {}
         self._beams: list[Beams] = []
         """That are at no pass."""
@@ -106,10 +109,13 @@ class Lighting:
             for other in before:
                 self._kept.pop(other, None)  # another thread may have given it back
             frame = frame_of(stage)
-            known = Illumination(self, stage, BoundMap(self._pool.allocate(frame.nbytes), frame))
+            known = Illumination(self, stage, BoundMap(frame, self._allocate))
         self._kept[key] = known
-        for oldest in list(self._kept)[:-KEPT]:
-            self._kept.pop(oldest, None)
+        held = 0
+        for other, each in reversed(list(self._kept.items())):
+            held += each.bound.frame.nbytes
+            if held > KEPT and each is not known:
+                self._kept.pop(other, None)
         return known
 
     def is_ready(self, stage: Stage) -> bool:
@@ -146,12 +152,21 @@ class Lighting:
         self._kept.clear()
 
     def release(self) -> None:
-        """Give back what is kept for the next pass, and the maps of moving frames. Pictures and passes that are under
-        way have their own. From any thread."""
+        """Give back what is kept for the next pass, the maps of moving frames, and passes that nobody waits for.
+        Pictures and passes that are under way have their own. From any thread, but while no picture is refined."""
+        for each in list(self._under_way.values()):
+            each.give_up_left(0.0)
         self._beams.clear()
         for key, each in list(self._kept.items()):
             if each.provisional:
                 self._kept.pop(key, None)
+
+    def give_up_left(self) -> None:
+        """Passes at rest that nobody has waited for a while. One holds its map and what it sums, and would do so until
+        another picture at rest has a pass; one of a moving frame is followed by the next frame's."""
+        for effort, each in list(self._under_way.items()):
+            if effort is not LightEffort.MOVING:
+                each.give_up_left(LEFT_SECONDS)
 
     def others_end(self, effort: LightEffort) -> Iterator[object]:
         """Let the pass of such an effort that is under way end, whoever it is for, or give it up if nobody waits for
@@ -176,14 +191,14 @@ class Lighting:
         return Beams(self.device, like=self._first)
 
     def give_back(self, beams: Beams) -> None:
-        """For the next pass. Of several whose passes were under way by turns one is kept: each holds 8 MiB a surface
-        for each core, and for each point a quarter of that."""
-        if not self._beams:
+        """For the next pass. Of several whose passes were under way by turns one is kept: each holds up to 8 MiB a
+        surface for each core, and for each point a quarter of that. Those of a pass that was given up are not."""
+        if beams.clean and not self._beams:
             self._beams.append(beams)
 
     def scratch(self, size: int) -> Any:  # noqa: ANN401
         """Memory for a pass that is not whole yet."""
-        return self._pool.allocate(size)
+        return self._allocate(size)
 
 
 def takes_only_beams(stage: Stage) -> bool:
@@ -243,6 +258,8 @@ class Illumination:
         """The pass under way. A picture that is given up leaves it to the next one: none is left out or made twice."""
         self._waiting = 0
         """Pictures that wait for the pass under way."""
+        self._left_at = math.inf
+        """s, `time.monotonic`: when the last one left it."""
         self._weight = 0.0
         self._squared = 0.0
         self._bias = 0.0
@@ -359,6 +376,13 @@ class Illumination:
                     return
         finally:
             self._waiting -= 1
+            self._left_at = time.monotonic()
+
+    def give_up_left(self, seconds: float) -> None:
+        """End the pass under way, without adding it, if nobody has waited for it for so long."""
+        if self._running is not None and self._waiting == 0 and time.monotonic() - self._left_at >= seconds:
+            self._running.close()
+            self._running = None
 
     def end_pass(self) -> Iterator[object]:
         """Let the pass under way end, for a picture of another stage, or give it up if none of this stage waits for it.
@@ -393,7 +417,7 @@ class Illumination:
             beams = self._of.take_beams()
             try:
                 figures = yield from beams.pieces(
-                    self.stage, rays, self.bound.frame, self.bound.buffer, cutoff=cutoff, seconds=seconds,
+                    self.stage, rays, self.bound.frame, lambda: self.bound.buffer, cutoff=cutoff, seconds=seconds,
                     number=number, keep=keep, gain=gain, meanwhile=meanwhile,
                 )  # fmt: skip
             finally:
