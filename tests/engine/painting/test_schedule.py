@@ -13,6 +13,7 @@ from culet.geometry.mesh import shape_from_mesh
 from culet.rendering.film.target import Target
 from culet.rendering.renderer import Renderer
 from culet.scene import PointLight, Scene
+from culet.stage import Stage
 from engine.peer import TETRAHEDRON
 from shared.stages import staged
 
@@ -212,6 +213,107 @@ async def test_refinements_and_stills_get_their_smaller_share_beside_a_moving_pi
         had[id(chosen)] = had.get(id(chosen), 0) + 1
     assert had[id(refining)] / had[id(moving)] == pytest.approx(REST_WEIGHT, rel=0.01)
     assert had[id(stills)] / had[id(moving)] == pytest.approx(STILLS_WEIGHT, rel=0.01)
+
+
+LIT = staged(Scene.read({"floor": {"kind": "matte"}}), shape_from_mesh(TETRAHEDRON, "off"))
+"""Its stone throws light onto the floor."""
+
+
+def falling(stage: Stage, seconds: float) -> LivePicture:
+    """Whose frames take so long."""
+    picture = LivePicture(Session("0" * 32, stage), watched=True, rate=10)
+    picture.session.set_falling(True)
+    picture.quality.planned_seconds = seconds
+    return picture
+
+
+def most_under_way(pictures: list[LivePicture], frames: int) -> tuple[int, dict[int, int]]:
+    """Of so many frames, drawn in pieces of 10 ms: how many were under way at a time, and how many each picture had."""
+    shares, now, most, done = Shares(), 100.0, 0, dict.fromkeys(map(id, pictures), 0)
+    while sum(done.values()) < frames:
+        chosen = next_of(pictures, now, shares=shares)
+        assert isinstance(chosen, LivePicture)
+        chosen.frames.payers = schedule.payers(chosen, pictures, now)
+        if chosen.work is None:
+            chosen.begin(now)
+            in_work(chosen, WorkKind.PLANNED)
+        assert chosen.work is not None
+        now += 0.01
+        chosen.work.spent += 0.01
+        shares.charge(chosen.frames, 0.01, now)
+        most = max(most, sum(picture.work is not None for picture in pictures))
+        if chosen.work.spent > chosen.quality.planned_seconds - 1e-9:
+            chosen.making = None
+            done[id(chosen)] += 1
+    return most, done
+
+
+def test_of_alike_frames_with_their_own_light_two_are_under_way_and_each_has_its_turn() -> None:
+    most, done = most_under_way([falling(LIT, 0.05) for _ in range(10)], frames=100)
+    assert most == schedule.WITH_LIGHT
+    assert max(done.values()) - min(done.values()) <= 1
+    most, done = most_under_way([falling(STAGE, 0.05) for _ in range(10)], frames=100)
+    assert most == 10, "without light there is nothing to be spared"
+
+
+@pytest.mark.parametrize("seconds", [0.2, 0.001])
+def test_nobody_waits_for_the_light_of_dearer_or_cheaper_frames(seconds: float) -> None:
+    others = [in_work(falling(LIT, seconds), WorkKind.PLANNED) for _ in range(3)]
+    own, shares = falling(LIT, 0.02), Shares()
+    for picture in others:
+        shares.charge(picture.frames, 0.01, 100)
+    assert next_of([*others, own], now=101, shares=shares) is own
+
+
+def test_a_frame_that_takes_much_longer_than_it_did_is_waited_for_no_more() -> None:
+    alike, own, shares = [in_work(falling(LIT, 0.03), WorkKind.PLANNED) for _ in range(2)], falling(LIT, 0.02), Shares()
+    for picture in alike:
+        shares.charge(picture.frames, 0.01, 100)
+    assert next_of([*alike, own], now=101, shares=shares) in alike
+    for picture in alike:
+        assert picture.work is not None
+        picture.work.spent = 0.05
+    assert next_of([*alike, own], now=101, shares=shares) is own
+
+
+@pytest.mark.parametrize("stage", [LIT, STAGE], ids=["with light", "without"])
+def test_of_alike_frames_with_light_the_one_that_waits_longest_is_begun_first(stage: Stage) -> None:
+    """All that wait pay alike, so that who has had a little less would stay ahead for ever."""
+    older, newer, shares = falling(stage, 0.02), falling(stage, 0.02), Shares()
+    older.begun_at, newer.begun_at = 1, 2
+    shares.charge(older.frames, 0.001, 100)
+    assert next_of([newer, older], now=101, shares=shares) is (older if stage is LIT else newer)
+
+
+def test_who_waits_for_light_has_a_part_in_what_it_costs() -> None:
+    under_way = [in_work(falling(LIT, 0.03), WorkKind.PLANNED) for _ in range(2)]
+    waiting, dear, dark = [falling(LIT, 0.02) for _ in range(2)], falling(LIT, 0.5), falling(STAGE, 0.02)
+    everyone = [*under_way, *waiting, dear, dark]
+    assert schedule.payers(under_way[0], everyone, 100) == [
+        (under_way[0].frames, 0.5), (waiting[0].frames, 0.25), (waiting[1].frames, 0.25)
+    ]  # fmt: skip
+    assert schedule.payers(dear, everyone, 100) == [(dear.frames, 1)]
+    assert schedule.payers(dark, everyone, 100) == [(dark.frames, 1)]
+
+
+def test_sessions_with_cheap_and_with_dear_light_have_the_same_time() -> None:
+    pictures = [*(falling(LIT, 0.2) for _ in range(4)), *(falling(LIT, 0.02) for _ in range(4))]
+    most, done = most_under_way(pictures, frames=440)
+    assert most == 2 * schedule.WITH_LIGHT, "two of each kind"
+    dear, cheap = ([done[id(picture)] for picture in kind] for kind in (pictures[:4], pictures[4:]))
+    assert max(dear) - min(dear) <= 1
+    assert max(cheap) - min(cheap) <= 2
+    assert 0.75 < sum(cheap) / 10 / sum(dear) < 1.33, "measured: 0.82"
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.05])
+def test_only_what_moves_and_was_timed_waits_for_light(seconds: float) -> None:
+    with_light = [in_work(falling(LIT, 0.05), WorkKind.PLANNED) for _ in range(2)]
+    assert schedule.waits_for_light(falling(LIT, seconds), with_light) == (seconds > 0)
+    resting = LivePicture(Session("0" * 32, LIT), watched=True)
+    resting.quality.planned_seconds = seconds
+    assert not schedule.waits_for_light(painted(resting, final=False), with_light)
+    assert not schedule.waits_for_light(in_work(falling(LIT, seconds), WorkKind.PLANNED), with_light), "it goes on"
 
 
 def test_a_frame_at_rest_is_repeated_after_a_second_of_silence() -> None:

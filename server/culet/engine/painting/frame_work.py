@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from enum import Enum, auto
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
@@ -16,6 +17,7 @@ from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.renderer import PIECE_SECONDS, AnyPicture, AnyRenderer
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import ShownScene
+from culet.rendering.emitters.sources import mapped_surfaces
 from culet.rendering.film.behind import before_its_colour
 from culet.rendering.film.target import Target
 from culet.rendering.light.effort import LightEffort
@@ -98,6 +100,11 @@ class FrameWork:
     def samples(self) -> int:
         """That the picture has already."""
         return 0 if self.picture is None else self.picture.samples
+
+    @cached_property
+    def has_own_light(self) -> bool:
+        """Whether it holds a light map that it makes for itself, as one of stones that move does."""
+        return self.kind is WorkKind.PLANNED and bool(mapped_surfaces(self.stage))
 
     def start(self, renderer: AnyRenderer) -> None:
         """To be called once, before any piece."""

@@ -129,6 +129,7 @@ class Painter:
         if chosen is not None:
             self._drew_at = now
         if isinstance(chosen, LivePicture):
+            chosen.next_account.payers = schedule.payers(chosen, pictures, now)
             await self._live_painter.advance(chosen)
         elif chosen is not None and (still := chosen.next()) is not None:
             await self._still_painter.advance(still)

@@ -39,7 +39,7 @@ class Quality:
         """s of rendering the first sample of the picture that was last drawn in full, or was given up as too dear."""
         self.gave_up = False
         """The frame begun last was given up for something newer."""
-        self._planned_seconds = 0.0
+        self.planned_seconds = 0.0
         """s of work on a planned frame, lately."""
         self._too_dear: tuple[Balance, Optics, tuple[int, int]] | None = None
         """The pinned balance, optics and size of which a frame took too long."""
@@ -67,7 +67,7 @@ class Quality:
 
     def room(self, balance: Balance, allowance: ByteAllowance) -> ByteRoom | None:
         """That a link has for a moving frame; None: as much as one likes."""
-        return allowance.room(balance_rate(balance.exactness), 1 / max(self._planned_seconds, 1e-3))
+        return allowance.room(balance_rate(balance.exactness), 1 / max(self.planned_seconds, 1e-3))
 
     def encoded(self, coded: Coded) -> None:
         """What a moving frame for a link with limits has become. Key frames are few, and so do not count."""
@@ -91,7 +91,7 @@ class Quality:
             case WorkKind.FULL:
                 self.full_seconds = work.render_seconds
             case WorkKind.PLANNED:
-                self._planned_seconds += PACE_MEMORY * (work.spent - self._planned_seconds)
+                self.planned_seconds += PACE_MEMORY * (work.spent - self.planned_seconds)
             case WorkKind.REFINED:
                 if work.first_seconds is not None:
                     self.full_seconds = work.first_seconds

@@ -8,7 +8,7 @@ time by sleeping, and a new owner has nothing to catch up with. The earliest sta
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 MEMORY_SECONDS = 0.5
@@ -32,6 +32,8 @@ class Account:
     """Part of the time that it had, averaged up to `used_at`."""
     used_at: float = -math.inf
     """s, steady clock."""
+    payers: Sequence[tuple[Account, float]] = ()
+    """Who pays for its next piece, and which part of it; by default itself."""
 
     def use(self, now: float) -> float:
         """Part of the time that it had lately, 0 to 1."""
@@ -62,8 +64,9 @@ class Shares:
     def charge(self, account: Account, seconds: float, now: float) -> None:
         """A piece was served that took so many seconds and ends now."""
         self._present = self.start(account)
-        account.ended = self._present + seconds / account.weight
-        account.add(seconds, now)
+        for payer, part in account.payers or ((account, 1.0),):
+            payer.ended = self.start(payer) + part * seconds / payer.weight
+            payer.add(part * seconds, now)
 
 
 def share(account: Account, others: Iterable[Account], now: float) -> float:
