@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from itertools import pairwise, product
 
 import numpy as np
@@ -9,7 +11,17 @@ import pytest
 
 from culet.engine.governing.governor import Setting
 from culet.engine.governing.measured_errors import SettingErrors
-from culet.study.serving.ladder import BOUNCES, CUTOFFS, SCALES, MeasuredSetting, errors_of, ladder_of, smoothed
+from culet.study.serving.ladder import (
+    BOUNCES,
+    CLOSEST,
+    CUTOFFS,
+    LEAST_SCALE,
+    SCALES,
+    MeasuredSetting,
+    errors_of,
+    ladder_of,
+    smoothed,
+)
 
 
 def error(scale: float, cutoff: float, bounces: int) -> float:
@@ -32,6 +44,25 @@ def test_the_ladder_is_the_best_setting_and_the_frontier_of_the_cheaper_ones() -
     assert best.error > others[0].error, "its noise"
     assert all(after.cost < before.cost and after.error > before.error for before, after in pairwise(others))
     assert len(others) > 5
+
+
+def test_the_cheapest_setting_of_each_range_of_sizes_is_a_rung_however_close_it_is() -> None:
+    """A slow machine has nothing below it. Others that cost as much as the one above them are not."""
+
+    def cost(setting: Setting) -> float:
+        """Of 16 reflections it is 0.996 of 24's."""
+        return setting.scale**2 * math.sqrt(0.01 / setting.cutoff) * math.pow(setting.max_bounces / 256, 0.01)
+
+    measured = [replace(each, setting=replace(each.setting, cost=cost(each.setting))) for each in MEASURED]
+    rungs = ladder_of(measured)
+    costs = {each.setting.max_bounces: each.setting.cost for each in measured[-len(BOUNCES) :]}
+    assert costs[16] > CLOSEST * costs[24]
+    smallest = min(rungs, key=lambda rung: rung.cost)
+    assert (smallest.scale, smallest.cutoff, smallest.max_bounces) == (min(SCALES), max(CUTOFFS), min(BOUNCES))
+    assert (LEAST_SCALE, max(CUTOFFS), min(BOUNCES)) in {(r.scale, r.cutoff, r.max_bounces) for r in rungs}
+    close = [after for before, after in pairwise(rungs) if after.cost > CLOSEST * before.cost]
+    assert {rung.max_bounces for rung in close} == {min(BOUNCES)}
+    assert len(close) == 2
 
 
 def test_the_engine_reads_the_errors_as_they_were_measured() -> None:

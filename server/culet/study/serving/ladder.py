@@ -40,7 +40,8 @@ BOUNCES = 256, 48, 24, 16
 REFERENCE_SAMPLES, REFERENCE_CUTOFF = 64, 1e-3
 TURNS = 5
 CLOSEST = 0.95
-"""Cost of a rung over that of the one above it: what is nearer is not worth a change of setting."""
+"""Cost of a rung over that of the one above it: what is nearer is not worth a change of setting, but where there is
+nothing cheaper."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +90,14 @@ def _rungs(best: Setting, others: list[Setting]) -> list[Setting]:
 
 
 def _frontier(settings: list[Setting], cost: float) -> list[Setting]:
-    """Those than which none cheaper is better, from below that cost down, none close to the one before it."""
+    """Those than which none cheaper is better, from below that cost down, none close to the one before it but the
+    cheapest of all, which a slow machine needs."""
     rungs: list[Setting] = []
+    cheapest = min(settings, key=lambda setting: (setting.cost, setting.error), default=None)
     for setting in sorted(settings, key=lambda setting: setting.cost, reverse=True):
         cheaper = [other for other in settings if other.cost <= setting.cost and other is not setting]
-        if setting.cost < CLOSEST * cost and all(other.error > setting.error for other in cheaper):
+        most = cost if setting is cheapest else CLOSEST * cost
+        if setting.cost < most and all(other.error > setting.error for other in cheaper):
             rungs.append(setting)
             cost = setting.cost
     return rungs
