@@ -16,6 +16,7 @@ from culet.engine.painting.painter import Painter
 from culet.engine.painting.video_track import VideoTrack
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.staging import Staging
+from culet.engine.session.history import History
 from culet.errors import BusyError
 from culet.stage import Library
 from culet_protocol.frame import Codec
@@ -78,7 +79,8 @@ def test_encoders_of_sessions_at_rest_are_given_back_and_those_of_moving_ones_ar
     memory, resting, moving = Memory(10**9), Outgoing(sent_at=now), Outgoing(sent_at=now, encoded_at=now)
     edits = SimpleNamespace(nbytes=0)
     lives = [
-        SimpleNamespace(outgoing=each, session=SimpleNamespace(history=(), edits=edits)) for each in (moving, resting)
+        SimpleNamespace(outgoing=each, session=SimpleNamespace(history=History(), edits=edits))
+        for each in (moving, resting)
     ]
     painter = cast(Painter, SimpleNamespace(pictures=dict(enumerate(lives))))
     OpenSessions(painter, Limits(), memory, Staging(Library()))

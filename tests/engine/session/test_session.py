@@ -2,6 +2,7 @@ import json
 
 import pytest
 
+from culet.engine.session.history import History
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import SessionSnapshot
 from culet.errors import InputError, NotFoundError
@@ -67,7 +68,7 @@ def test_of_a_stone_that_sleeps_not_even_the_time_shown_goes_on() -> None:
 
 
 def test_what_was_shown_can_be_had_again_until_it_is_forgotten() -> None:
-    session = Session(NAME, STAGE, history=3)
+    session = Session(NAME, STAGE, history=History(3))
     session.set_falling(True)
     for frame in range(6):
         session.advance(frame / 60)

@@ -17,6 +17,7 @@ from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.process.staging import CHANGE_SECONDS, Patience, Staging
 from culet.engine.session import events
+from culet.engine.session.history import History
 from culet.engine.session.session import Session
 from culet.engine.session.snapshot import SessionSnapshot
 from culet.errors import BusyError, NotFoundError
@@ -30,8 +31,6 @@ SUBSCRIPTIONS = 4096
 """Subscriptions that are remembered: sessions may be opened after somebody subscribed to them."""
 SESSION_BYTES = 2**20
 """Of a session: its scene, its simulation with the stone's hull, and its stone if that is a cut."""
-SHOWN_BYTES = 2**14
-"""Of a shown state whose scene is another than the one before; one in which only the stone moved takes 2.6 KiB."""
 AT_REST_SECONDS = 2.0
 """Without a frame of video, after which a session's encoders are given back where memory is needed."""
 HISTORY_SHARE = 1 / 8
@@ -52,7 +51,7 @@ class OpenSessions:
         self._limits = limits
         self._memory = memory
         self._staging = staging
-        self._history = history_length(limits, memory.budget)
+        self._history = partial(History, limits.max_shown_states, HISTORY_SHARE * memory.budget / limits.max_sessions)
         self._touched: dict[str, float] = {}
         """s, steady clock: when somebody last asked for each."""
         self._clients: dict[str, str] = {}
@@ -60,7 +59,7 @@ class OpenSessions:
         self._opening: dict[str, set[threading.Event]] = {}
         """Set of sessions that were closed before they were open."""
         self._subscriptions: set[bytes] = set()
-        memory.count("histories", lambda: SHOWN_BYTES * sum(len(live.session.history) for live in self))
+        memory.count("histories", lambda: sum(live.session.history.nbytes for live in self))
         memory.count("video", lambda: sum(live.outgoing.nbytes for live in self))
         memory.give_back(self._give_encoders_back)
         memory.count("edits", lambda: sum(live.session.edits.nbytes for live in self))
@@ -219,13 +218,8 @@ class OpenSessions:
         """A session whose own sky is of that environment. Takes a while, as shapes and their hulls are made."""
         stage, sky = Stage.of(scene, library), events.own_sky(library.sky(own))
         if snapshot is None:
-            return Session(name, stage, sky=sky, history=self._history)
-        return Session.restored(name, stage, snapshot, sky=sky, history=self._history)
-
-
-def history_length(limits: Limits, budget: int) -> int:
-    """Shown states that each session may keep, so that all sessions' take HISTORY_SHARE of the memory at most."""
-    return max(1, min(limits.max_shown_states, int(HISTORY_SHARE * budget) // (SHOWN_BYTES * limits.max_sessions)))
+            return Session(name, stage, sky=sky, history=self._history())
+        return Session.restored(name, stage, snapshot, sky=sky, history=self._history())
 
 
 async def described(live: LivePicture) -> dict[str, Any]:

@@ -57,10 +57,10 @@ class Session:
         stage: Stage,
         *,
         sky: Sky | None = None,
-        history: int = 600,
+        history: History | None = None,
         timer: Callable[[], float] = thread_time,
     ) -> None:
-        """`timer` says how many seconds of the processor were taken."""
+        """`history` remembers what is shown; `timer` says how many seconds of the processor were taken."""
         self.name = name
         """32 hexadecimal digits."""
         self.key = watch_key(name)
@@ -72,7 +72,7 @@ class Session:
         """Of speed and exactness, while things move."""
         self.sequence = 0
         """Of the frame sent last."""
-        self.history = History(history)
+        self.history = History() if history is None else history
         self.removals = Removals()
         """Stones that may come back."""
         self.edits = Edits()
@@ -95,7 +95,7 @@ class Session:
         snapshot: SessionSnapshot,
         *,
         sky: Sky | None = None,
-        history: int = 600,
+        history: History | None = None,
     ) -> Session:
         """The session that another engine had; its step and frame numbers go on where none was used."""
         own = (sky or stage.sky)._replace(surroundings=snapshot.surroundings)
