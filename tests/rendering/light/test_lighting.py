@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import gc
 import math
+import threading
+import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -27,12 +30,13 @@ from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light import beams
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.lighting import Illumination, Maker
+from culet.rendering.light.lighting import Illumination, Lighting, Maker
 from culet.rendering.opencl.device import Device
 from culet.rendering.pace import KernelPace
 from culet.rendering.renderer import MIXED, DevicePicture, Renderer
 from culet.scene import Scene
 from culet.stage import Stage
+from shared.patience import PATIENCE
 from shared.stages import staged
 from shared.stones import ring
 
@@ -78,6 +82,28 @@ def test_a_panorama_is_summed_before_a_picture_is_begun(renderer: Renderer) -> N
     renderer.make_ready(stage)
     assert renderer.is_ready(stage)
     assert is_summed(pixels)
+
+
+def test_pictures_that_are_begun_together_have_their_beams_compiled_once(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ten at a time took ten times the memory of a compiler and of a pass."""
+    lighting, passes, together = Lighting(renderer.device, renderer.allocate), [], threading.Barrier(4)
+
+    def make(*_given: object, **_how: object) -> None:
+        passes.append(1)
+        time.sleep(0.02)  # that others may come to it if they can
+
+    def ask() -> None:
+        together.wait(PATIENCE)
+        lighting.make_ready(Stage.of(scene_of()))
+        assert lighting.is_ready(Stage.of(scene_of()))
+
+    monkeypatch.setattr(Beams, "make", make)
+    with ThreadPoolExecutor(4) as pool:
+        for each in [pool.submit(ask) for _ in range(4)]:
+            each.result(PATIENCE)
+    assert len(passes) == 1
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import sys
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -13,6 +16,7 @@ from culet.rendering.features import Features
 from culet.rendering.programs import precompile, program
 from culet.rendering.programs.build import Variant
 from culet.rendering.programs.program import Programs
+from shared.patience import PATIENCE
 
 GENERAL = Features()
 SPECIAL = Features(floor=0)
@@ -74,3 +78,30 @@ def test_a_compiler_that_never_ends_is_ended_and_the_general_program_goes_on(
     assert ask(programs, 2) == [GENERAL] * 2
     assert programs.made == [GENERAL], "the driver that hung there would hang here too, and frames with it"
     assert "did not end" in caplog.text
+
+
+def test_what_many_wait_for_is_made_once_and_one_program_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    programs, compilers, most = Bench(), [0], [0]
+    programs.exact(GENERAL, Variant())
+
+    def compile_apart(*_given: object, **_how: object) -> bool:
+        compilers[0] += 1
+        most[0] = max(most[0], compilers[0])
+        time.sleep(0.02)  # that others may come to it if they can
+        compilers[0] -= 1
+        return True
+
+    monkeypatch.setattr(program, "precompile", compile_apart)
+    wanted = [SPECIAL, replace(SPECIAL, glare=0)] * 3
+    together = threading.Barrier(len(wanted))
+
+    def ask_for(features: Features) -> None:
+        together.wait(PATIENCE)
+        programs.prepare(features, Variant())
+
+    with ThreadPoolExecutor(len(wanted)) as pool:
+        for each in [pool.submit(ask_for, features) for features in wanted]:
+            each.result(PATIENCE)
+    assert most == [1]
+    assert programs.made[0] == GENERAL
+    assert sorted(map(repr, programs.made[1:])) == sorted(map(repr, wanted[:2]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -96,6 +97,7 @@ class Lighting:
         for each core, and ten pictures would hold that ten times."""
         self._warm: set[tuple[bool, bool, bool]] = set()
         """Kinds of stages for whose beams there is machine code."""
+        self._making_ready = threading.Lock()
         self.photons = Photons(device)
 
     def of(self, stage: Stage) -> Illumination | None:
@@ -127,12 +129,16 @@ class Lighting:
         return beams_of(stage) in self._warm if takes_only_beams(stage) else self.photons.is_ready(stage)
 
     def make_ready(self, stage: Stage) -> None:
-        """Have the programs that are needed compiled, in any thread: by a pass of next to no light in a queue of its
-        own, since machine code is made at the first launch."""
+        """Have the programs that are needed compiled, in any thread, and one after the other: a compiler takes some
+        100 MiB, and so does the pass."""
         if stage.panorama is not None and shown(stage.scene):
             panorama_light(stage.panorama)
-        if self.is_ready(stage):
-            return
+        with self._making_ready:
+            if not self.is_ready(stage):
+                self._compile(stage)
+
+    def _compile(self, stage: Stage) -> None:
+        """By a pass of next to no light in a queue of its own, since machine code is made at the first launch."""
         device = replace(self.device, queue=cl.CommandQueue(self.device.context))
         frame = frame_of(stage)
         target = cl.Buffer(device.context, cl.mem_flags.READ_WRITE, frame.nbytes)

@@ -35,6 +35,8 @@ class Programs:
         self._next_try: dict[tuple[Features, Variant], float] = {}
         """s, steady clock: of those made in the background, or tried in vain, when they may be tried again."""
         self._compiler = threading.Lock()
+        self._turns = {urgent: threading.Lock() for urgent in (True, False)}
+        """For those who wait for a program, and in the background: of each kind one is made at a time."""
 
     def exact(self, features: Features, variant: Variant) -> Kernel:
         """The kernel for just these features; waits for the compiler if need be."""
@@ -53,12 +55,13 @@ class Programs:
 
     def prepare(self, features: Features, variant: Variant, *, urgent: bool = True) -> None:
         """Make the kernel for just these features ready, and keep launches waiting as little as can be: by a process of
-        its own, unless there is nothing yet that could be launched."""
-        if self.is_ready(features, variant):
-            return
-        if self._ready:
-            precompile(features, variant, urgent=urgent)
-        self.exact(features, variant)
+        its own, unless there is nothing yet that could be launched. One at a time: a compiler takes 200 MiB."""
+        with self._turns[urgent]:
+            if self.is_ready(features, variant):
+                return
+            if self._ready:
+                precompile(features, variant, urgent=urgent)
+            self.exact(features, variant)
 
     def best(self, features: Features, variant: Variant) -> Kernel:
         """The kernel for these features if it is ready; else the general one, while the special one is made.
