@@ -21,6 +21,7 @@ from culet.stage import Stage
 from rendering.views import take
 
 SIZE = 320, 180
+LIT = Scene.read({"floor": {"kind": "matte"}, "stones": [{}]})
 RUN = 16 * SIZE[0] * SIZE[1]
 """Bytes of the sums of one run of samples: four float32 of each pixel."""
 
@@ -152,6 +153,22 @@ def test_a_resting_pass_that_nobody_waits_for_gives_its_memory_back(
         own.picture(other, 32, 18)
         assert (taken[-1]() is None) == (left_seconds == 0), "or the next picture of the stage goes on with it"
     assert len(taken) == 1
+
+
+def test_what_a_picture_at_rest_sums_its_light_in_is_given_back_when_that_is_good_enough(own: Renderer) -> None:
+    picture = own.picture(Stage.of(preset("heap")), 32, 18, effort=LightEffort.MOVING)
+    picture.refine()
+    beams = own.lighting.take_beams()
+    kept = weakref.ref(beams)
+    own.lighting.give_back(beams)
+    del beams
+    assert kept() is not None, "for the next frame that moves"
+    picture = own.picture(Stage.of(LIT), 32, 18, effort=LightEffort.RESTING)
+    picture.refine()
+    assert kept() is not None, "or its own next pass"
+    picture.refine()
+    assert picture.light_error() > 0
+    assert kept() is None
 
 
 def test_an_engine_that_draws_nothing_has_no_pass_under_way(own: Renderer) -> None:

@@ -34,8 +34,8 @@ KEPT = 2**25
 One of a moving picture is kept until one is made of the same stones elsewhere: each frame has its own, of which only
 the last may be shown again, at rest. Pictures keep theirs besides."""
 LEFT_SECONDS = 2.0
-"""For which a pass at rest is kept that nobody waits for any more: the next picture of the same stage goes on with it,
-as after a frame that showed something sooner."""
+"""For which a pass is kept that nobody waits for any more: the next picture of the same stage goes on with it, as after
+a frame that showed something sooner."""
 TARGET = 2e-3
 """Estimated root mean square error at which a map is good enough, in parts of the brightest emitter's irradiance over
 pi: a quarter of a step of 8 bits in the middle of the scale."""
@@ -162,17 +162,16 @@ class Lighting:
         Pictures and passes that are under way have their own. From any thread, but while no picture is refined."""
         for each in list(self._under_way.values()):
             each.give_up_left(0.0)
-        self._beams.clear()
+        self.forget_beams()
         for key, each in list(self._kept.items()):
             if each.provisional:
                 self._kept.pop(key, None)
 
     def give_up_left(self) -> None:
-        """Passes at rest that nobody has waited for a while. One holds its map and what it sums, and would do so until
-        another picture at rest has a pass; one of a moving frame is followed by the next frame's."""
-        for effort, each in list(self._under_way.items()):
-            if effort is not LightEffort.MOVING:
-                each.give_up_left(LEFT_SECONDS)
+        """Passes that nobody has waited for a while. One holds what it sums, and would do so until another picture of
+        the same effort has a pass."""
+        for each in list(self._under_way.values()):
+            each.give_up_left(LEFT_SECONDS)
 
     def others_end(self, effort: LightEffort) -> Iterator[object]:
         """Let the pass of such an effort that is under way end, whoever it is for, or give it up if nobody waits for
@@ -201,6 +200,10 @@ class Lighting:
         surface for each core, and for each point a quarter of that. Those of a pass that was given up are not."""
         if beams.clean and not self._beams:
             self._beams.append(beams)
+
+    def forget_beams(self) -> None:
+        """Give back what is kept for the next pass. From any thread."""
+        self._beams.clear()
 
     def scratch(self, size: int) -> Any:  # noqa: ANN401
         """Memory for a pass that is not whole yet."""
@@ -341,8 +344,9 @@ class Illumination:
                 falls = min(1.0, FEW_PASSES / max(1, self.passes)) if self._by_beams else 1.0
                 least = max(least, RANDOM_CUTOFF * falls)
             if not self._random and self.cutoff <= least:
-                return
+                break
             yield from self._advance(max(least, min(self.cutoff, cutoff) * FALL), effort, seconds)
+        self._of.forget_beams()
 
     def _begin(self, cutoff: float, *, provisional: bool) -> None:
         """Anew, as if there were no pass; what is in the map stays there until the first one is done. A pass that is
@@ -451,36 +455,34 @@ class Illumination:
         self.cutoff = min(self.cutoff, cutoff)
         self.figures = replace(figures, rmse=self.rmse, seconds=self.seconds)
 
-    def _weigh(self, weight: float, *, anew: bool) -> tuple[NDArray[np.float32] | None, float, float]:
+    def _weigh(self, weight: float, *, anew: bool) -> tuple[list[NDArray[np.float32]] | None, float, float]:
         """The map before a pass of that weight, and what of the map is kept, and of the pass added."""
         if anew or self._weight == 0:
             return None, 0.0, 1.0
         gain = weight / (self._weight + weight)
-        return self._fine(), 1 - gain, gain
+        return list(self._fine()), 1 - gain, gain
 
     def _count(
-        self, weight: float, bias: float, gain: float, before: NDArray[np.float32] | None, *, anew: bool
+        self, weight: float, bias: float, gain: float, before: list[NDArray[np.float32]] | None, *, anew: bool
     ) -> None:
         """A pass was added."""
         if anew:
             self._weight = self._squared = self._bias = 0.0
             self._spread.clear()
         if before is not None:  # the variance of a pass, less that of the mean so far
-            apart = float(np.mean(np.square(self._fine() - before, dtype=np.float64))) / gain**2
-            self._spread.append(apart / (1 + self._squared / self._weight**2))
+            both = zip(self._fine(), before, strict=True)  # a surface at a time: all take 60 MiB
+            apart = [float(np.mean(np.square(now - then, dtype=np.float64))) for now, then in both]
+            self._spread.append(math.fsum(apart) / len(apart) / gain**2 / (1 + self._squared / self._weight**2))
         self._weight += weight
         self._squared += weight**2
         self._bias += weight * bias
 
-    def _fine(self) -> NDArray[np.float32]:
-        """The finer level of the surfaces that have a map."""
-        frame = self.bound.frame
-        found = np.empty((len(frame.matte), SIZE, SIZE, CHANNELS), np.float32)
-        for place, surface in enumerate(frame.matte):
-            cl.enqueue_copy(
-                self._of.device.queue, found[place], self.bound.buffer, src_offset=surface * LEVELS * found[0].nbytes
-            )
-        return found
+    def _fine(self) -> Iterator[NDArray[np.float32]]:
+        """(SIZE, SIZE, CHANNELS) the finer level of each surface that has a map."""
+        for surface in self.bound.frame.matte:
+            found = np.empty((SIZE, SIZE, CHANNELS), np.float32)
+            cl.enqueue_copy(self._of.device.queue, found, self.bound.buffer, src_offset=surface * LEVELS * found.nbytes)
+            yield found
 
 
 def _whole(rays: Sequence[LightRay]) -> Iterator[float]:

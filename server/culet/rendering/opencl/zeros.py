@@ -29,7 +29,7 @@ class _Pages(cl.Buffer):
     """A buffer in pages that are this process's own, and go with it."""
 
     def __init__(self, device: Device, size: int) -> None:
-        pages = np.frombuffer(mmap.mmap(-1, size), np.uint8)
+        pages = np.frombuffer(mmap.mmap(-1, size, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS), np.uint8)
         super().__init__(device.context, cl.mem_flags.READ_WRITE | cl.mem_flags.USE_HOST_PTR, hostbuf=pages)
         self._queue = device.queue
 
