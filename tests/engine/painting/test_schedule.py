@@ -29,6 +29,7 @@ def live(*, watched: bool = True, begun_at: float = 0, rate: float = 10) -> Live
 
 def painted(picture: LivePicture, *, final: bool) -> LivePicture:
     picture.picture = None if final else RENDERER.picture(STAGE, 16, 16)
+    picture.turn.has = not final
     picture.painted, picture.painted_size = picture.session.shown, picture.size
     picture.state = PictureState.FINAL if final else PictureState.FULL
     picture.outgoing.message, picture.outgoing.sent_at = b"frame", 0

@@ -70,6 +70,8 @@ class FrameWork:
     """(height, width, 3): what was seen last of the same; None: nothing that it could be shown over amid a sample."""
     seen_at: float | None = None
     """s, the same clock: when that was drawn, if not when this was begun."""
+    seen_samples: int = 0
+    """Of each pixel of what was seen last: a picture that was begun anew is not shown before it has as many."""
     piece_seconds: float = PIECE_SECONDS
     """That a launch is meant to take."""
     final: bool = False
@@ -171,7 +173,7 @@ class FrameWork:
         elif self.aim is None:
             yield from picture.refine_until(Target(1), self.piece_seconds, pause=lambda: True, due=self._due)
         else:
-            most = 2 * max(1, picture.samples_seen)
+            most = 2 * max(1, picture.samples_seen, self.seen_samples)
 
             def enough() -> bool:
                 return picture.samples >= most or self._waits(picture, renderer)
@@ -186,7 +188,7 @@ class FrameWork:
     def _due(self, seconds: float) -> bool:
         """Whether what is made is to be seen when so many seconds have gone by, and can be: amid a sample it is shown
         over something."""
-        if self.over is None:
+        if self.over is None or (self.picture is not None and self.picture.samples < self.seen_samples):
             return False
         since = self.begun_at if self.seen_at is None else self.seen_at
         return self.now() + seconds - since > REFRESH_SECONDS

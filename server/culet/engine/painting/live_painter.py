@@ -131,15 +131,15 @@ class LivePainter:
         return work
 
     def _begin_refinement(self, live: LivePicture) -> None:
-        """More samples of the picture."""
+        """More samples of the picture; of one that has given its memory back all anew."""
         picture, shown = live.picture, live.painted
-        assert picture is not None  # noqa: S101 - of a picture that wants to be refined
-        assert shown is not None  # noqa: S101 - of such a picture too
-        fine = picture.samples >= FINE_SAMPLES
+        assert shown is not None  # noqa: S101 - of a picture that wants to be refined
+        fine = live.seen_samples >= FINE_SAMPLES
         live.rest.weight = FINE_WEIGHT if fine else REST_WEIGHT
         work = FrameWork(
             WorkKind.REFINED, shown, live.painted_size, live.rest, self._now(), picture=picture, aim=self._rest,
-            now=self._now, render_seconds=live.render_seconds, over=live.seen, seen_at=live.seen_at,
+            now=self._now, render_seconds=0.0 if picture is None else live.render_seconds, over=live.seen,
+            seen_at=live.seen_at, seen_samples=live.seen_samples if picture is None else 0,
         )  # fmt: skip
         if fine and self._share_of(live) < 1:
             work.piece_seconds = FINE_SECONDS

@@ -16,6 +16,7 @@ from culet.engine.painting.frame_work import FrameWork, WorkKind
 from culet.engine.painting.lesser_tier import fitting
 from culet.engine.painting.quality import Quality
 from culet.engine.painting.renderer import AnyPicture
+from culet.engine.painting.rest_turn import RestTurn
 from culet.engine.painting.shares import Account
 from culet.engine.session.session import Session, ShownScene
 from culet_protocol.messages import Balance
@@ -105,8 +106,12 @@ class LivePicture:
     """(height, width, 3): the frame that was drawn last, for a better or a larger one of the same."""
     seen_at: float = NEVER
     """s, steady clock: when that was."""
+    seen_samples: int = 0
+    """Of each pixel of that, at least, if it was drawn in full."""
     render_seconds: float = 0.0
     """Of all samples of the picture."""
+    turn: RestTurn = field(default_factory=RestTurn)
+    """At being refined; of what the picture shows."""
     making: Making | None = None
     """The next frame, or a better one of what is shown; None while nothing is under way."""
     preparing_more: asyncio.Task[None] | None = None
@@ -231,6 +236,8 @@ class LivePicture:
         assert work.picture is not None  # noqa: S101 - of a frame that is done
         if work.shown is not self.painted:
             self.changed_at = now
+        if work.shown is not self.painted or work.wanted != self.painted_size:
+            self.turn = RestTurn()
         self.making = None
         self.quality.drew(work)
         self.painted, self.painted_size, self.render_seconds = work.shown, work.wanted, work.render_seconds
@@ -240,7 +247,8 @@ class LivePicture:
             case WorkKind.PLANNED:
                 self.state, self.picture, self.settles_at = PictureState.REDUCED, None, now + SETTLE_SECONDS
             case WorkKind.FULL | WorkKind.REFINED:
-                self.state, self.picture = PictureState.FULL, work.picture
+                self.state, self.picture, self.seen_samples = PictureState.FULL, work.picture, work.picture.samples_seen
+                self.turn.spent += work.spent
             case _:
                 assert_never(work.kind)
         self.seen, self.seen_at = None if work.frame is None else work.frame.rgb, now
@@ -291,10 +299,20 @@ class LivePicture:
             case _:
                 assert_never(work.kind)
 
+    @property
+    def could_be_refined(self) -> bool:
+        """Whether more samples would improve what is seen, as far as is wanted."""
+        return self.watched and self.at_rest and self.state is PictureState.FULL
+
     def wants_refinement(self) -> bool:
-        """Whether more samples would improve what is seen, as far as is wanted, and nothing is in their way."""
+        """Whether they would, it has its turn, and nothing is in their way."""
         idle = self.making is None and self.preparing_more is None and not self.outgoing.full
-        return self.watched and self.at_rest and self.state is PictureState.FULL and idle
+        return self.could_be_refined and self.turn.has and idle
+
+    def put_down(self) -> None:
+        """Its memory is needed by others; what is seen of it stays. It is begun anew when it has its turn."""
+        if self.making is None:
+            self._let_go()
 
     def refuse(self, shown: ShownScene) -> None:
         """It cannot be rendered."""

@@ -20,6 +20,7 @@ from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.preparation import in_daemon_thread
 from culet.engine.painting.render_thread import RenderThread
 from culet.engine.painting.renderer import AnyRenderer
+from culet.engine.painting.rest_turns import take_turns
 from culet.engine.painting.shares import Shares, share
 from culet.engine.painting.still import EncodeStill, StillQueue
 from culet.engine.painting.still_painter import StillPainter
@@ -125,6 +126,7 @@ class Painter:
                 live.give_up(now)
             if not live.watched:
                 live.abandon(now)
+        take_turns(pictures, now)
         chosen = schedule.next_work(pictures, self._stills, self._shares, now)
         if chosen is not None:
             self._drew_at = now

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from culet.engine.painting.live_picture import LivePicture
+from culet.engine.painting.rest_turns import waits_to_settle
 from culet.engine.painting.shares import Account, Shares
 from culet.engine.painting.still import StillQueue
 from culet.rendering.emitters.sources import mapped_surfaces
@@ -27,7 +28,10 @@ def next_work(
     """What gets the next piece of the render thread's time; of equal claims the one that has waited longest."""
     pictures = list(pictures)
     with_light = [each for each in pictures if has_own_light(each)]
-    runnable = [each for each in pictures if is_runnable(each, now) and not waits_for_light(each, with_light)]
+    runnable = [
+        each for each in pictures
+        if is_runnable(each, now) and not waits_for_light(each, with_light) and not waits_to_settle(each, pictures)
+    ]  # fmt: skip
     waiting: list[tuple[float, float, LivePicture | StillQueue]] = [
         (shares.start(picture.next_account), picture.begun_at, picture) for picture in runnable
     ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -75,7 +75,7 @@ class MapFrame:
     @property
     def held(self) -> int:
         """Surfaces that the buffer has: only the floor, or all."""
-        return max(self.matte, default=-1) + 1 if max(self.matte, default=0) == 0 else SURFACES
+        return held_surfaces(self.matte)
 
     @property
     def shape(self) -> tuple[int, int, int, int, int]:
@@ -85,7 +85,7 @@ class MapFrame:
     @property
     def nbytes(self) -> int:
         """Of the buffer."""
-        return 4 * int(np.prod(self.shape))
+        return map_bytes(self.matte)
 
     def texels(self, surface: int, level: int) -> tuple[Array, Array]:
         """(SIZE,) u of the columns' middles, and v of the rows'."""
@@ -95,6 +95,16 @@ class MapFrame:
     def texel_area(self, level: int) -> float:
         """R^2."""
         return (2 * self.halves[level] / SIZE) ** 2
+
+
+def held_surfaces(matte: Sequence[int]) -> int:
+    """Surfaces that a map's buffer has for these: none, only the floor, or all."""
+    return max(matte, default=-1) + 1 if max(matte, default=0) == 0 else SURFACES
+
+
+def map_bytes(matte: Sequence[int]) -> int:
+    """Of a map's buffer for these surfaces: float32 by surface, level, row, column and channel."""
+    return 4 * held_surfaces(matte) * LEVELS * SIZE * SIZE * CHANNELS
 
 
 def frame_of(stage: Stage) -> MapFrame:
