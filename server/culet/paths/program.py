@@ -16,7 +16,7 @@ from culet.rendering.opencl.device import Device, open_device
 from culet.rendering.opencl.layout import buffers, struct
 from culet.rendering.opencl.making import alone
 from culet.rendering.programs.build import Variant, build
-from culet.rendering.programs.precompile import in_a_process, ordered
+from culet.rendering.programs.precompile import in_a_process, program_ordered
 
 COMMAND = (sys.executable, "-m", __name__)
 """The process that makes one, which takes the order as its argument."""
@@ -65,7 +65,7 @@ def make_path(device: Device, features: Features, variant: Variant) -> PathKerne
 
 def main() -> None:
     """Entry of that process."""
-    make_path(open_device(), *ordered())
+    make_path(open_device(), *program_ordered())
 
 
 if __name__ == "__main__":

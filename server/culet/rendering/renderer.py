@@ -79,17 +79,18 @@ class Renderer:
         special_programs: bool = True,
     ) -> None:
         """Open the device (DeviceError if none works). With `background_compile` a picture never waits for a special
-        program: the general one serves until it is ready; without `special_programs` for good."""
+        program: the general one serves until it is ready; without `special_programs` for good. Then what the driver's
+        cache does not have is compiled by processes of their own, too."""
         self.device = device or open_device()
         self.variant = Variant(lanes=lanes or self.device.lanes_for(real), real=real)
-        self.programs = Programs(self.device)
+        self.programs = Programs(self.device, apart=background_compile)
         self._background_compile, self._special_programs = background_compile, special_programs
         self.pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(self.device.queue))
         self._most, self._most_before, self._since = 0, 0, time.monotonic()
         """Bytes that pictures had at most at a time: since a moment less than LATELY ago, in as long before that, and
         that moment."""
         self.fold = Fold(self.device, self.variant)
-        self.lighting = Lighting(self.device, self.allocate)
+        self.lighting = Lighting(self.device, self.allocate, apart=background_compile)
         self._paces: dict[tuple[Any, int], KernelPace] = {}
         film = build(self.device, "film.cl", self.variant.options)
         self.develop = cl.Kernel(film, "develop")
@@ -100,7 +101,7 @@ class Renderer:
 
     def prepare(self) -> None:
         """Make the program that serves most scenes until a special one is ready, so that no picture waits for it."""
-        self.programs.exact(Features().general, self.variant)
+        self.programs.prepare(Features().general, self.variant)
 
     def kernel_for(self, features: Features, *, asked_for: bool) -> Kernel:
         """The kernel for what needs these features, or for just them where they were asked for."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import math
+import pickle
 import threading
 import time
 from collections.abc import Iterator, Sequence
@@ -30,11 +31,12 @@ from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light import beams
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.lighting import Illumination, Lighting, Maker
+from culet.rendering.light.lighting import Illumination, Lighting, Maker, beams_of, takes_only_beams
 from culet.rendering.opencl.device import Device
 from culet.rendering.pace import KernelPace
 from culet.rendering.renderer import MIXED, DevicePicture, Renderer
 from culet.scene import Scene
+from culet.scene.presets import PRESETS, preset
 from culet.stage import Stage
 from shared.patience import PATIENCE
 from shared.stages import staged
@@ -559,3 +561,34 @@ def test_a_stone_of_triangles_gets_the_light_that_one_of_half_spaces_gets(render
         texels(renderer, found)[0, 1].reshape(64, 8, 64, 8, 3).mean(axis=(1, 3)) for found in (by_beams, by_photons)
     ]
     assert np.sqrt(np.mean((wide[0] - wide[1]) ** 2)) < 0.03 * np.sqrt(np.mean(wide[0] ** 2))
+
+
+def test_a_process_of_its_own_can_be_given_any_stage() -> None:
+    """By which it compiles the programs of that light."""
+    for scene in [*(preset(name) for name in PRESETS), scene_of(stones=[{"cut": "heart", "scale": 0.5}])]:
+        stage = Stage.of(scene)
+        again = pickle.loads(pickle.dumps(stage))  # noqa: S301 - written just here
+        assert again.scene == scene
+        assert beams_of(again) == beams_of(stage)
+        assert takes_only_beams(again) == takes_only_beams(stage)
+
+
+def test_programs_that_the_cache_does_not_have_are_compiled_by_a_process_of_its_own(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent: list[Stage] = []
+
+    def run_apart(_begins: object, _order: object, data: bytes) -> bool:
+        sent.append(pickle.loads(data))  # noqa: S301 - written just before
+        return False
+
+    monkeypatch.setattr("culet.rendering.light.lighting.run_apart", run_apart)
+    one = Stage.of(scene_of())
+    three = Stage.of(scene_of(stones=[{"position": [3 * i, 0, 0]} for i in range(3)]))
+    for missing in (False, True):
+        monkeypatch.setattr("culet.rendering.light.lighting.lacks", lambda *_program, missing=missing: missing)
+        lighting = Lighting(renderer.device, renderer.allocate, apart=True)
+        for stage in (one, three, one):
+            lighting.make_ready(stage)
+            assert lighting.is_ready(stage), "whether that process did it or not"
+    assert [stage.scene for stage in sent] == [one.scene, three.scene]

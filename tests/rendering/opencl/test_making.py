@@ -8,7 +8,9 @@ import sys
 import threading
 from pathlib import Path
 
-from culet.rendering.opencl.making import alone
+import pytest
+
+from culet.rendering.opencl.making import alone, lacks
 from shared import patience
 
 PATIENCE = patience.PATIENCE
@@ -54,3 +56,23 @@ def test_processes_that_start_together_share_one_compilation(tmp_path: Path) -> 
     ]
     seconds = sorted(float(maker.communicate(timeout=PATIENCE)[0]) for maker in makers)
     assert seconds[1] < 0.5 * seconds[2], "of processor time; measured 0.03: two of three read what one has made"
+
+
+def test_a_program_is_known_to_be_in_the_cache_once_it_is_made(tmp_path: Path) -> None:
+    assert lacks(tmp_path, "program")
+    with pytest.raises(ZeroDivisionError), alone(tmp_path, "program"):
+        raise ZeroDivisionError
+    assert lacks(tmp_path, "program"), "it failed"
+    with alone(tmp_path, "program"):
+        assert lacks(tmp_path, "program")
+    assert not lacks(tmp_path, "program")
+    assert lacks(tmp_path, "another program")
+    assert lacks(tmp_path / "not there yet", "program")
+
+
+def test_no_other_process_is_asked_where_it_could_not_leave_a_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert not lacks(Path("/proc/none"), "program")
+    monkeypatch.setenv("POCL_KERNEL_CACHE", "0")
+    assert not lacks(tmp_path, "program")

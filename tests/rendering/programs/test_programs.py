@@ -13,6 +13,7 @@ import pytest
 
 from culet.errors import DeviceError
 from culet.rendering.features import Features
+from culet.rendering.opencl import apart
 from culet.rendering.programs import precompile, program
 from culet.rendering.programs.build import Variant
 from culet.rendering.programs.program import Programs
@@ -25,16 +26,20 @@ SPECIAL = Features(floor=0)
 class Bench(Programs):
     """Kernels are the features they are for."""
 
-    def __init__(self, *, broken: Features | None = None) -> None:
-        super().__init__(None)  # type: ignore[arg-type]
+    def __init__(self, *, broken: Features | None = None, apart: bool = False) -> None:
+        super().__init__(None, apart=apart)  # type: ignore[arg-type]
         self.broken = broken
         self.made: list[Features] = []
+        self.uncached = True
 
     def _make(self, features: Features, variant: Variant) -> Any:  # noqa: ANN401 - as it is of Programs
         self.made.append(features)
         if features == self.broken:
             raise DeviceError("it does not build")
         return features
+
+    def _is_uncached(self, _features: Features, _variant: Variant) -> bool:
+        return self.uncached
 
 
 def ask(programs: Programs, times: int) -> list[Any]:
@@ -72,7 +77,7 @@ def test_a_compiler_that_never_ends_is_ended_and_the_general_program_goes_on(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.undo()
-    monkeypatch.setattr(precompile, "MOST_SECONDS", 0.1)
+    monkeypatch.setattr(apart, "MOST_SECONDS", 0.1)
     monkeypatch.setattr(precompile, "COMMAND", (sys.executable, "-c", "import time; time.sleep(600)"))
     programs = Bench()
     assert ask(programs, 2) == [GENERAL] * 2
@@ -105,3 +110,26 @@ def test_what_many_wait_for_is_made_once_and_one_program_at_a_time(monkeypatch: 
     assert most == [1]
     assert programs.made[0] == GENERAL
     assert sorted(map(repr, programs.made[1:])) == sorted(map(repr, wanted[:2]))
+
+
+@pytest.mark.parametrize(
+    ("is_apart", "uncached", "compiled_apart"),
+    [
+        (False, True, [SPECIAL]),
+        (True, True, [GENERAL, SPECIAL]),
+        (True, False, []),
+        (False, False, []),
+    ],
+)
+def test_another_process_compiles_what_the_cache_does_not_have(
+    monkeypatch: pytest.MonkeyPatch, is_apart: bool, uncached: bool, compiled_apart: list[Features]
+) -> None:
+    """The first program too where that is asked for: an engine keeps the memory that its compiler took."""
+    started: list[Features] = []
+    monkeypatch.setattr(program, "precompile", lambda features, _variant, **_how: started.append(features))
+    programs = Bench(apart=is_apart)
+    programs.uncached = uncached
+    for features in (GENERAL, SPECIAL, GENERAL):
+        programs.prepare(features, Variant())
+    assert started == compiled_apart
+    assert programs.made == [GENERAL, SPECIAL], "whether that process did it or not"

@@ -83,9 +83,12 @@ def open_renderer(*, special_programs: bool) -> AnyRenderer:
 
     It is imported here, so that whatever only speaks to an engine never loads it.
     """
-    import culet.rendering.film.files  # so that the first still needs not wait for it  # noqa: F401
-    from culet.rendering.cut_out import CuttingRenderer
-    from culet.rendering.opencl import kernel_cache
+    from culet.rendering import first_programs
+
+    with first_programs.made_apart():
+        import culet.rendering.film.files  # so that the first still needs not wait for it  # noqa: F401
+        from culet.rendering.cut_out import CuttingRenderer
+        from culet.rendering.opencl import kernel_cache
 
     if not kernel_cache.has_plenty_of_room() and (fault := kernel_cache.complaint()):
         log.error("%s", fault)  # said first: the compiler may end this process

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import pickle
+import sys
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -15,6 +17,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
+import culet_kernels
 from culet.rendering.chains import band_count, is_spectral
 from culet.rendering.emitters.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
 from culet.rendering.emitters.panorama_light import is_summed, panorama_light
@@ -22,10 +25,14 @@ from culet.rendering.emitters.ray import LightRay
 from culet.rendering.emitters.sources import mapped_surfaces, rays_of
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.photons import PhotonMaps, Photons
+from culet.rendering.light.photons import PhotonMaps, Photons, needed
 from culet.rendering.light.solids import FEW, takes_beams
+from culet.rendering.opencl import kernel_cache
+from culet.rendering.opencl.apart import run_apart
 from culet.rendering.opencl.compiling import compiling
 from culet.rendering.opencl.device import Device
+from culet.rendering.opencl.making import alone, lacks
+from culet.rendering.programs.build import recipe
 from culet.rendering.room.surfaces import shown
 from culet.stage import Stage
 
@@ -59,6 +66,8 @@ FEW_PASSES = 16
 LASTING = 0.5
 """Of the error that a cut-off makes in a pass, what the mean of many directions or wavelengths keeps: measured on a sun
 of 0.27 degrees (`culet study caustics`)."""
+APART = (sys.executable, "-m", "culet.rendering.light.precompile")
+"""The process that compiles programs of light, which takes a stage."""
 COARSEST = 1.0
 """A cut-off at which hardly anything is followed."""
 PHOTONS = 30.0
@@ -83,9 +92,11 @@ class Maker(Enum):
 class Lighting:
     """Of one device. One thread at a time makes maps."""
 
-    def __init__(self, device: Device, allocate: Callable[[int], Any]) -> None:
-        """`allocate` makes a buffer of so many bytes on the device, for maps."""
+    def __init__(self, device: Device, allocate: Callable[[int], Any], *, apart: bool = False) -> None:
+        """`allocate` makes a buffer of so many bytes on the device, for maps. `apart`: `make_ready` has programs that
+        the driver's cache does not have compiled by a process of its own."""
         self.device = device
+        self._apart = apart
         self._allocate = allocate
         self._kept: dict[_Key, Illumination] = {}
         self._beams: list[Beams] = []
@@ -95,7 +106,7 @@ class Lighting:
         self._under_way: dict[LightEffort, Illumination] = {}
         """Whose pass has begun and is not done yet. Of each effort there is one at a time: a pass holds 8 MiB a surface
         for each core, and ten pictures would hold that ten times."""
-        self._warm: set[tuple[bool, bool, bool]] = set()
+        self._warm: set[BeamPrograms] = set()
         """Kinds of stages for whose beams there is machine code."""
         self._making_ready = threading.Lock()
         self.photons = Photons(device)
@@ -134,8 +145,20 @@ class Lighting:
         if stage.panorama is not None and shown(stage.scene):
             panorama_light(stage.panorama)
         with self._making_ready:
-            if not self.is_ready(stage):
+            if self.is_ready(stage):
+                return
+            cache, program = kernel_cache.folder(), self._recipe(stage)
+            # The stage is sent to that process; a panorama, which may have hundreds of MiB, is not.
+            if self._apart and stage.panorama is None and lacks(cache, program):
+                run_apart(APART, {}, pickle.dumps(stage))
+            with alone(cache, program):
                 self._compile(stage)
+
+    def _recipe(self, stage: Stage) -> str:
+        """Of the programs that `_compile` asks for."""
+        if takes_only_beams(stage):
+            return recipe(self.device, "beams.cl", culet_kernels.source("light_sum.cl"), beams_of(stage))
+        return recipe(self.device, "photons.cl", "and launched", needed(stage))
 
     def _compile(self, stage: Stage) -> None:
         """By a pass of next to no light in a queue of its own, since machine code is made at the first launch."""
@@ -215,10 +238,27 @@ def takes_only_beams(stage: Stage) -> bool:
     return all(map(takes_beams, stage.shapes))
 
 
-def beams_of(stage: Stage) -> tuple[bool, bool, bool]:
-    """Which programs the beams of a stage need: for stones of many facets, for points, for lamps."""
+class BeamPrograms(NamedTuple):
+    """Which programs the beams of a stage need."""
+
+    many_facets: bool
+    several: bool
+    """Stones."""
+    polarised: bool
+    points: bool
+    lamps: bool
+
+
+def beams_of(stage: Stage) -> BeamPrograms:
+    """Those of a stage."""
     points = [ray.position is not None for ray in rays_of(stage, 0)]
-    return any(len(shape.planes) > FEW for shape in stage.shapes), any(points), not all(points)
+    return BeamPrograms(
+        any(len(shape.planes) > FEW for shape in stage.shapes),
+        len(stage.shapes) > 1,
+        stage.scene.optics.polarised,
+        any(points),
+        not all(points),
+    )
 
 
 class _Key(NamedTuple):

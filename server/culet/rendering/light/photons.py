@@ -18,7 +18,6 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-import culet_kernels
 from culet.rendering.emitters.light_map import LEVELS, SIZE, Figures, MapFrame, surfaces
 from culet.rendering.emitters.ray import LightRay
 from culet.rendering.features import END, Features, features_of
@@ -29,7 +28,7 @@ from culet.rendering.opencl import kernel_cache
 from culet.rendering.opencl.device import Device
 from culet.rendering.opencl.layout import buffers, constants, struct
 from culet.rendering.opencl.making import alone
-from culet.rendering.programs.build import Variant, build
+from culet.rendering.programs.build import Variant, build, recipe
 from culet.rendering.stones.placed_stone import PlacedStone, origin_of, placed_stones
 from culet.scene.model import Scene
 from culet.stage import Stage
@@ -90,7 +89,7 @@ class Photons:
         """Built for these features; waits for the compiler if need be."""
         if features not in self._programs:
             options = [*self._variant.options, *features.options]
-            with alone(kernel_cache.folder(), f"{culet_kernels.source('photons.cl')} {options}"):
+            with alone(kernel_cache.folder(), recipe(self._device, "photons.cl", options)):
                 self._programs[features] = build(self._device, "photons.cl", options)
         return self._programs[features]
 

@@ -12,10 +12,11 @@ import contextlib
 import fcntl
 import hashlib
 import logging
+import os
 import time
 from collections.abc import Iterator
+from io import FileIO
 from pathlib import Path
-from typing import IO
 
 log = logging.getLogger(__name__)
 
@@ -25,25 +26,54 @@ BETWEEN_LOOKS = 0.02
 """s"""
 
 
+MADE = b"made"
+"""What the file of a program holds that is in the cache."""
+
+
+def lacks(cache: Path, program: str) -> bool:
+    """Whether another process could put a program into a cache, which does not have it yet, as far as is known.
+
+    Somebody may have taken files out of the cache since the program was made, or it is another driver's: then it is
+    compiled anew, in the process that asks for it.
+    """
+    file = _file(cache, program)
+    with contextlib.suppress(OSError):
+        if file.stat().st_size > 0:
+            return False
+    if os.environ.get("POCL_KERNEL_CACHE") == "0":  # PoCL's switch: each process has a cache of its own
+        return False
+    with contextlib.suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+    return os.access(file.parent, os.W_OK)
+
+
 @contextlib.contextmanager
 def alone(cache: Path, program: str) -> Iterator[None]:
-    """While nobody else on this machine makes a program of that text, options included, for that cache.
+    """While nobody else on this machine makes a program of that text, options included, for that cache; it counts as
+    made after that, unless by an error.
 
     Where the cache cannot be written there is nothing to be kept apart. The lock ends with the process that holds it.
     """
-    folder = cache / "making"
+    name = _file(cache, program)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / hashlib.sha256(program.encode()).hexdigest()[:32]).open("wb")
+        name.parent.mkdir(parents=True, exist_ok=True)
+        file = name.open("ab", buffering=0)
     except OSError:
         yield
         return
     with file:
         _lock(file)
         yield
+        if not os.fstat(file.fileno()).st_size:
+            with contextlib.suppress(OSError):  # without room it does not count as made
+                file.write(MADE)
 
 
-def _lock(file: IO[bytes]) -> None:
+def _file(cache: Path, program: str) -> Path:
+    return cache / "making" / hashlib.sha256(program.encode()).hexdigest()[:32]
+
+
+def _lock(file: FileIO) -> None:
     began = time.monotonic()
     while True:
         try:

@@ -15,7 +15,7 @@ from culet.rendering.features import Features, StoneCount
 from culet.rendering.opencl import kernel_cache
 from culet.rendering.opencl.device import Device, Real
 from culet.rendering.opencl.layout import arguments, constants, in_order, struct
-from culet.rendering.opencl.making import alone
+from culet.rendering.opencl.making import alone, lacks
 
 FLAGS = ("-cl-std=CL1.2", "-cl-fast-relaxed-math", "-cl-mad-enable")
 
@@ -90,11 +90,24 @@ def build(device: Device, name: str, options: list[str]) -> Any:  # noqa: ANN401
 
 def make(device: Device, features: Features, variant: Variant) -> Kernel:
     """The render kernel for just these features, ready to be launched; errors as of `build`."""
-    options = [*variant.options, *features.options]
-    with alone(kernel_cache.folder(), f"{culet_kernels.source('render.cl')} {options}"):
-        program = build(device, "render.cl", options)
+    with alone(kernel_cache.folder(), _recipe(device, features, variant)):
+        program = build(device, "render.cl", [*variant.options, *features.options])
         kept_bytes = warm_up(device, cl.Kernel(program, "render"))
     return Kernel(cl.Kernel(program, "render"), kept_bytes, features)
+
+
+def is_uncached(device: Device, features: Features, variant: Variant) -> bool:
+    """Whether another process could put it into the driver's cache, for `make` to find it there."""
+    return lacks(kernel_cache.folder(), _recipe(device, features, variant))
+
+
+def _recipe(device: Device, features: Features, variant: Variant) -> str:
+    return recipe(device, "render.cl", variant, features)
+
+
+def recipe(device: Device, source: str, *choices: object) -> str:
+    """All that a program, which is made of a source file by some choices, depends on."""
+    return f"{device.name} {device.driver} {culet_kernels.source(source)} {choices}"
 
 
 def warm_up(device: Device, kernel: Any) -> int:  # noqa: ANN401

@@ -1,29 +1,18 @@
-"""Makes one program in a process of its own, so that the driver's cache has it when this process asks.
-
-A driver compiles under a lock that launches need too: in the same process, frames would wait for the compiler.
-"""
+"""Makes one program in a process of its own, so that the driver's cache has it when this process asks."""
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
 
-from culet.errors import DeviceError
-from culet.parent import ending_with
 from culet.rendering.features import Features
+from culet.rendering.opencl.apart import ordered, run_apart
 from culet.rendering.opencl.device import open_device
 from culet.rendering.programs.build import Variant, make
 
-NICENESS = 10
-"""Of the compiling process, unless somebody waits for it: frames come first."""
-MOST_SECONDS = 600.0
-"""After which the compiler counts as hung. Programs take some 3 s of a core, measured, and more where many share it."""
 COMMAND = (sys.executable, "-m", __name__)
 """The process, which takes the order as its argument."""
 
@@ -37,31 +26,24 @@ def precompile(features: Features, variant: Variant, *, urgent: bool = False) ->
 
 
 def in_a_process(begins: Sequence[str], features: Features, variant: Variant, *, urgent: bool) -> bool:
-    """The same by any command whose `main` takes the order: `ordered`."""
+    """The same by any command whose `main` takes the order: `program_ordered`."""
     order = {
         "features": asdict(features),
         "variant": {**asdict(variant), "real": np.dtype(variant.real).name},
-        "parent": os.getpid(),
     }
-    command = ["nice", "-n", str(0 if urgent else NICENESS), *begins, json.dumps(order)]
-    try:
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
-    except subprocess.TimeoutExpired:
-        raise DeviceError(f"the compiler did not end within {MOST_SECONDS:g} s") from None
-    return done.returncode == 0
+    return run_apart(begins, order, urgent=urgent)
 
 
-def ordered() -> tuple[Features, Variant]:
+def program_ordered() -> tuple[Features, Variant]:
     """What this process was started for; it ends with the one that wants it."""
-    order = json.loads(sys.argv[1])
-    ending_with(order["parent"])()  # nobody needs the program any more
+    order = ordered()
     variant = Variant(**{**order["variant"], "real": np.dtype(order["variant"]["real"]).type})
     return Features(**order["features"]), variant
 
 
 def main() -> None:
     """Entry of that process."""
-    make(open_device(), *ordered())
+    make(open_device(), *program_ordered())
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from culet.rendering.features import Features
 from culet.rendering.opencl import kernel_cache
 from culet.rendering.opencl.compiling import compiling
 from culet.rendering.opencl.device import Device
-from culet.rendering.programs.build import Kernel, Variant, make
+from culet.rendering.programs.build import Kernel, Variant, is_uncached, make
 from culet.rendering.programs.precompile import precompile
 
 log = logging.getLogger(__name__)
@@ -28,9 +28,10 @@ class Programs:
     been launched once.
     """
 
-    def __init__(self, device: Device) -> None:
-        """None is ready."""
+    def __init__(self, device: Device, *, apart: bool = False) -> None:
+        """None is ready. `apart`: `prepare` has the first one, too, compiled by a process of its own."""
         self._device = device
+        self._apart = apart
         self._ready: dict[tuple[Features, Variant], Kernel] = {}
         self._next_try: dict[tuple[Features, Variant], float] = {}
         """s, steady clock: of those made in the background, or tried in vain, when they may be tried again."""
@@ -55,11 +56,12 @@ class Programs:
 
     def prepare(self, features: Features, variant: Variant, *, urgent: bool = True) -> None:
         """Make the kernel for just these features ready, and keep launches waiting as little as can be: by a process of
-        its own, unless there is nothing yet that could be launched. One at a time: a compiler takes 200 MiB."""
+        its own, unless the driver's cache has it, or there is nothing yet that could be launched. One at a time: a
+        compiler takes 200 MiB."""
         with self._turns[urgent]:
             if self.is_ready(features, variant):
                 return
-            if self._ready:
+            if (self._apart or self._ready) and self._is_uncached(features, variant):
                 precompile(features, variant, urgent=urgent)
             self.exact(features, variant)
 
@@ -92,6 +94,9 @@ class Programs:
         if not kernel_cache.has_plenty_of_room():
             self._make_in_a_process_of_its_own(features, variant)
         return make(self._device, features, variant)
+
+    def _is_uncached(self, features: Features, variant: Variant) -> bool:
+        return is_uncached(self._device, features, variant)
 
     def _make_in_a_process_of_its_own(self, features: Features, variant: Variant) -> None:
         """Where there is little room the compiler may end its process: not this one. Then what is made is there."""
