@@ -1,4 +1,4 @@
-"""Puts into the wheel what is built: the page, as `culet/page`, and the solver of several stones, by its sources.
+"""Puts into the wheel what is built: the page, as `culet/page`, and the solver of stones in contact, by its sources.
 
 And README.md, whose links to files beside it would lead nowhere from an index of packages. `CULET_HOME_URL`, such as
 `https://git.example/gems/culet/blob/main`, says where those files can be seen; without it the links are words.
@@ -41,7 +41,7 @@ class Description(MetadataHookInterface):
 
 class BuiltParts(BuildHookInterface):
     """A wheel is built without one of them as well, and says so: a server is told where its page lies, and the solver
-    is compiled when several stones first move."""
+    is compiled when stones first move."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Before the files are gathered. An editable installation finds page and solver in the checkout."""
@@ -67,7 +67,7 @@ class BuiltParts(BuildHookInterface):
             try:
                 library = build.build(Path(self.root) / "build" / "solver")
             except build.BuildError as error:
-                self.app.display_warning(f"This wheel holds no solver of several stones: {error}")
+                self.app.display_warning(f"This wheel holds no solver of stones in contact: {error}")
                 return
         build_data["force_include"][str(library)] = f"{SOLVER}/{library.name}"
         build_data["pure_python"] = False

@@ -99,10 +99,10 @@ class WorkersError(CuletError):
 
 
 class SolverUnavailableError(CuletError):
-    """No compiled solver of several stones, and no compiler to make one; says what is missing and what to do."""
+    """No compiled solver of stones in contact, and no compiler to make one; says what is missing and what to do."""
 
     status = 503
-    title = "no solver of several stones"
+    title = "no solver of stones in contact"
 
 
 class DeviceError(CuletError):

@@ -138,7 +138,7 @@ def simulate(
         InputError: for what cannot be used, such as a scene without stones; `field` names it.
         TooLargeError: for more than half a million steps of all stones together.
         NotFoundError: for a name that no preset has.
-        SolverUnavailableError: for several stones, where no solver is built and no C compiler there to build it.
+        SolverUnavailableError: where no solver is built and no C compiler there to build it.
 
     >>> motion = simulate("falling", 0.1)
     >>> motion.position.shape, motion.position[-1, 0].round(3).tolist()

@@ -75,6 +75,7 @@ def test_python_knows_the_structures_as_the_header_has_them(tmp_path: Path) -> N
     structures = {
         "CuletLaw": interface.CuletLaw, "CuletHull": interface.CuletHull, "CuletBody": interface.Properties,
         "CuletState": interface.CuletState, "CuletTouch": interface.CuletTouch,
+        "CuletMotion": interface.CuletMotion, "CuletPoint": interface.CuletPoint,
     }  # fmt: skip
     sizes = "".join(f'printf("%zu ", sizeof({name}));' for name in structures)
     numbers = 'printf("%d %d %d", CULET_INTERFACE, CULET_MAX_VERTICES, CULET_MAX_SURFACES);'

@@ -41,7 +41,7 @@ class World:
         effort: SolverEffort | None = None,
     ) -> None:
         """At the start. InputError for names that are not different, a law or an inertia that cannot be used;
-        TooLargeError for too many bodies; SolverUnavailableError where several have no solver."""
+        TooLargeError for too many bodies; SolverUnavailableError where they have no solver."""
         self.law = law or MotionLaws()
         self.surfaces = tuple(surfaces)
         self.bodies = tuple(bodies)

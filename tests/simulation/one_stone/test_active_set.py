@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from culet.geometry.shape import Shape
-from culet.simulation.one_stone.active_set import refine
 from culet.simulation.one_stone.contact import contacts
-from culet.simulation.one_stone.impulses import with_impulses
 from culet.simulation.rigid_body.body import RigidBody
-from culet.simulation.rigid_body.linear import factorised, solution
 from culet.simulation.rigid_body.motion import BodyMotion, velocities
 from culet.simulation.rigid_body.settings import SimulationSettings
+from simulation.one_stone.plain.active_set import refine
+from simulation.one_stone.plain.impulses import with_impulses
+from simulation.one_stone.plain.linear import factorised, solution
 from simulation.solids import UPRIGHT, lowest
 
 

@@ -7,11 +7,13 @@ from typing import Any
 
 import pytest
 
+from culet.errors import SolverUnavailableError
 from culet.geometry.shape import Shape
+from culet.simulation.one_stone.models import MODELS
 from culet.simulation.one_stone.simulation import Simulation
 from culet.simulation.rigid_body.state import RigidState
 from culet.simulation.rigid_body.surfaces import FLOOR, WALLS
-from simulation.solids import TILTED, advance, lowest, nearest, rigid
+from simulation.solids import TILTED, advance, classic, lowest, nearest, rigid
 
 CHANGES: dict[str, dict[str, Any]] = {
     "restitution": {"restitution": 0.1},
@@ -124,3 +126,20 @@ def test_the_hull_is_computed_once_for_a_stone(box: Shape) -> None:
     assert adjusted(moving, mass=7).body.hull is hull
     assert falling(box).body.hull is hull
     assert falling(replace(box)).body.hull is not hull
+
+
+def test_without_a_solver_the_model_rigid_is_refused_and_classic_goes_on(
+    box: Shape, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def missing() -> None:
+        raise SolverUnavailableError("none")
+
+    monkeypatch.setitem(MODELS, "rigid", MODELS["rigid"]._replace(require=missing))
+    with pytest.raises(SolverUnavailableError):
+        rigid(box)
+    moving = classic(box)
+    advance(moving, 0.1)
+    before = moving.state
+    with pytest.raises(SolverUnavailableError):
+        moving.adjust(moving.settings.model_copy(update={"model": "rigid"}))
+    assert (moving.settings.model, moving.state) == ("classic", before)

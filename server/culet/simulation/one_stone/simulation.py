@@ -39,7 +39,8 @@ class Simulation:
         start_orientation: Quaternion,
         surfaces: tuple[Surface, ...] = (FLOOR,),
     ) -> None:
-        """At the start, with the settings' `velocity` and `spin`; InputError if the start is no pose.
+        """At the start, with the settings' `velocity` and `spin`; InputError if the start is no pose, and
+        SolverUnavailableError if the model `rigid` has no solver.
 
         `surfaces` stop the stone (`surfaces_of` a scene); the model `classic` knows the floor alone.
         """
@@ -47,6 +48,7 @@ class Simulation:
             raise InputError(f"a start is finite; got {start_position}, {start_orientation}", "start")
         if not any(start_orientation):
             raise InputError("a quaternion of length 0 is no orientation", "start_orientation")
+        MODELS[settings.model].require()
         self.settings = settings
         self.body = RigidBody.of(settings, shape, surfaces)
         orientation = start_orientation
@@ -116,10 +118,11 @@ class Simulation:
         of the start: they hold from the next `reset` on, or now if no step was taken. A stone that sleeps wakes just if
         its next step would move it. Deterministic: the same changes at the same steps give the same bits. Who counts
         the steps (`FixedStepClock`) must hear of another `time_step` too. InputError, and nothing changed, if the
-        stone has no such inertia.
+        stone has no such inertia; SolverUnavailableError likewise if the model has no solver.
         """
         if settings == self.settings:
             return
+        MODELS[settings.model].require()
         old, body = self.body, self.body
         if (settings.mass, settings.inertia) != (self.settings.mass, self.settings.inertia):
             body = RigidBody.of(settings, old.shape, old.surfaces)

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CULET_INTERFACE 4       /* changes whenever a structure or a function of this file does */
+#define CULET_INTERFACE 5       /* changes whenever a structure or a function of this file does */
 
 #define CULET_MAX_VERTICES 1024 /* of a hull: bounds the work and the memory of one pair */
 #define CULET_MAX_SURFACES 16
@@ -56,6 +56,21 @@ typedef struct {
   double penetration; /* of the deepest of them, R */
 } CuletTouch;
 
+/* How a stone by itself is turned, and moves. */
+typedef struct {
+  double orientation[4], momentum[3], angular_momentum[3];
+} CuletMotion;
+
+/* A vertex of a stone by itself that touches a surface. */
+typedef struct {
+  double arm[3], normal[3]; /* from the centre of mass, R; towards the stone */
+  double mass[6];           /* inverse of K, which takes an impulse to the vertex's velocity: xx, yy, zz, xy, xz, yz */
+  double normal_inverse_mass; /* n . K n */
+  double slip_mass;           /* 1 / trace of K across the normal: a step against slip that never overshoots */
+  double target;              /* velocity along the normal that the impulse sees to, R/s */
+  double impulse[3];          /* is found */
+} CuletPoint;
+
 CULET_API int32_t culet_interface(void);
 
 /* NULL if there is no memory. */
@@ -96,5 +111,9 @@ CULET_API int32_t culet_world_load(CuletWorld *world, const void *bytes, size_t 
 /* Signed distance of two bodies along the best of all axes: negative is the depth by which they overlap, exactly. Above
  * `enough` a lower bound. `axis` becomes that axis, of length 1, in the world, from the one towards the other. */
 CULET_API double culet_world_separation(CuletWorld *world, int32_t one, int32_t other, double enough, double axis[3]);
+
+/* One stone's impulses, and its momenta after them; 0, or -1, and nothing changed, if there is no memory. */
+CULET_API int32_t culet_stone_impulses(const CuletBody *body, CuletMotion *motion, int32_t count, CuletPoint *points,
+                                       double friction);
 
 #endif

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_size_t, c_void_p
 
-VERSION = 4
+VERSION = 5
 """CULET_INTERFACE."""
 MAX_VERTICES = 1024
 MAX_SURFACES = 16
@@ -79,6 +79,26 @@ class CuletTouch(Structure):
     _fields_ = (("contacts", c_int32), ("penetration", c_double))
 
 
+class CuletMotion(Structure):
+    """CuletMotion."""
+
+    _fields_ = (("orientation", c_double * 4), ("momentum", c_double * 3), ("angular_momentum", c_double * 3))
+
+
+class CuletPoint(Structure):
+    """CuletPoint."""
+
+    _fields_ = (
+        ("arm", c_double * 3),
+        ("normal", c_double * 3),
+        ("mass", c_double * 6),
+        ("normal_inverse_mass", c_double),
+        ("slip_mass", c_double),
+        ("target", c_double),
+        ("impulse", c_double * 3),
+    )
+
+
 _FUNCTIONS: dict[str, tuple[object, tuple[object, ...]]] = {
     "culet_interface": (c_int32, ()),
     "culet_world_new": (c_void_p, (c_int32,)),
@@ -99,6 +119,10 @@ _FUNCTIONS: dict[str, tuple[object, tuple[object, ...]]] = {
     "culet_world_save": (None, (c_void_p, c_void_p)),
     "culet_world_load": (c_int32, (c_void_p, c_void_p, c_size_t)),
     "culet_world_separation": (c_double, (c_void_p, c_int32, c_int32, c_double, Doubles)),
+    "culet_stone_impulses": (
+        c_int32,
+        (POINTER(Properties), POINTER(CuletMotion), c_int32, POINTER(CuletPoint), c_double),
+    ),
 }
 
 

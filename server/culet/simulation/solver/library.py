@@ -34,15 +34,13 @@ def library() -> ctypes.CDLL:
     try:
         made = build(cache_folder())
     except BuildError as error:
-        raise SolverUnavailableError(
-            f"several stones are moved by a compiled solver, and there is none: {error}"
-        ) from None
+        raise SolverUnavailableError(f"stones are moved by a compiled solver, and there is none: {error}") from None
     except OSError as error:
         raise SolverUnavailableError(
-            f"several stones are moved by a compiled solver, which cannot be kept in {cache_folder()} "
+            f"stones are moved by a compiled solver, which cannot be kept in {cache_folder()} "
             f"({error.strerror}); name another folder by XDG_CACHE_HOME"
         ) from error
-    log.info("compiled the solver of several stones: %s", made)
+    log.info("compiled the solver of stones in contact: %s", made)
     return loaded(made)
 
 

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from culet.simulation.one_stone.contact import Contact
 from culet.simulation.rigid_body.body import RigidBody
-from culet.simulation.rigid_body.linear import factorised, solution
 from culet.simulation.rigid_body.motion import BodyMotion
 from culet.simulation.rigid_body.state import Triple
+from simulation.one_stone.plain.linear import factorised, solution
 
 STIFFNESS = 1e3
 """rho in units of the mass. Larger: fewer iterations, more rounding."""
