@@ -8,14 +8,16 @@ import sys
 
 import pytest
 
+from culet.engine.capacity import heap
+
 BLOCKS = 64
 HOLES = """
 import ctypes, os, sys
 
-from culet.engine.capacity.heap import return_large_blocks
+from culet.engine.capacity.heap import keep_little
 
 if sys.argv[1] == "returning":
-    return_large_blocks()
+    keep_little()
 c = ctypes.CDLL(None)
 c.malloc.restype, c.malloc.argtypes, c.free.argtypes = ctypes.c_void_p, [ctypes.c_size_t], [ctypes.c_void_p]
 
@@ -40,9 +42,42 @@ print((resident() - before) / 2**20)
 """
 
 
+THREADS = 12
+HEAPS = """
+import ctypes, re, sys, threading
+
+from culet.engine.capacity.heap import keep_little
+
+if sys.argv[1] == "returning":
+    keep_little()
+c = ctypes.CDLL(None)
+c.malloc.restype, c.malloc.argtypes, c.free.argtypes = ctypes.c_void_p, [ctypes.c_size_t], [ctypes.c_void_p]
+together, heaps = threading.Barrier(int(sys.argv[2])), set()
+
+
+def work():
+    together.wait()
+    heaps.add(c.malloc(1000) >> 26)  # a heap of a thread's own lies within 64 MiB, at a multiple of that
+    together.wait()
+
+
+threads = [threading.Thread(target=work) for _ in range(int(sys.argv[2]))]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(len(heaps))
+"""
+
+
 def left(how: str) -> float:
     """MiB of large blocks that were freed, each followed by a small one that is kept."""
-    run = subprocess.run([sys.executable, "-c", HOLES, how, str(BLOCKS)], capture_output=True, text=True, check=True)
+    return told(HOLES, how, BLOCKS)
+
+
+def told(program: str, how: str, count: int) -> float:
+    """What a process of its own prints."""
+    run = subprocess.run([sys.executable, "-c", program, how, str(count)], capture_output=True, text=True, check=True)
     return float(run.stdout)
 
 
@@ -50,3 +85,9 @@ def left(how: str) -> float:
 def test_what_is_freed_between_small_blocks_goes_back_to_the_system() -> None:
     assert left("as it is") > BLOCKS / 2, "or there is nothing to be done about it"
     assert left("returning") < 4
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="of other C libraries nothing is known")
+def test_threads_share_few_heaps() -> None:
+    assert told(HEAPS, "as it is", THREADS) > 4, "or there is nothing to be done about it"
+    assert told(HEAPS, "returning", THREADS) <= heap.HEAPS + 1, "the process's own may lie in two such ranges"

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import zmq.asyncio
 
-from culet.engine.capacity.heap import return_large_blocks
+from culet.engine.capacity.heap import keep_little
 from culet.engine.capacity.limits import Limits
 from culet.engine.painting.renderer import AnyPicture, AnyRenderer
 from culet.engine.painting.still import EncodeStill
@@ -40,7 +40,7 @@ def run(control: str, frames: Sequence[str], limits: Limits | None = None, *, st
     With `stand_by` it gets everything ready but its sockets, and then waits for a line on the standard input.
     DeviceError without a working device, InputError for a bad endpoint.
     """
-    return_large_blocks()
+    keep_little()
     sys.setswitchinterval(SWITCH_SECONDS)
     start = asyncio.Event()
     asyncio.run(_run(control, frames, limits or Limits(), start, stand_by=stand_by))
