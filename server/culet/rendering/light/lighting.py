@@ -510,7 +510,7 @@ class Illumination:
             self._weight = self._squared = self._bias = 0.0
             self._spread.clear()
         if before is not None:  # the variance of a pass, less that of the mean so far
-            both = zip(self._fine(), before, strict=True)  # a surface at a time: all take 60 MiB
+            both = zip(self._fine(), before, strict=True)  # a surface at a time: all take 50 MiB
             apart = [float(np.mean(np.square(now - then, dtype=np.float64))) for now, then in both]
             self._spread.append(math.fsum(apart) / len(apart) / gain**2 / (1 + self._squared / self._weight**2))
         self._weight += weight
