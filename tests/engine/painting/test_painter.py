@@ -480,6 +480,32 @@ async def test_the_next_frame_is_begun_while_the_last_one_is_encoded(monkeypatch
     assert live.outgoing.unsent == 0
 
 
+async def test_a_closed_sessions_picture_is_gone_at_once_also_amid_a_sample() -> None:
+    """It and its sample hold each other: Python would find out only when it collects circles."""
+    world = World(2.0)
+    with ThreadPoolExecutor(1) as thread:
+        painter = Painter(
+            world, thread, StillQueue(1, 2**25),
+            send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
+            still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
+        )  # fmt: skip
+        live = painter.pictures["a"] = LivePicture(world.session, watched=True, rate=60, size=WANTED)
+        async with asyncio.timeout(PATIENCE):
+            while live.picture is None or not live.picture.under_way:
+                if not await painter.work():
+                    world.spend(IDLE)
+                await done(live)
+        assert world.alive() == 1
+        gc.disable()
+        try:
+            painter.forget("a")
+            await painter.work()
+            assert len(world.pictures) == 0
+            assert not painter.pictures
+        finally:
+            gc.enable()
+
+
 @pytest.mark.parametrize(("size", "turns"), [((960, 540), 0), (WANTED, 2)])
 def test_a_frame_that_is_small_is_developed_without_a_turn_of_others(size: tuple[int, int], turns: int) -> None:
     """From its last sample on; a large one lets others have theirs."""

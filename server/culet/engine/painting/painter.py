@@ -60,6 +60,8 @@ class Painter:
         a steady one, in seconds. `has_room` tells whether an encoder of video may take so many bytes.
         """
         self.pictures: dict[str, LivePicture] = {}
+        self._forgotten: list[LivePicture] = []
+        """Pictures of sessions that are closed, which still have their memory."""
         self._renderer = renderer
         self._stills = stills
         self._tell_of_problem = tell_problem
@@ -91,6 +93,11 @@ class Painter:
         """Something changed: look again for what is due."""
         self._changed.set()
 
+    def forget(self, session: str) -> None:
+        """The session is closed: its picture gives its memory back, as soon as no piece of it is under way."""
+        self._forgotten.append(self.pictures.pop(session))
+        self.wake()
+
     def show_again(self, live: LivePicture, codec: Stream) -> None:
         """Send the latest frame at once, for a viewer who has just come, or wants it in another form than before."""
         if live.at_rest and codec is Codec.JPEG:
@@ -120,6 +127,8 @@ class Painter:
     async def work(self) -> bool:
         """One piece of work, one repetition; whether there was anything."""
         pictures, now = list(self.pictures.values()), self._now()
+        while self._forgotten:
+            self._forgotten.pop().abandon(now)
         for live in pictures:
             if live.outdated(now):
                 self.counters.frames_given_up += 1

@@ -161,10 +161,9 @@ class OpenSessions:
         pace = self.get(session).session.motion.pace
         self.simulated_seconds += pace.seconds
         self.dropped_seconds += pace.dropped
-        del self._painter.pictures[session]
+        self._painter.forget(session)
         del self._touched[session]
         self._clients.pop(session, None)
-        self._painter.wake()
 
     def close_unwatched(self) -> None:
         """Forget the sessions that nobody watches."""
