@@ -51,6 +51,7 @@ FIXED = [
 """All decided when the program is made, each of their kinds at least once."""
 MANY = [
     Features(Geometry.HULL, stones=StoneCount.MANY),
+    Features(Geometry.HULL, stones=StoneCount.MANY, alike=1),
     Features(Geometry.MESH, stones=StoneCount.MANY, few_mirrors=1),
     Features(Geometry.MESH, stones=StoneCount.MANY, spectral=1, polarised=1),
     Features(

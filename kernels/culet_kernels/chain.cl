@@ -161,7 +161,7 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
   const int camera_inside = DECIDED(CAMERA_INSIDE, world.scene->camera_inside);
   for (; *steps > 0; --*steps) {
     const bool all_begun = work->hit >= hits->count;
-    const bool last = all_begun && is_empty(&pools->inside);
+    const bool last = all_begun && is_dark_inside(pools);
     const bool over = last && is_clear(pools); // packets are not filled any more
     // Light outside goes first: it is what makes the pools grow.
     pool_t *left = larger_away(pools);
@@ -170,7 +170,7 @@ static inline void trace(world_t world, chain_work_t *work, task_t task, int *st
     else if (look_outside(world, tile, pools, task, last))
       continue;
     else if (has_full(&pools->inside) || (all_begun && !last))
-      advance(world, tile, pools, task);
+      advance(world, tile, pools, task, all_begun && !has_full(&pools->inside));
     else if (!all_begun) {
       const maskL mask = widen(LANE_INDEX < (intL)(hits->count - work->hit));
       vec3L normal;

@@ -103,6 +103,9 @@
 #ifndef FEW_MIRRORS // 1: a stone reflects light into few directions, which are kept exactly. Never RUNTIME.
 #define FEW_MIRRORS 0
 #endif
+#ifndef ALIKE // 1: MANY stones, all of one shape, which is met by its half-spaces. Never RUNTIME.
+#define ALIKE 0
+#endif
 #ifndef RECORDED // 1: one ray is followed, and what it meets written down: path.cl alone. Never RUNTIME.
 #define RECORDED 0
 #endif
@@ -117,6 +120,10 @@
 
 // Whether light that leaves a stone may meet a stone before it meets the room.
 #define EXCHANGE (GEOMETRY == MESH || STONES == MANY)
+
+// Whether light inside a stone waits for a full packet at facets that it passes in part: where one pool is enough for it, since a
+// packet is of one shape. Polarised light is split at each facet.
+#define WAITS_AT_FACETS (ALIKE && !POLARISED)
 
 // Whether light that has left a stone can meet one again.
 #define REENTRY                                                                                                        \

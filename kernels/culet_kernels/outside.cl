@@ -8,6 +8,9 @@
 
 typedef struct {
   inside_t inside;
+#if WAITS_AT_FACETS
+  at_facets_t at_facets; // come to from inside
+#endif
 #if STONES == MANY
   pool_t leaving;                  // stones, still in the axes of light inside
   int near[NEAR_WORDS][POOL_SIZE]; // which stones those of `towards` may meet
@@ -19,6 +22,9 @@ typedef struct {
 
 static inline void clear_pools(pools_t *pools) {
   clear_inside(&pools->inside);
+#if WAITS_AT_FACETS
+  pools->at_facets.count = 0;
+#endif
 #if STONES == MANY
   clear(&pools->leaving);
 #endif
@@ -33,6 +39,14 @@ static inline int is_clear(const pools_t *pools) {
   if (pools->leaving.count > 0) return 0;
 #endif
   return REENTRY ? pools->towards.count == 0 : 1;
+}
+
+// Whether no light is inside a stone, or waits at a facet of one.
+static inline int is_dark_inside(const pools_t *pools) {
+#if WAITS_AT_FACETS
+  if (pools->at_facets.count > 0) return 0;
+#endif
+  return is_empty(&pools->inside);
 }
 
 // Puts off a packet that meets no stone next. Where there is a floor and no wall, what goes up and what goes down wait apart, so

@@ -172,14 +172,14 @@ static inline void follow(world_t world, __constant const map_frame_t *frame, __
   pools_t *pools = &photons->pools;
   for (;;) {
     pool_t *left = larger_away(pools);
-    if (left->count >= LANES || (last && is_empty(&pools->inside) && is_clear(pools) && left->count > 0)) {
+    if (left->count >= LANES || (last && is_dark_inside(pools) && is_clear(pools) && left->count > 0)) {
       maskL taken;
       const packetL packet = pop(left, &taken);
       land(world, frame, bundles, photons, task, &packet, packet.origin, packet.direction, taken, 1, to);
-    } else if (look_outside(world, &photons->tile, pools, task, last && is_empty(&pools->inside)))
+    } else if (look_outside(world, &photons->tile, pools, task, last && is_dark_inside(pools)))
       continue;
-    else if (has_full(&pools->inside) || (last && !is_empty(&pools->inside)))
-      advance(world, &photons->tile, pools, task);
+    else if (has_full(&pools->inside) || (last && !is_dark_inside(pools)))
+      advance(world, &photons->tile, pools, task, last && !has_full(&pools->inside));
     else
       return;
   }

@@ -5,6 +5,12 @@
 #include "packet.cl"
 #include "stones.cl"
 
+// Segments of a chain between two looks at which of the packet's lanes have ended: a lane that idles for a segment costs
+// less than sorting the packet each time. Where light waits at facets, a fifth of them leaves the packet in each segment.
+#ifndef STRIDE
+#define STRIDE (WAITS_AT_FACETS ? 1 : 2)
+#endif
+
 // Rays that a pool can hold. Where light can come back to a stone, every packet may leave another one behind in each
 // generation, and generations end by weight: some ten for a cut-off of 0.01. What finds no room is counted as cut.
 #define POOL_RAYS (REENTRY ? 64 * LANES : 4 * LANES)
@@ -108,6 +114,10 @@ __attribute__((always_inline)) static inline void push_to_shape(inside_t *inside
 
 // Appends the lanes that the mask names, each to its own stone, of a packet that is in the axes of light inside.
 static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
+  if (ALIKE) {
+    push_to_shape(inside, 0, mask, packet);
+    return;
+  }
   const realL alike = by_stone(world, COLUMN_ALIKE, packet->stone);
   while (any_lane(mask)) {
     const int shape = first_number(mask, reals_to_int(alike));
@@ -182,6 +192,44 @@ static inline void push_inside(world_t world, inside_t *inside, maskL mask, cons
 __attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *shape) {
   *shape = 0;
   return pop(inside, mask);
+}
+#endif
+
+#if WAITS_AT_FACETS
+// Light that has come from inside to a facet which it passes in part. Few lanes of a packet do, so they wait there until they fill a
+// packet of their own: Fresnel's formulas and what leaves take as long for few lanes as for all.
+#define WAITING_SIZE ((STRIDE + 2) * LANES) // a packet may come in each segment, and is written whole
+
+typedef struct {
+  real number[NUMBERS][WAITING_SIZE];
+  int whole[WHOLES][WAITING_SIZE];
+  real normal[3][WAITING_SIZE]; // of the facet
+  int count;
+} at_facets_t;
+
+static inline void wait_at_facet(at_facets_t *waiting, maskL mask, const packetL *packet, vec3L normal) {
+  const packing_t packing = packing_of(mask);
+  const int end = waiting->count;
+  pack_packet(packing, packet, waiting->number[0] + end, waiting->whole[0] + end, WAITING_SIZE);
+  pack_lanes(packing, normal.x, waiting->normal[0] + end);
+  pack_lanes(packing, normal.y, waiting->normal[1] + end);
+  pack_lanes(packing, normal.z, waiting->normal[2] + end);
+  waiting->count = end + packing.count;
+}
+
+// Takes up to a packet of it; some must wait.
+__attribute__((always_inline)) static inline packetL take_waiting(at_facets_t *waiting, maskL *mask, vec3L *normal) {
+  const int taken = min(waiting->count, LANES);
+  for (int lane = taken; lane < LANES; lane++) { // no lane holds what was never written
+    EACH (k, NUMBERS) waiting->number[k][lane] = waiting->number[k][0];
+    EACH (k, WHOLES) waiting->whole[k][lane] = waiting->whole[k][0];
+    EACH (k, 3) waiting->normal[k][lane] = waiting->normal[k][0];
+  }
+  const int start = waiting->count -= taken;
+  *mask = widen(LANE_INDEX < (intL)(taken));
+  *normal = vec3(load_lanes(waiting->normal[0] + start), load_lanes(waiting->normal[1] + start),
+                 load_lanes(waiting->normal[2] + start));
+  return load_packet(waiting->number[0] + start, waiting->whole[0] + start, WAITING_SIZE);
 }
 #endif
 

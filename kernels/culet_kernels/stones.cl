@@ -332,6 +332,10 @@ static inline void meet_alike(world_t world, __constant const stone_t *stone, in
 // The same for rays of stones of any shape.
 static inline void meet_each(world_t world, intL number, vec3L origin, vec3L direction, realL t_min, maskL mask,
                              intL from, meetingL *first) {
+  if (ALIKE) {
+    meet_alike(world, world.stones, number, origin, direction, t_min, mask, first);
+    return;
+  }
   const realL alike = by_stone(world, COLUMN_ALIKE, number);
   while (any_lane(mask)) {
     const int kind = first_number(mask, reals_to_int(alike));

@@ -168,7 +168,7 @@ def test_each_feature_of_a_scene_is_decided_unless_its_quantity_is_needed() -> N
 
 
 def test_options_name_what_is_decided_and_nothing_else() -> None:
-    structure = ["-DSPECTRAL=0", "-DPOLARISED=0", "-DFEW_MIRRORS=0", "-DSTONES=1", "-DESTIMATOR=0"]
+    structure = ["-DSPECTRAL=0", "-DPOLARISED=0", "-DFEW_MIRRORS=0", "-DALIKE=0", "-DSTONES=1", "-DESTIMATOR=0"]
     assert Features().options == ["-DGEOMETRY=1", *structure]
     assert Features(floor=2, lights=0).options == ["-DGEOMETRY=1", "-DFLOOR=2", "-DLIGHTS=0", *structure]
     assert Features(floor=2, lights=0).without("floor").options == ["-DGEOMETRY=1", "-DLIGHTS=0", *structure]

@@ -117,6 +117,16 @@ def test_how_the_scene_orders_stones_changes_no_bit(renderer: Renderer) -> None:
     assert (radiance(there) == radiance(back)).all()
 
 
+def test_stones_of_one_shape_look_as_they_do_to_the_program_of_any_shapes(lanes_renderer: Renderer) -> None:
+    scene = stage(twelve(), **{**FURNACE, "environment": {"kind": "dark"}})
+    needed = features_of(scene)
+    assert needed.alike == 1
+    assert features_of(stage(TRIO, [brilliant(), brilliant(), star()])).alike == 0
+    own, of_any = (radiance(take(lanes_renderer, scene, features)) for features in (needed, replace(needed, alike=0)))
+    assert np.sqrt(np.mean((own - of_any) ** 2)) < 1e-6
+    assert own.std() > 0.01
+
+
 def test_one_stone_in_a_table_looks_as_it_does_alone(exact: Renderer) -> None:
     one = stage(TRIO[:1], **VIEW)
     alone, in_table = take(exact, one), take(exact, one, replace(features_of(one), stones=StoneCount.MANY))

@@ -70,6 +70,7 @@ class Features:
     spectral: int = 0
     polarised: int = 0
     few_mirrors: int = 0
+    alike: int = 0
     camera_inside: int = RUNTIME
     stones: int = StoneCount.ONE
     estimator: int = ESTIMATOR["chain"]
@@ -165,6 +166,7 @@ def _features_of(stage: Stage) -> Features:
         spectral=int(is_spectral(scene)),
         polarised=int(optics.polarised and optics.estimator == "chain"),
         few_mirrors=int(any(map(makes_finite_group, dict.fromkeys(shapes)))),
+        alike=int(stones == StoneCount.MANY and geometry_of(shapes) == Geometry.HULL and len(set(shapes)) == 1),
         camera_inside=int(camera_stone(scene, placed_stones(stage)) is not None),
         stones=stones,
         estimator=ESTIMATOR[optics.estimator],
