@@ -10,6 +10,7 @@ import pytest
 
 from culet.engine.capacity.limits import Limits
 from culet.engine.capacity.memory import Memory
+from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.process.open_sessions import OpenSessions
 from culet.engine.process.staging import Staging
@@ -20,7 +21,8 @@ from culet_protocol.engine import OpenSession
 
 
 async def test_a_session_that_is_closed_before_it_is_open_is_not_opened_and_another_of_its_name_is() -> None:
-    painter = cast(Painter, SimpleNamespace(pictures={}, wake=lambda: None))
+    pictures: dict[str, LivePicture] = {}
+    painter = cast(Painter, SimpleNamespace(pictures=pictures, forget=pictures.pop, wake=lambda: None))
     staging = Staging(Library())
     sessions = OpenSessions(painter, Limits(), Memory(10**9), staging)
     scene = Scene().model_dump(mode="json")

@@ -12,6 +12,7 @@ import pytest
 
 from culet.engine.capacity.limits import Limits
 from culet.engine.capacity.memory import Memory
+from culet.engine.painting.live_picture import LivePicture
 from culet.engine.painting.painter import Painter
 from culet.engine.painting.still import StillQueue
 from culet.engine.process import requests as module
@@ -29,7 +30,8 @@ CUT = PatchScene(patch={"stones": [{"id": "a", "cut": "baguette"}]})
 @asynccontextmanager
 async def opened(*sessions: str) -> AsyncIterator[Requests]:
     """Sessions of one client, each with a stone."""
-    painter = cast(Painter, SimpleNamespace(pictures={}, wake=lambda: None))
+    pictures: dict[str, LivePicture] = {}
+    painter = cast(Painter, SimpleNamespace(pictures=pictures, forget=pictures.pop, wake=lambda: None))
     requests = Requests(
         painter, StillQueue(1, 1), Limits(), {}, tell=lambda _: None, memory=Memory(10**9), forget_sky=lambda _: None
     )
