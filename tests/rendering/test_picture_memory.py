@@ -183,6 +183,20 @@ def test_an_engine_that_draws_nothing_has_no_pass_under_way(own: Renderer) -> No
     assert own.pool.managed_bytes == 0
 
 
+def test_room_is_made_beside_a_pass_which_another_thread_may_be_in_the_midst_of(own: Renderer) -> None:
+    picture = own.picture(Stage.of(preset("heap")), 32, 18, effort=LightEffort.RESTING)
+    next(picture.refine_in_pieces(1, 1e-5))
+    picture.give_up()
+    left = weakref.ref(own.lighting.of(picture.stage) or pytest.fail("no light"))
+    del picture
+    own.trim()
+    own.lighting.forget()
+    assert left() is not None, "whoever refines pictures gives it up"
+    assert own.pool.managed_bytes == own.pool.active_bytes
+    own.release()
+    assert left() is None
+
+
 def test_what_is_kept_of_moving_light_is_given_back_when_it_is_asked_for(own: Renderer) -> None:
     gc.disable()
     try:

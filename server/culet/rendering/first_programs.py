@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import culet_kernels
 from culet.errors import DeviceError
@@ -28,7 +29,7 @@ def made_apart() -> Iterator[None]:
         return
 
     def work() -> None:
-        with compiling(), suppress(DeviceError, OSError):
+        with compiling(), suppress(DeviceError):
             run_apart(COMMAND, {})
 
     making = threading.Thread(target=work, name="first-programs", daemon=True)
@@ -38,8 +39,11 @@ def made_apart() -> Iterator[None]:
 
 
 def _recipe() -> str:
+    """Of them; another driver comes with another file that names it."""
     sources = [culet_kernels.source(name) for name in ("film.cl", "sums.cl", "render.cl")]
-    return f"{sources} {os.environ.get('CULET_DEVICE')}"
+    vendors = Path(os.environ.get("OCL_ICD_VENDORS", "/etc/OpenCL/vendors"))
+    drivers = sorted((each.name, each.stat().st_mtime_ns) for each in vendors.glob("*.icd"))
+    return f"{sources} {os.environ.get('CULET_DEVICE')} {drivers}"
 
 
 def main() -> None:

@@ -137,8 +137,15 @@ class Renderer:
         return {"pictures": int(self.pool.managed_bytes), "device_skies": self.device.panorama_bytes()}
 
     def release(self) -> None:
-        """Give back the memory of pictures and of passes of light that are gone, which is kept for the next ones."""
+        """Give back the memory of pictures and of passes of light that are gone, which is kept for the next ones, and
+        passes that nobody waits for. While no picture is refined."""
         self.lighting.release()
+        self._free_kept()
+
+    def trim(self) -> None:
+        """Give back what is kept of pictures and maps that are gone. From any thread, also while pictures are refined,
+        which may be in the midst of a pass that nobody waits for."""
+        self.lighting.forget_provisional()
         self._free_kept()
 
     def _free_kept(self) -> None:

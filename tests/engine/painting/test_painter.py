@@ -144,6 +144,9 @@ class World:
     def release(self) -> None:
         pass
 
+    def trim(self) -> None:
+        pass
+
     def send(self, message: bytes) -> None:
         self.sent.append((self.now, Frame.unpack(message)))
 
@@ -292,6 +295,15 @@ class AtOnce:
         """There is nothing to stop."""
 
 
+def painter_of(world: World, thread: ThreadPoolExecutor) -> Painter:
+    """On the world's clock; a problem fails the test."""
+    return Painter(
+        world, thread, StillQueue(1, 2**25),
+        send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
+        still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
+    )  # fmt: skip
+
+
 Play = Callable[..., asyncio.Future[None]]
 
 
@@ -303,11 +315,7 @@ async def play() -> AsyncIterator[Play]:
 
         async def paint(world: World, seconds: float, rate: float = 60) -> None:
             if id(world) not in painters:
-                painter = Painter(
-                    world, thread, StillQueue(1, 2**25),
-                    send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
-                    still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
-                )  # fmt: skip
+                painter = painter_of(world, thread)
                 world.live = LivePicture(world.session, watched=True, rate=rate, size=WANTED)
                 painter.pictures["a"] = world.live
                 painters[id(world)] = painter
@@ -460,11 +468,7 @@ async def test_the_next_frame_is_begun_while_the_last_one_is_encoded(monkeypatch
     monkeypatch.setattr(LiveFrame, "encoded", encode)
     monkeypatch.setattr(world, "picture", picture)
     with ThreadPoolExecutor(1) as thread:
-        painter = Painter(
-            world, thread, StillQueue(1, 2**25),
-            send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
-            still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
-        )  # fmt: skip
+        painter = painter_of(world, thread)
         live = painter.pictures["a"] = LivePicture(world.session, watched=True, rate=60, size=WANTED)
         world.turn(since=0, seconds=60)
         async with asyncio.timeout(PATIENCE):
@@ -480,15 +484,42 @@ async def test_the_next_frame_is_begun_while_the_last_one_is_encoded(monkeypatch
     assert live.outgoing.unsent == 0
 
 
+@pytest.mark.parametrize(("seen_samples", "samples"), [(0, 1), (8, 8)])
+def test_a_picture_that_is_begun_anew_is_not_seen_with_less_than_before(seen_samples: int, samples: int) -> None:
+    """Not even where the second sample waits for something, as a sky's sum that was forgotten meanwhile."""
+    world = World(0.01)
+    world.compiled.clear()
+    work = FrameWork(
+        WorkKind.REFINED, world.session.shown, WANTED, Account(None), world.now, aim=REST, now=lambda: world.now,
+        seen_samples=seen_samples,
+    )  # fmt: skip
+    work.start(world)
+    for _ in work.pieces:
+        pass
+    assert work.frame is not None
+    assert work.frame.samples >= samples
+    assert (work.frame.samples == 1) == (samples == 1)
+
+
+def test_what_a_first_moving_frame_took_is_all_that_is_known_of_the_next() -> None:
+    world = World(0.1)
+    live, work = (
+        LivePicture(world.session),
+        FrameWork(WorkKind.PLANNED, world.session.shown, WANTED, Account(None), 0.0),
+    )
+    work.spent = 0.1
+    live.quality.drew(work)
+    assert live.quality.planned_seconds == pytest.approx(0.1)
+    work.spent = 0.2
+    live.quality.drew(work)
+    assert 0.1 < live.quality.planned_seconds < 0.15, "of others the mean"
+
+
 async def test_a_closed_sessions_picture_is_gone_at_once_also_amid_a_sample() -> None:
     """It and its sample hold each other: Python would find out only when it collects circles."""
     world = World(2.0)
     with ThreadPoolExecutor(1) as thread:
-        painter = Painter(
-            world, thread, StillQueue(1, 2**25),
-            send=world.send, tell_problem=_fail, encode_still=lambda *_: b"",
-            still_seconds=math.inf, rest=world.rest, stepper=AtOnce(world), clock=lambda: world.now,
-        )  # fmt: skip
+        painter = painter_of(world, thread)
         live = painter.pictures["a"] = LivePicture(world.session, watched=True, rate=60, size=WANTED)
         async with asyncio.timeout(PATIENCE):
             while live.picture is None or not live.picture.under_way:

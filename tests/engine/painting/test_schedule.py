@@ -257,6 +257,26 @@ def test_of_alike_frames_with_their_own_light_two_are_under_way_and_each_has_its
     assert most == 10, "without light there is nothing to be spared"
 
 
+def test_of_first_frames_with_their_own_light_two_are_under_way_too() -> None:
+    """As after an engine's start, when all sessions come at once and nobody knows what their frames take."""
+    begun = [in_work(falling(LIT, 0.0), WorkKind.PLANNED) for _ in range(2)]
+    for picture in begun:
+        assert picture.work is not None
+        picture.work.spent = 0.01
+    shares = Shares()
+    for picture in begun:
+        shares.charge(picture.frames, 0.01, 100)
+    assert next_of([*begun, falling(LIT, 0.0)], now=101, shares=shares) in begun
+
+
+def test_a_frame_with_light_that_is_under_way_does_not_take_the_turn_of_one_to_be_begun() -> None:
+    shares = Shares()
+    under_way, own = in_work(falling(LIT, 0.02), WorkKind.PLANNED), falling(LIT, 0.02)
+    under_way.begun_at, own.begun_at = 1, 2
+    shares.charge(under_way.frames, 0.01, 100)
+    assert next_of([under_way, own], now=101, shares=shares) is own
+
+
 @pytest.mark.parametrize("seconds", [0.2, 0.001])
 def test_nobody_waits_for_the_light_of_dearer_or_cheaper_frames(seconds: float) -> None:
     others = [in_work(falling(LIT, seconds), WorkKind.PLANNED) for _ in range(3)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import weakref
+
 import pytest
 
 from culet.engine.painting.shares import Account, Shares, share
@@ -91,3 +93,16 @@ def test_who_has_gone_is_forgotten_within_seconds() -> None:
 def test_what_rests_counts_by_its_smaller_weight() -> None:
     own, resting = use(account(), 0.8), use(account(0.25), 0.2)
     assert share(own, [own, resting], 10.0) == pytest.approx(0.8, rel=0.02)
+
+
+def test_who_has_paid_for_a_piece_is_forgotten_with_it() -> None:
+    """An account leads to its session, which may be closed."""
+    shares, own, other = Shares(), account(), account()
+    own.payers = [(own, 0.5), (other, 0.5)]
+    shares.charge(own, 1.0, 0.0)
+    assert (own.ended, other.ended) == (0.5, 0.5)
+    shares.charge(own, 1.0, 1.0)
+    assert (own.ended, other.ended) == (1.5, 0.5), "each piece has payers of its own"
+    gone = weakref.ref(other)
+    del other
+    assert gone() is None

@@ -68,6 +68,9 @@ class FailingRenderer:
     def release(self) -> None:
         self.renderer.release()
 
+    def trim(self) -> None:
+        self.renderer.trim()
+
 
 @asynccontextmanager
 async def served(folder: Path) -> AsyncIterator[tuple[Peer, Callable[[str], Watcher]]]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import subprocess
 import sys
 import threading
 import time
@@ -83,6 +86,19 @@ def test_a_compiler_that_never_ends_is_ended_and_the_general_program_goes_on(
     assert ask(programs, 2) == [GENERAL] * 2
     assert programs.made == [GENERAL], "the driver that hung there would hang here too, and frames with it"
     assert "did not end" in caplog.text
+
+
+def test_where_no_process_can_be_begun_an_engine_compiles_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As without memory: a picture that is refused for it would stay so."""
+    monkeypatch.undo()
+
+    def begin(*_given: object, **_how: object) -> None:
+        raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+
+    monkeypatch.setattr(subprocess, "run", begin)
+    programs = Bench()
+    assert ask(programs, 2) == [GENERAL, SPECIAL]
+    assert programs.made == [GENERAL, SPECIAL]
 
 
 def test_what_many_wait_for_is_made_once_and_one_program_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:

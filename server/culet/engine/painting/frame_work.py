@@ -176,7 +176,8 @@ class FrameWork:
             most = 2 * max(1, picture.samples_seen, self.seen_samples)
 
             def enough() -> bool:
-                return picture.samples >= most or self._waits(picture, renderer)
+                better = picture.samples >= self.seen_samples  # else it is a step back, and has had its program before
+                return picture.samples >= most or (better and self._waits(picture, renderer))
 
             yield from picture.refine_until(self.aim, self.piece_seconds, pause=enough, due=self._due)
             self.final = picture.reached(self.aim)

@@ -91,7 +91,8 @@ class Quality:
             case WorkKind.FULL:
                 self.full_seconds = work.render_seconds
             case WorkKind.PLANNED:
-                self.planned_seconds += PACE_MEMORY * (work.spent - self.planned_seconds)
+                memory = PACE_MEMORY if self.planned_seconds > 0 else 1.0
+                self.planned_seconds += memory * (work.spent - self.planned_seconds)
             case WorkKind.REFINED:
                 if work.first_seconds is not None:
                     self.full_seconds = work.first_seconds

@@ -129,7 +129,10 @@ class AnyRenderer(Protocol):
         """Bytes of memory, by what takes them. From any thread."""
 
     def release(self) -> None:
-        """Give back the memory of pictures that are gone."""
+        """Give back all memory that no picture has. While no picture is refined."""
+
+    def trim(self) -> None:
+        """Give back the memory of pictures that are gone. From any thread."""
 
     def is_ready(self, stage: Stage, samples: int = 0) -> bool:
         """Whether the next sample of a picture that has so many can be begun at once."""

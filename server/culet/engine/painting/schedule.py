@@ -39,7 +39,8 @@ def next_work(
         waiting.append((shares.start(stills.account), stills.served_at, stills))
     chosen = min(waiting, key=lambda claim: claim[:2], default=(0, 0, None))[2]
     if isinstance(chosen, LivePicture) and may_begin_light(chosen):  # all that waited have paid alike
-        return min((each for each in runnable if is_alike(each, chosen)), key=lambda each: each.begun_at)
+        beginners = (each for each in runnable if may_begin_light(each) and is_alike(each, chosen))
+        return min(beginners, key=lambda each: each.begun_at)
     return chosen
 
 
@@ -72,8 +73,9 @@ def is_alike(picture: LivePicture, other: LivePicture) -> bool:
     """Whether both may begin frames with a light map, or have them under way, that take about as long."""
     if not all(has_own_light(each) or may_begin_light(each) for each in (picture, other)):
         return False
-    less, more = sorted((seconds_of_frame(picture), seconds_of_frame(other)))
-    return more <= ALIKE * less
+    less, more = sorted((picture, other), key=seconds_of_frame)
+    first = all(each.quality.planned_seconds == 0 for each in (picture, other))  # of which nobody knows
+    return first or seconds_of_frame(more) <= ALIKE * seconds_of_frame(less)
 
 
 def waits_for_light(picture: LivePicture, with_light: Sequence[LivePicture]) -> bool:

@@ -64,7 +64,8 @@ class Shares:
     def charge(self, account: Account, seconds: float, now: float) -> None:
         """A piece was served that took so many seconds and ends now."""
         self._present = self.start(account)
-        for payer, part in account.payers or ((account, 1.0),):
+        payers, account.payers = account.payers or ((account, 1.0),), ()  # which else hold pictures of closed sessions
+        for payer, part in payers:
             payer.ended = self.start(payer) + part * seconds / payer.weight
             payer.add(part * seconds, now)
 

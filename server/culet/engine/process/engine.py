@@ -69,7 +69,7 @@ class EngineServer:
         memory = Memory(budget(limits.memory))
         memory.count("pictures", lambda: renderer.held().get("pictures", 0))
         memory.count("device_skies", lambda: renderer.held().get("device_skies", 0))
-        memory.give_back(lambda _: renderer.release())
+        memory.give_back(lambda _: renderer.trim())
         stills = StillQueue(limits.max_stills, limits.max_still_pixels)
         self._painter = Painter(
             renderer,

@@ -182,10 +182,14 @@ class Lighting:
 
     def release(self) -> None:
         """Give back what is kept for the next pass, the maps of moving frames, and passes that nobody waits for.
-        Pictures and passes that are under way have their own. From any thread, but while no picture is refined."""
+        Pictures and passes that are under way have their own. While no picture is refined."""
         for each in list(self._under_way.values()):
             each.give_up_left(0.0)
         self.forget_beams()
+        self.forget_provisional()
+
+    def forget_provisional(self) -> None:
+        """Give back the maps of moving frames that no picture has. From any thread, also while pictures are refined."""
         for key, each in list(self._kept.items()):
             if each.provisional:
                 self._kept.pop(key, None)
@@ -225,7 +229,8 @@ class Lighting:
             self._beams.append(beams)
 
     def forget_beams(self) -> None:
-        """Give back what is kept for the next pass. From any thread."""
+        """Give back what is kept for the next pass. While no picture is refined, or by who refines it: buffers wait for
+        the device before they go."""
         self._beams.clear()
 
     def scratch(self, size: int) -> Any:  # noqa: ANN401

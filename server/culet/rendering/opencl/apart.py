@@ -19,21 +19,27 @@ from culet.parent import ending_with
 NICENESS = 10
 """Of the compiling process, unless somebody waits for it: frames come first."""
 MOST_SECONDS = 600.0
-"""After which the compiler counts as hung. Programs take some 3 s of a core, measured, and more where many share it."""
+"""After which the compiler counts as hung. Programs take some 3 s of a core, and longer on what is left of one."""
+URGENT_SECONDS = 120.0
+"""The same where somebody waits for it, and all others that need a program. It may wait for another process first
+(`making.LONGEST_WAIT`)."""
 
 
 def run_apart(begins: Sequence[str], order: Mapping[str, object], data: bytes = b"", *, urgent: bool = True) -> bool:
     """Run a command whose process calls `ordered`, with an order of JSON's types and data on its standard input, and
     wait for it; whether it succeeded. DeviceError if it does not end.
 
-    If it fails, whoever does the same in this process will hear why.
+    If it fails, or cannot be begun, whoever does the same in this process will hear why.
     """
     whole = json.dumps({**order, "parent": os.getpid()})
+    most = URGENT_SECONDS if urgent else MOST_SECONDS
     command = ["nice", "-n", str(0 if urgent else NICENESS), *begins, whole]
     try:
-        done = subprocess.run(command, input=data, capture_output=True, check=False, timeout=MOST_SECONDS)  # noqa: S603
+        done = subprocess.run(command, input=data, capture_output=True, check=False, timeout=most)  # noqa: S603
     except subprocess.TimeoutExpired:
-        raise DeviceError(f"the compiler did not end within {MOST_SECONDS:g} s") from None
+        raise DeviceError(f"the compiler did not end within {most:g} s") from None
+    except OSError:  # without memory, or a process more
+        return False
     return done.returncode == 0
 
 

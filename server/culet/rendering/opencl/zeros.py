@@ -30,8 +30,8 @@ class _Pages(cl.Buffer):
 
     def __init__(self, device: Device, size: int) -> None:
         pages = np.frombuffer(mmap.mmap(-1, size, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS), np.uint8)
-        super().__init__(device.context, cl.mem_flags.READ_WRITE | cl.mem_flags.USE_HOST_PTR, hostbuf=pages)
         self._queue = device.queue
+        super().__init__(device.context, cl.mem_flags.READ_WRITE | cl.mem_flags.USE_HOST_PTR, hostbuf=pages)
 
     def __del__(self) -> None:
         """Of memory of its own the driver knows when the last kernel is done with it, of this it does not."""

@@ -46,9 +46,10 @@ def solve(
 def _properties(body: RigidBody) -> Properties:
     found = _PROPERTIES.get(body)
     if found is None:
-        found = _PROPERTIES[body] = Properties(mass=body.mass)
+        found = Properties(mass=body.mass)
         for own, rows in ((found.inertia, body.inertia), (found.inverse_inertia, body.inverse_inertia)):
             own[:] = [component for row in rows for component in row]
+        _PROPERTIES[body] = found  # whole: other threads may look for it
     return found
 
 
