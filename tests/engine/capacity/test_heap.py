@@ -11,8 +11,8 @@ import pytest
 from culet.engine.capacity import heap
 
 BLOCKS = 64
-HOLES = """
-import ctypes, os, sys
+BEGIN = """
+import ctypes, os, re, sys, threading
 
 from culet.engine.capacity.heap import keep_little
 
@@ -20,8 +20,8 @@ if sys.argv[1] == "returning":
     keep_little()
 c = ctypes.CDLL(None)
 c.malloc.restype, c.malloc.argtypes, c.free.argtypes = ctypes.c_void_p, [ctypes.c_size_t], [ctypes.c_void_p]
-
-
+"""
+HOLES = """
 def filled(size):
     block = c.malloc(size)
     ctypes.memset(block, 1, size)
@@ -44,14 +44,6 @@ print((resident() - before) / 2**20)
 
 THREADS = 12
 HEAPS = """
-import ctypes, re, sys, threading
-
-from culet.engine.capacity.heap import keep_little
-
-if sys.argv[1] == "returning":
-    keep_little()
-c = ctypes.CDLL(None)
-c.malloc.restype, c.malloc.argtypes, c.free.argtypes = ctypes.c_void_p, [ctypes.c_size_t], [ctypes.c_void_p]
 together, heaps = threading.Barrier(int(sys.argv[2])), set()
 
 
@@ -77,7 +69,9 @@ def left(how: str) -> float:
 
 def told(program: str, how: str, count: int) -> float:
     """What a process of its own prints."""
-    run = subprocess.run([sys.executable, "-c", program, how, str(count)], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", BEGIN + program, how, str(count)], capture_output=True, text=True, check=True
+    )
     return float(run.stdout)
 
 
