@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from culet.errors import DeviceError
 from culet.geometry.shape import Shape
 from culet.rendering.chains import AUTO_BANDS, CHANNELS
+from culet.rendering.emitters import open_sky
 from culet.rendering.emitters.light_map import frame_of
 from culet.rendering.emitters.panorama_light import is_summed
 from culet.rendering.emitters.ray import LightRay
@@ -84,6 +85,22 @@ def test_a_panorama_is_summed_before_a_picture_is_begun(renderer: Renderer) -> N
     renderer.make_ready(stage)
     assert renderer.is_ready(stage)
     assert is_summed(pixels)
+
+
+def test_what_a_room_leaves_of_the_sky_is_found_before_its_first_picture_asks(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes 0.3 s, for which the frames of others would wait."""
+    stage = Stage.of(Scene.read({"floor": {"kind": "mirror"}, "walls": {"kind": "mirror"}}))
+    renderer.make_ready(stage)
+    monkeypatch.setattr(open_sky, "_KNOWN", {})
+    assert not renderer.is_ready(stage)
+    assert renderer.is_ready(Stage.of(Scene.read({"floor": {"kind": "none"}}))), "there is no room"
+    other = Stage.of(Scene.read({"floor": {"kind": "mirror"}, "walls": {"kind": "mirror"}, "millimetres": 2}))
+    renderer.make_ready(other)
+    assert renderer.is_ready(other)
+    monkeypatch.setattr(open_sky, "_found", lambda _surfaces: pytest.fail("while a picture is drawn"))
+    renderer.picture(other, 32, 18).refine()
 
 
 def test_pictures_that_are_begun_together_have_their_beams_compiled_once(

@@ -20,9 +20,11 @@ from numpy.typing import NDArray
 import culet_kernels
 from culet.rendering.chains import band_count, is_spectral
 from culet.rendering.emitters.light_map import CHANNELS, LEVELS, SIZE, BoundMap, Figures, frame_of
+from culet.rendering.emitters.open_sky import is_known
 from culet.rendering.emitters.panorama_light import is_summed, panorama_light
 from culet.rendering.emitters.ray import LightRay
 from culet.rendering.emitters.sources import mapped_surfaces, rays_of
+from culet.rendering.emitters.unshaded import sky_light
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.light.photons import PhotonMaps, Photons, needed
@@ -132,8 +134,12 @@ class Lighting:
         return known
 
     def is_ready(self, stage: Stage) -> bool:
-        """Whether a picture's light can be had without waiting for a compiler, or for a panorama's sum."""
-        if stage.panorama is not None and shown(stage.scene) and not is_summed(stage.panorama):
+        """Whether a picture's light can be had without waiting for a compiler, for a panorama's sum, or for what a room
+        leaves of the sky."""
+        room = shown(stage.scene)
+        if stage.panorama is not None and room and not is_summed(stage.panorama):
+            return False
+        if not is_known(room):
             return False
         if not mapped_surfaces(stage):
             return True
@@ -144,6 +150,7 @@ class Lighting:
         100 MiB, and so does the pass."""
         if stage.panorama is not None and shown(stage.scene):
             panorama_light(stage.panorama)
+        sky_light(stage)
         with self._making_ready:
             if self.is_ready(stage):
                 return
