@@ -433,6 +433,31 @@ def test_a_pass_that_another_picture_has_begun_anew_adds_nothing(renderer: Rende
     assert (texels(renderer, found) == wanted).all()
 
 
+def test_a_moving_picture_has_light_where_the_pass_that_it_waited_for_is_begun_anew_later(renderer: Renderer) -> None:
+    """Three viewers, two of them of one stage: the pass that is begun anew waits for that of the other stage."""
+    stage, other = (Stage.of(scene_of(stones=[{"position": [0, height, 0]}])) for height in (1.0, 1.5))
+    renderer.lighting.forget()
+    _, alone = lit(renderer, stage, LightEffort.MOVING)
+    wanted = texels(renderer, alone)
+    renderer.lighting.forget()
+    first = renderer.picture(other, *SIZE, effort=LightEffort.RESTING).refine_in_pieces(1, 1e-5)
+    moving = renderer.picture(stage, *SIZE, effort=LightEffort.MOVING).refine_in_pieces(1, 1e-5)
+    resting = renderer.picture(stage, *SIZE, effort=LightEffort.RESTING).refine_in_pieces(1, 1e-5)
+    for work in (first, moving, resting):
+        next(work)
+    for _ in moving:
+        pass
+    found = renderer.lighting.of(stage)
+    assert found is not None
+    assert found.passes == 1
+    assert (texels(renderer, found) == wanted).all()
+    for work in (first, resting):
+        for _ in work:
+            pass
+    assert found.passes == 1
+    assert not found.provisional
+
+
 def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_maps(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -379,7 +379,8 @@ class Illumination:
         if effort is LightEffort.RESTING and first and self.passes > 0:
             return
         if effort is LightEffort.MOVING:
-            if self.passes == 0 or (self.provisional and self.cutoff > cutoff):
+            # By and by: a pass that was waited for may have failed, or be begun anew when another stage's is done.
+            while self.passes == 0 or (self.provisional and self.cutoff > cutoff):
                 if self._running is None or (self.provisional and self._start > cutoff):
                     self._begin(cutoff, provisional=True)
                 yield from self._advance(cutoff, effort, seconds, meanwhile)
