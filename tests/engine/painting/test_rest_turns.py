@@ -103,6 +103,20 @@ def test_who_needs_little_goes_first_but_nobody_waits_for_ever(own: CuttingRende
     assert having(pictures) == [2], "it has waited for so long"
 
 
+def test_who_comes_back_has_not_waited_while_nobody_watched(own: CuttingRenderer) -> None:
+    left, has, waits = pictures = [at_rest(own) for _ in range(3)]
+    take_turns(pictures, now=100)
+    assert having(pictures) == [0]
+    left.watched = False
+    take_turns(pictures, now=101)
+    assert having(pictures) == [1]
+    left.watched = True
+    take_turns(pictures, now=1000)
+    has.turn.spent = TURN_SECONDS
+    take_turns(pictures, now=1001)
+    assert waits.turn.has, "who has waited since"
+
+
 def test_a_viewer_that_takes_nothing_does_not_keep_its_turn(own: CuttingRenderer) -> None:
     pictures = [at_rest(own) for _ in range(2)]
     take_turns(pictures, now=100)

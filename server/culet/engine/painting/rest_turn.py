@@ -32,6 +32,10 @@ class RestTurn:
         """It is not refined until its next turn."""
         self.has, self.seconds, self.since = False, 2 * max(self.seconds, self.spent), now
 
+    def leave(self) -> None:
+        """It is not to be refined for now, and waits for nothing."""
+        self.has, self.since = False, None
+
     def is_over(self, now: float) -> bool:
         """Whether it has had its time."""
         assert self.since is not None  # noqa: S101 - of a turn that has begun

@@ -39,7 +39,7 @@ def take_turns(pictures: Sequence[LivePicture], now: float) -> None:
     for picture in pictures:
         turn = picture.turn
         if not picture.could_be_refined:
-            turn.has = False
+            turn.leave()
         elif not turn.has:
             turn.since = now if turn.since is None else turn.since
             waiting.append(picture)
