@@ -71,6 +71,14 @@ def test_the_sources_compile_without_a_warning(compiler: str) -> None:
     assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
 
 
+def test_no_function_of_the_c_library_rounds_for_the_solver() -> None:
+    """They differ between libraries and processors, `pow` in the last bit."""
+    needed = Path(library.library()._name).read_bytes().split(b"\0")
+    assert b"malloc" in needed, "names of functions stand there"
+    rounding = {b"pow", b"hypot", b"exp", b"log", b"sin", b"cos", b"tan", b"asin", b"acos", b"atan2", b"fma"}
+    assert not rounding & set(needed)
+
+
 def test_python_knows_the_structures_as_the_header_has_them(tmp_path: Path) -> None:
     structures = {
         "CuletLaw": interface.CuletLaw, "CuletHull": interface.CuletHull, "CuletBody": interface.Properties,

@@ -20,7 +20,7 @@
  * There are usually more equations than the body has velocities, as more than three points carry it, so that p is not
  * unique. The method of multipliers (Hestenes 1969) does not mind: p = p_before - rho (J w - target n), a few times over.
  *
- * The order of every sum is part of the result: one stone's path is the same to the bit on every machine. */
+ * The order of every sum is part of the result: the impulses are the same to the bit on every machine. */
 #include "culet_solver.h"
 #include "vector.h"
 
@@ -126,7 +126,8 @@ static int sticks(const CuletPoint *point, Vec3 before, Vec3 velocity, double fr
   if (!(normal >= 0)) return 0;
   Vec3 s = vec(after.x - normal * n.x, after.y - normal * n.y, after.z - normal * n.z);
   *impulse = after;
-  return dot(s, s) <= pow(friction * normal, 2.0);
+  double limit = friction * normal;
+  return dot(s, s) <= limit * limit;
 }
 
 static Vec3 slips(const CuletPoint *point, Vec3 before, Vec3 velocity, double friction, double pressed,
@@ -231,7 +232,8 @@ static int bonds_of(const Problem *problem) {
     double normal = dot(impulse, n);
     if (normal <= 0) continue;
     Vec3 s = vec(impulse.x - normal * n.x, impulse.y - normal * n.y, impulse.z - normal * n.z);
-    if (friction == 0 || dot(s, s) >= pow(friction * normal * (1 - 1e-9), 2.0)) {
+    double limit = friction * normal * (1 - 1e-9);
+    if (friction == 0 || dot(s, s) >= limit * limit) {
       Vec3 push = vec(impulse.x / normal, impulse.y / normal, impulse.z / normal);
       problem->bonds[count++] = (Bond){i, lever(arm, push), lever(arm, n), point->target, normal};
       continue;

@@ -68,7 +68,8 @@ def _solved(
         if normal <= 0:
             continue
         sx, sy, sz = ix - normal * a, iy - normal * b, iz - normal * c
-        if friction == 0 or sx * sx + sy * sy + sz * sz >= (friction * normal * (1 - 1e-9)) ** 2:
+        limit = friction * normal * (1 - 1e-9)
+        if friction == 0 or sx * sx + sy * sy + sz * sz >= limit * limit:
             push = (ix / normal, iy / normal, iz / normal)
             bonds.append((index, _lever(point.arm, push), _lever(point.arm, point.normal), target, normal))
         else:

@@ -112,7 +112,8 @@ def _converged(
                 normal = nx * a + ny * b + nz * c
                 if normal >= 0:
                     sx, sy, sz = nx - normal * a, ny - normal * b, nz - normal * c
-                    sticks = sx * sx + sy * sy + sz * sz <= (friction * normal) ** 2
+                    limit = friction * normal
+                    sticks = sx * sx + sy * sy + sz * sz <= limit * limit
             if not sticks:
                 normal = max(pressed - excess / point.normal_inverse_mass, 0.0)
                 nx, ny, nz = normal * a, normal * b, normal * c
