@@ -22,31 +22,41 @@ typedef struct {
   int count;
 } pool_t;
 
-// Appends the lanes of a packet that the mask names.
-static inline void push(pool_t *pool, maskL mask, const packetL *packet) {
+// Appends the lanes of a packet that the mask names to rows of `size` numbers.
+static inline void append(real *rows, int *wholes, int *count, int size, maskL mask, const packetL *packet) {
   const packing_t packing = packing_of(mask);
-  pack_packet(packing, packet, pool->number[0] + pool->count, pool->whole[0] + pool->count, POOL_SIZE);
-  pool->count += packing.count;
+  pack_packet(packing, packet, rows + *count, wholes + *count, size);
+  *count += packing.count;
 }
 
-// Takes up to a packet from the end; the mask says which lanes hold one. The other lanes hold what was there before,
-// which is finite.
-__attribute__((always_inline)) static inline packetL pop(pool_t *pool, maskL *mask) {
-  const int start = max(pool->count - LANES, 0);
-  *mask = widen(LANE_INDEX < (intL)(pool->count - start));
-  pool->count = start;
-  return load_packet(pool->number[0] + start, pool->whole[0] + start, POOL_SIZE);
+// Takes up to a packet from the end of such rows; the mask says which lanes hold one. The other lanes hold what was there
+// before, which is finite.
+__attribute__((always_inline)) static inline packetL take(const real *rows, const int *wholes, int *count, int size,
+                                                          maskL *mask) {
+  const int start = max(*count - LANES, 0);
+  *mask = widen(LANE_INDEX < (intL)(*count - start));
+  *count = start;
+  return load_packet(rows + start, wholes + start, size);
 }
 
-static inline int has_room(const pool_t *pool) { return pool->count <= POOL_RAYS - LANES; }
-
-static inline void clear(pool_t *pool) {
-  pool->count = 0;
-  for (int i = 0; i < LANES; i++) { // only here can a packet be taken that is not full
-    EACH (k, NUMBERS) pool->number[k][i] = 0;
-    EACH (k, WHOLES) pool->whole[k][i] = 0;
+// Empties such rows. Only at their beginning can a packet be taken that is not full.
+static inline void empty(real *rows, int *wholes, int *count, int size) {
+  *count = 0;
+  for (int i = 0; i < LANES; i++) {
+    EACH (k, NUMBERS) rows[k * size + i] = 0;
+    EACH (k, WHOLES) wholes[k * size + i] = 0;
   }
 }
+
+static inline void push(pool_t *pool, maskL mask, const packetL *packet) {
+  append(pool->number[0], pool->whole[0], &pool->count, POOL_SIZE, mask, packet);
+}
+__attribute__((always_inline)) static inline packetL pop(pool_t *pool, maskL *mask) {
+  return take(pool->number[0], pool->whole[0], &pool->count, POOL_SIZE, mask);
+}
+static inline void clear(pool_t *pool) { empty(pool->number[0], pool->whole[0], &pool->count, POOL_SIZE); }
+
+static inline int has_room(const pool_t *pool) { return pool->count <= POOL_RAYS - LANES; }
 
 // Brings a packet to where it meets a stone. Of MANY it then is in the axes of light inside.
 static inline void bring(world_t world, packetL *packet, meetingL met) {
@@ -59,10 +69,10 @@ static inline void bring(world_t world, packetL *packet, meetingL met) {
 }
 
 // Rays inside stones, in the axes of light inside. The facets of a shape are looked at by all lanes of a packet together, so a packet
-// is of one shape, whichever stones of that shape its lanes are in: the rays of each shape have a pool of their own, by the number
-// of its first stone. What these have no room for waits in a pile of full packets, the latest on top.
-#if STONES == MANY
-#define PILE 256                   // full packets that may wait; what finds no room is counted as cut
+// is of one shape, whichever stones of that shape its lanes are in. Where there are several shapes, the rays of each have a pool of
+// their own, by the number of its first stone. What these have no room for waits in a pile of full packets, the latest on top.
+#define PILE 256                   // packets that may wait inside MANY stones; what finds no room is counted as cut
+#if STONES == MANY && !ALIKE
 #define GATHERING_RAYS (2 * LANES) // that stay in a shape's own pool
 #define GATHERING_SIZE (4 * LANES) // a packet more may come, and is written whole
 
@@ -114,10 +124,6 @@ __attribute__((always_inline)) static inline void push_to_shape(inside_t *inside
 
 // Appends the lanes that the mask names, each to its own stone, of a packet that is in the axes of light inside.
 static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
-  if (ALIKE) {
-    push_to_shape(inside, 0, mask, packet);
-    return;
-  }
   const realL alike = by_stone(world, COLUMN_ALIKE, packet->stone);
   while (any_lane(mask)) {
     const int shape = first_number(mask, reals_to_int(alike));
@@ -172,26 +178,40 @@ __attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside
   return load_packet(rows, wholes, stride);
 }
 #else
-typedef pool_t inside_t;
-static inline void clear_inside(inside_t *inside) { clear(inside); }
+#if ALIKE
+#define INSIDE_SIZE ((PILE + 1) * LANES)
+#else
+#define INSIDE_SIZE POOL_SIZE
+#endif
+typedef struct {
+  real number[NUMBERS][INSIDE_SIZE];
+  int whole[WHOLES][INSIDE_SIZE];
+  int count;
+} inside_t;
+
+static inline void clear_inside(inside_t *inside) {
+  empty(inside->number[0], inside->whole[0], &inside->count, INSIDE_SIZE);
+}
 static inline int is_empty(const inside_t *inside) { return inside->count == 0; }
 static inline int has_full(const inside_t *inside) { return inside->count >= LANES; }
-static inline int has_room_inside(const inside_t *inside) { return has_room(inside); }
+static inline int has_room_inside(const inside_t *inside) { return inside->count <= INSIDE_SIZE - 2 * LANES; }
 static inline void push_to_shape(inside_t *inside, int shape, maskL mask, const packetL *packet) {
-  push(inside, mask, packet);
+  append(inside->number[0], inside->whole[0], &inside->count, INSIDE_SIZE, mask, packet);
 }
-// A packet that is in the frame.
+// A packet that is in the frame, or of MANY in the axes of light inside.
 static inline void push_inside(world_t world, inside_t *inside, maskL mask, const packetL *packet) {
-  __constant const stone_t *stone = world.stones;
   packetL inner = *packet;
+#if STONES != MANY
+  __constant const stone_t *stone = world.stones;
   inner.origin = inward(stone, packet->origin);
   inner.direction = inward(stone, packet->direction);
   if (POLARISED) inner.polarisation.axis = inward(stone, packet->polarisation.axis);
-  push(inside, mask, &inner);
+#endif
+  push_to_shape(inside, 0, mask, &inner);
 }
 __attribute__((always_inline)) static inline packetL pop_inside(inside_t *inside, maskL *mask, int *shape) {
   *shape = 0;
-  return pop(inside, mask);
+  return take(inside->number[0], inside->whole[0], &inside->count, INSIDE_SIZE, mask);
 }
 #endif
 
