@@ -404,14 +404,25 @@ def test_nothing_to_simulate_is_an_error(tmp_path: Path) -> None:
 
 
 async def test_frames_of_a_session_are_taken_without_a_gateway(tmp_path: Path) -> None:
+    """Each as it comes: a JPEG, or the final picture at rest, a PNG, which whoever is slow sees at once."""
+    out = tmp_path / "out"
     with running_engine(tmp_path) as engine:
         async with connected(engine) as (peer, _):
             session = await peer.open({"floor": {"kind": "none"}})
             await peer.demand()
-            run = culet("view", engine.frames, "--session", session, "--frames", "3", "-o", tmp_path / "out")
+            patience = "--timeout", f"{PATIENCE:g}"
+            run = culet("view", engine.frames, "--session", session, "--frames", "3", "-o", out, *patience)
             assert run.returncode == 0, run.stderr
-    files = sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert files == ["frame-000001.jpg", "frame-000002.jpg", "frame-000003.jpg", "frames.jsonl"]
+    taken = [json.loads(line) for line in (out / "frames.jsonl").read_text().splitlines()]
+    endings = [{"JPEG": "jpg", "PNG": "png"}[header["codec"]] for header in taken]
+    files = [f"frame-{number:06}.{ending}" for number, ending in enumerate(endings, 1)]
+    assert len(files) == 3
+    assert [header["file"] for header in taken] == files
+    assert sorted(path.name for path in out.iterdir()) == [*files, "frames.jsonl"]
+    for header in taken:
+        with Image.open(out / header["file"]) as picture:
+            assert (picture.format, *picture.size) == (header["codec"], header["width"], header["height"])
+    assert [header["sequence"] for header in taken] == sorted(header["sequence"] for header in taken)
 
 
 def test_a_session_that_nobody_publishes_is_given_up(tmp_path: Path) -> None:

@@ -115,23 +115,24 @@ def test_of_a_large_picture_fewer_are_drawn_together(renderer: Renderer, monkeyp
     assert drawn(renderer, legacy({"stones": []}), 2, 1)[1] == [1, 2, 3, *range(4, 33, 4)]
 
 
-def test_a_batch_is_drawn_if_it_is_there_before_it_is_to_be_seen(
+def test_what_is_drawn_together_does_not_depend_on_when_it_is_to_be_seen(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("culet.rendering.renderer.SOON", 0.0)
-    picture = renderer.picture(Stage.of(legacy()), *SIZE, effort=LightEffort.RESTING)
-    counts = []
-    while picture.samples < SAMPLES:
-        picture.sample_seconds = 1.0
-
-        def due(seconds: float) -> bool:
-            """In 10 s: four samples are there, sixteen are not."""
-            return seconds > 10
-
-        for _ in picture.refine_until(Target(SAMPLES), math.inf, pause=lambda: True, due=due):
-            pass
-        counts.append(picture.samples)
-    assert counts == [1, 2, 3, *range(4, 33, 4)]
+    """Or a busy machine would have another picture, by the order of sums."""
+    monkeypatch.setattr("culet.rendering.renderer.SOON", -math.inf)
+    monkeypatch.setattr(KernelPace, "steps", lambda _pace, _seconds: 500)
+    scene = legacy({"optics": {"bands": 8}})
+    undisturbed, counts = drawn(renderer, scene, 2, 1)
+    for overdue in (lambda _: True, lambda seconds: seconds > 0):  # ever since it was seen; soon after it was
+        picture, looks, seen = renderer.picture(Stage.of(scene), *SIZE, effort=LightEffort.RESTING), 0, [0]
+        while picture.samples < SAMPLES:
+            for _ in picture.refine_until(Target(SAMPLES), 1.0, due=overdue):
+                pass
+            looks += picture.under_way
+            seen += [picture.samples] if picture.samples > seen[-1] else []
+        assert seen[1:] == counts
+        assert looks > len(counts) or not overdue(0), "it was left amid batches"
+        assert picture.linear().tobytes() == undisturbed.linear().tobytes()
 
 
 def test_a_batch_under_way_is_shown_where_its_tiles_are_done(

@@ -385,10 +385,9 @@ class DevicePicture:
         After each sample `pause` is asked whether to leave it at that for now. `due` tells whether somebody is to see
         the picture within so many seconds: it is left when that is so, amid a sample too if that does not end SOON
         (`overlaid`), or after a sample if the next one would not be whole in time; and a picture at rest shows samples
-        in the light that there is, as many as it needs, while that gets better. Samples are drawn together as far as
-        they are there before one is due. The picture that reaches the target is the same however often it was left, as
-        long as its first two samples were not made otherwise: to the last bit where no batch was smaller for it, else
-        up to the order of sums.
+        in the light that there is, as many as it needs, while that gets better. The picture that reaches the target is
+        the same to the last bit however often it was left, as long as its first two samples were not made otherwise:
+        which samples are drawn together depends on how many there are and are needed, not on what is due.
         """
         self.compare_as_shown()
         self.seconds = self.light_seconds = 0.0
@@ -399,7 +398,7 @@ class DevicePicture:
                 yield min(self.samples / self._needed(target), 1.0)
             before, begun = self.samples, self.seconds
             together = self._needed(target) - before if self._in_final_light else 1
-            for part in self._sampled(self._level_of(together, due)):
+            for part in self._sampled(self._level_of(together)):
                 yield min((before + part * self._batch) / self._needed(target), 1.0)
                 spent = self.seconds - begun
                 tiles = self._fireflies is None and part < ALMOST  # what comes after them is short
@@ -501,15 +500,11 @@ class DevicePicture:
         self._light_errors = self._light_errors[len(self._light_errors) - kept :]
         self._light_bounds = self._light_bounds[len(self._light_bounds) - kept :]
 
-    def _level_of(self, samples: int, due: Callable[[float], bool] = lambda _: False) -> int:
-        """Of the batch that comes next, of at most so many samples: one that is there before somebody is to see it."""
-        if self._batches:
-            for level in LEVELS:
-                batch = 4**level
-                fits = batch <= min(samples, self._sums.room, LARGEST_BATCH // (self.width * self.height))
-                if fits and not due(batch * self.sample_seconds - SOON):
-                    return level
-        return 0
+    def _level_of(self, samples: int) -> int:
+        """Of the batch that comes next, of at most so many samples. It does not depend on time: a batch adds a pixel's
+        light in another order than samples by themselves, and the same scene is to have the same picture."""
+        most = min(samples, self._sums.room, LARGEST_BATCH // (self.width * self.height)) if self._batches else 1
+        return next((level for level in LEVELS if 4**level <= most), 0)
 
     @property
     def _batch(self) -> int:
