@@ -42,6 +42,19 @@ def test_the_stone_is_made_of_what_one_chooses(wide_view: View, server: Server) 
     expect(view.page.get_by_label("Material", exact=True)).to_have_value("ruby")
 
 
+def test_the_words_about_a_choice_are_of_what_is_chosen_and_end_with_its_use(wide_view: View) -> None:
+    view = wide_view
+    words = view.page.locator("#panel .hint")
+    choose(view, "Material", "Ruby")
+    expect(words).to_contain_text("Corundum coloured red")
+    view.page.keyboard.press("Control+z")
+    expect(words).not_to_contain_text("Corundum")
+    choose(view, "Material", "Emerald")
+    expect(words).to_be_visible()
+    view.page.mouse.click(300, 400)
+    expect(words).to_be_hidden()
+
+
 def test_the_sky_is_one_of_the_studios_or_ones_own(wide_view: View, server: Server, tmp_path: Path) -> None:
     view = wide_view
     before, after = view.change(lambda: choose(view, "Sky", "Ring lights"))
