@@ -14,18 +14,19 @@ from e2e.view import View
 
 
 @pytest.mark.parametrize(
-    ("session", "text"),
+    ("query", "text"),
     [
-        pytest.param("0" * 32, "There is no such session (any more)", id="unknown"),
-        pytest.param("<b>nonsense", "<b>nonsense is not the id of a session", id="not-an-id"),
+        pytest.param("session=" + "0" * 32, "There is no such session (any more)", id="unknown"),
+        pytest.param("session=<b>nonsense", "<b>nonsense is not the id of a session", id="not-an-id"),
+        pytest.param("preset=rubi", "no preset 'rubi'; there are: default, ", id="no-preset"),
     ],
 )
 def test_an_address_without_a_session_says_so_and_offers_a_new_one(
-    view_of: ViewOf, server: Server, session: str, text: str
+    view_of: ViewOf, server: Server, query: str, text: str
 ) -> None:
     view = view_of()
     view.refusals.add(404)
-    view.page.goto(f"{server.url}/?session={session}")
+    view.page.goto(f"{server.url}/?{query}")
     obstacle = view.page.get_by_role("alertdialog")
     obstacle.wait_for()
     assert text in obstacle.inner_text()

@@ -99,6 +99,7 @@ export class Visit {
         return this.later(words.connection.notThere, tries, (next) => this.start(next));
       }
       if (wanted.kind === "session" && known.status === 404) return this.signs.end(unknownSession());
+      if (wanted.kind === "new" && known.status === 404) return this.signs.end(known.message); // no such preset
       if (rest.isPassing(known)) this.later(known.message, tries, (next) => this.start(next));
       else this.signs.retry(known.message, () => this.complaints.attempt(() => this.start()));
     }
