@@ -205,12 +205,14 @@ def test_a_ray_that_points_nowhere_and_the_classic_estimator_are_refused(recorde
         answered(recorder, Stage.of(preset("classic")), Pixel(1, 1, *SIZE))
 
 
-def test_an_engine_has_the_program_made_by_another_process_first(
-    device: Device, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("cached", [False, True])
+def test_an_engine_has_a_program_that_the_cache_lacks_made_by_another_process_first(
+    device: Device, monkeypatch: pytest.MonkeyPatch, cached: bool
 ) -> None:
     asked = []
     monkeypatch.setattr("culet.paths.recorder.precompile_path", lambda features, variant: asked.append(features))
+    monkeypatch.setattr("culet.paths.program.lacks", lambda cache, program: not cached)
     apart = PathRecorder(device, apart=True)
     for _ in range(2):
         answered(apart, Stage.of(Scene()), Pixel(2, 2, *SIZE))
-    assert len(asked) == 1, "and is made once"
+    assert len(asked) == (0 if cached else 1), "and is made once"

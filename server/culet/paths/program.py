@@ -8,14 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyopencl as cl
 
-import culet_kernels
 from culet.rendering.features import Features
 from culet.rendering.opencl import kernel_cache
 from culet.rendering.opencl.compiling import compiling
 from culet.rendering.opencl.device import Device, open_device
 from culet.rendering.opencl.layout import buffers, struct
-from culet.rendering.opencl.making import alone
-from culet.rendering.programs.build import Variant, build
+from culet.rendering.opencl.making import alone, lacks
+from culet.rendering.programs.build import Variant, build, recipe
 from culet.rendering.programs.precompile import in_a_process, program_ordered
 
 COMMAND = (sys.executable, "-m", __name__)
@@ -31,6 +30,11 @@ class PathKernel(NamedTuple):
     """That it keeps between launches."""
 
 
+def is_uncached(device: Device, features: Features, variant: Variant) -> bool:
+    """Whether another process could put it into the driver's cache, for `make_path` to find it there."""
+    return lacks(kernel_cache.folder(), _recipe(device, features, variant))
+
+
 def precompile_path(features: Features, variant: Variant) -> bool:
     """Have a process of its own make the program, so that the driver's cache has it; whether it did. Somebody waits."""
     return in_a_process(COMMAND, features, variant, urgent=True)
@@ -39,7 +43,7 @@ def precompile_path(features: Features, variant: Variant) -> bool:
 def make_path(device: Device, features: Features, variant: Variant) -> PathKernel:
     """Ready to be launched; errors as of `build`."""
     options = [*variant.options, *features.options]
-    with compiling(), alone(kernel_cache.folder(), f"{culet_kernels.source('path.cl')} {options}"):
+    with compiling(), alone(kernel_cache.folder(), _recipe(device, features, variant)):
         program = build(device, "path.cl", options)
         queue, flags = cl.CommandQueue(device.context), cl.mem_flags
         size = np.zeros(1, np.int32)
@@ -61,6 +65,10 @@ def make_path(device: Device, features: Features, variant: Variant) -> PathKerne
         )  # fmt: skip
         queue.finish()
     return PathKernel(kernel, kept)
+
+
+def _recipe(device: Device, features: Features, variant: Variant) -> str:
+    return recipe(device, "path.cl", variant, features)
 
 
 def main() -> None:

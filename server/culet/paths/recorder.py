@@ -13,7 +13,7 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from culet.errors import CuletError, SceneError
-from culet.paths.program import PathKernel, make_path, precompile_path
+from culet.paths.program import PathKernel, is_uncached, make_path, precompile_path
 from culet.rendering.chains import GROUPS, first_sample, is_spectral, wavelengths_of
 from culet.rendering.features import ESTIMATOR, Features, features_of
 from culet.rendering.kernel_inputs.inputs import Inputs
@@ -79,8 +79,9 @@ class PathRecorder:
     def __init__(
         self, device: Device, real: Real = np.float32, *, apart: bool = False, light_seconds: float = math.inf
     ) -> None:
-        """Programs are built when they are first needed, with `apart` by processes of their own, so that no other
-        launch of this one waits for a compiler. A scene's light map may take `light_seconds`."""
+        """Programs are built when they are first needed, with `apart` by processes of their own where the driver's
+        cache does not have them, so that no other launch of this one waits for a compiler. A scene's light map may take
+        `light_seconds`."""
         self._device, self._real, self._apart, self._light_seconds = device, real, apart, light_seconds
         self._pool = cl.tools.MemoryPool(cl.tools.ImmediateAllocator(device.queue))
         self._lighting = Lighting(device, self._pool.allocate)
@@ -194,7 +195,7 @@ class PathRecorder:
         found = self._programs.get(features)
         if found is None:
             variant = Variant(lanes=1, real=self._real)
-            if self._apart:
+            if self._apart and is_uncached(self._device, features, variant):
                 precompile_path(features, variant)
             found = self._programs[features] = make_path(self._device, features, variant)
         return found
