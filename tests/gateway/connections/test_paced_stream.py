@@ -16,7 +16,7 @@ import uvicorn
 from uvicorn.server import ServerState
 from websockets.frames import Frame
 
-from culet.gateway.connections.paced_stream import FRAMES_PER_SECOND, PIECE, PacedStream
+from culet.gateway.connections.paced_stream import FRAMES_PER_SECOND, PIECE, UNSENT_BYTES, PacedStream
 from culet.gateway.limits.bucket import BURST_SECONDS
 from culet_protocol import SUBPROTOCOL
 from gateway.running import PATIENCE, Gateway
@@ -118,8 +118,8 @@ class Counted(PacedStream):
 
 
 @asynccontextmanager
-async def served() -> AsyncIterator[tuple[Counted, Connection]]:
-    """A stream of an application that takes nothing, after its handshake."""
+async def served(line: socket.socket | None = None) -> AsyncIterator[tuple[Counted, Connection]]:
+    """A stream of an application that takes nothing, after its handshake; of that socket, if it asks for one."""
     accepted, over = asyncio.Event(), asyncio.Event()
 
     async def app(_scope: object, receive: Callable[[], Any], send: Callable[[Any], Any]) -> None:
@@ -128,15 +128,27 @@ async def served() -> AsyncIterator[tuple[Counted, Connection]]:
         accepted.set()
         await over.wait()
 
-    stream, connection = Counted(uvicorn.Config(app, ws_ping_interval=None), ServerState(), {}), Connection()
+    stream, connection = (
+        Counted(uvicorn.Config(app, ws_ping_interval=None), ServerState(), {}),
+        Connection({"socket": line}),
+    )
     stream.connection_made(connection)
     head = "GET / HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
     stream.data_received(f"{head}Sec-WebSocket-Key: {base64.b64encode(bytes(16)).decode()}\r\n\r\n".encode())
     async with asyncio.timeout(PATIENCE):
         await accepted.wait()
     connection.written = b""
-    yield stream, connection
-    over.set()
+    try:
+        yield stream, connection
+    finally:
+        over.set()
+
+
+async def test_the_system_keeps_little_that_is_not_on_its_way() -> None:
+    """What waits in the gateway is replaced by what is newer."""
+    with socket.socket() as line:
+        async with served(line):
+            assert line.getsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT) == UNSENT_BYTES
 
 
 @pytest.mark.parametrize(

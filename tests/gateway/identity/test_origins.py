@@ -60,6 +60,8 @@ def test_a_page_enters_from_the_same_origin_or_an_allowed_one(
         ("rebind.evil.example", False),
         ("gems.example.evil.example", False),
         ("localhost.evil.example", False),
+        ("evillocalhost", False),
+        ("evilshop.example", False),
         ("127.0.0.1.evil.example", False),
         ("", False),
         ("[", False),

@@ -73,10 +73,12 @@ def test_each_client_has_a_bucket_of_its_own() -> None:
 
 
 def test_a_million_clients_take_no_more_memory_than_some_thousand_and_who_owes_is_not_forgotten() -> None:
-    clients = ClientBuckets(RATE)
+    """Though it was seen before all others."""
+    clients, last = ClientBuckets(RATE), 3 * FORGOTTEN_OVER
     debtor = clients.of("debtor", 0)
-    debtor.spend(1e6, 0)
-    for number in range(2 * FORGOTTEN_OVER):
+    debtor.spend(2 * last * RATE, 0)
+    for number in range(last):
         clients.of(str(number), number).spend(1, number)
-        assert clients.of("debtor", number) is debtor
-    assert len(clients) <= FORGOTTEN_OVER + 1
+        assert len(clients) <= FORGOTTEN_OVER + 2
+    assert clients.of("debtor", last) is debtor
+    assert debtor.overdrawn_for(last) > 0

@@ -49,6 +49,16 @@ def test_an_acknowledgement_of_what_was_never_sent_gives_nothing() -> None:
     assert not credit.available(SIZE, 0.1)
 
 
+def test_the_window_grows_once_for_a_frame_that_had_to_wait_and_not_without_one() -> None:
+    credit, windows = Credit(), []
+    for number, waits in enumerate([True, False, False]):
+        credit.take(number, SIZE, number)
+        assert not waits or not credit.available(SIZE, number)
+        credit.acknowledge(number, number + 0.01)
+        windows.append(credit.window)
+    assert windows == [2, 2, 2]
+
+
 def test_time_gives_no_credit() -> None:
     credit = Credit()
     credit.take(1, SIZE, 0)

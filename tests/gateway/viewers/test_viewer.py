@@ -21,8 +21,11 @@ def test_with_credit_the_latest_frame_goes_out_once() -> None:
     offer(viewer, 1)
     latest = offer(viewer, 2)
     assert viewer.next_frame(0) == latest
+    viewer.acknowledge(2, 0.1)
     offer(viewer, 2)  # a still picture is repeated
-    assert viewer.next_frame(0) is None
+    assert viewer.next_frame(0.1) is None
+    newer = offer(viewer, 3)
+    assert viewer.next_frame(0.1) == newer
 
 
 def test_frames_that_come_without_credit_are_skipped_and_the_last_is_never_lost() -> None:
@@ -140,6 +143,16 @@ def test_a_state_that_has_to_wait_holds_up_nothing_else() -> None:
     assert viewer.next_notice(0) == Pong(time=1)
     assert viewer.next_notice(0) is None
     assert viewer.next_notice(STATE_SECONDS) == Change(revision=0, since=0, parts={}, falling=True)
+
+
+def test_whose_stream_ends_is_told_the_last_state_at_once() -> None:
+    viewer = Viewer(1, now=0)
+    viewer.tell(State(revision=0, scene={}, falling=False))
+    viewer.next_notice(0)
+    viewer.tell(State(revision=0, scene={}, falling=True))
+    assert viewer.next_notice(0) is None
+    viewer.dismiss()
+    assert viewer.next_notice(0) == Change(revision=0, since=0, parts={}, falling=True)
 
 
 def test_a_viewer_that_leaves_its_notices_unread_is_noticed() -> None:

@@ -7,7 +7,7 @@ const ORBIT = { type: "orbit", target: "camera", yaw: 0.1, pitch: 0 } as const;
 const ARRIVAL = { time: 1066, decodeMs: 4, roundTripMs: 2 };
 
 function frame(step: number): Frame {
-  const made = { step: BigInt(step), flags: Flag.MOVING, simulateMs: 1, renderMs: 15, samples: 1, encodeMs: 5 };
+  const made = { step: BigInt(step), flags: Flag.MOVING, simulateMs: 1, renderMs: 30, samples: 2, encodeMs: 5 };
   return made as Frame;
 }
 

@@ -49,6 +49,7 @@ it("is told why its own messages were given up, and of no others", async () => {
   expect(problem("at_the_limit", 11)).toBe(false);
   expect(problem("unusable_input", 9)).toBe(false); // which no other try would mend
   expect(problem("at_the_limit", 8)).toBe(true);
+  expect(problem("at_the_limit", 9)).toBe(true); // the first reason is told
   await settle();
   expect(told).toEqual([]); // the others may be under way
   acknowledged.heard({ type: "reached", number: asked[0]?.number ?? 0, step: 4 });

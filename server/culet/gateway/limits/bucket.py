@@ -52,6 +52,7 @@ class ClientBuckets:
         while len(self._buckets) > FORGOTTEN_OVER:
             oldest, forgotten = next(iter(self._buckets.items()))
             if not forgotten.is_full(now):
+                self._buckets.move_to_end(oldest)  # or who owes long would have all after it remembered
                 break
             del self._buckets[oldest]
         return bucket
