@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from documents.pages import read
@@ -55,6 +56,20 @@ def test_a_lessons_ray_is_drawn_and_told_and_the_arrow_keys_go_through_it(view_o
     page.keyboard.press("Escape")
     page.locator("#ray-card").wait_for(state="detached")
     assert view.problems == []
+
+
+@pytest.mark.parametrize("width", [1280, 800, 390])
+def test_what_the_page_tells_covers_no_table_of_a_ray(view_of: ViewOf, width: int) -> None:
+    view = view_of(viewport={"width": width, "height": 700}).open(prism())
+    view.page.keyboard.press("t")
+    card, toast = view.page.locator("#ray-card"), view.page.locator(".toast", has_text="nothing to undo")
+    card.locator("tbody tr").first.wait_for()
+    view.page.keyboard.press("Control+z")
+    told, table = toast.bounding_box(), card.bounding_box()
+    assert told is not None
+    assert table is not None
+    beside = told["x"] >= table["x"] + table["width"]
+    assert beside or told["y"] + told["height"] <= table["y"]
 
 
 def test_on_a_phone_the_panel_gives_its_place_to_the_table(view_of: ViewOf) -> None:
