@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import gc
 import os
 from pathlib import Path
 
@@ -34,6 +36,20 @@ def test_of_zeros_only_what_is_written_takes_memory(device: Device) -> None:
     assert (np.flatnonzero(found) == np.arange(2**20, 2**21)).all()
     del buffer
     assert resident() - before < 2**25
+
+
+def test_where_there_is_no_memory_that_is_all_that_is_said(device: Device, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is left of such a buffer ends without a word: warnings are errors here."""
+    if not device.shares_memory:
+        pytest.skip("the device has memory of its own")
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOMEM, "no memory")
+
+    monkeypatch.setattr("culet.rendering.opencl.zeros.mmap.mmap", full)
+    with pytest.raises(OSError, match="no memory"):
+        zeros(device, 2**20)
+    gc.collect()
 
 
 def test_zeros_are_zeros_where_there_was_something_before(device: Device) -> None:

@@ -29,8 +29,8 @@ class _Pages(cl.Buffer):
     """A buffer in pages that are this process's own, and go with it."""
 
     def __init__(self, device: Device, size: int) -> None:
+        self._queue = device.queue  # first: what fails to be made is ended, too
         pages = np.frombuffer(mmap.mmap(-1, size, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS), np.uint8)
-        self._queue = device.queue
         super().__init__(device.context, cl.mem_flags.READ_WRITE | cl.mem_flags.USE_HOST_PTR, hostbuf=pages)
 
     def __del__(self) -> None:
