@@ -473,3 +473,21 @@ async def test_of_a_tier_that_is_left_while_its_better_picture_is_encoded_nothin
     resting.allow(2, 2)
     assert await resting.improve() == []
     assert (desk.outgoing.lesser.lossy, desk.outgoing.lesser.message) == (None, None)
+
+
+async def test_of_a_picture_that_nobody_watches_any_more_no_better_one_is_sent(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    resting = Resting(desk)
+    resting.allow(0.4)
+    await desk.publish(planned=False)
+    encode = LiveFrame.encoded
+
+    def left(frame: LiveFrame, allowance: ByteAllowance) -> Coded:
+        desk.outgoing.forget_frame()
+        return encode(frame, allowance)
+
+    monkeypatch.setattr(LiveFrame, "encoded", left)
+    resting.allow(2)
+    assert await resting.improve() == []
+    assert desk.outgoing.lossy is None

@@ -11,7 +11,7 @@ import pytest
 from culet.engine.painting import rest_turns
 from culet.engine.painting.frame_work import FrameWork, WorkKind
 from culet.engine.painting.live_picture import LivePicture, PictureState
-from culet.engine.painting.rest_turn import LONGEST, TURN_SECONDS
+from culet.engine.painting.rest_turn import LONGEST, TURN_SECONDS, RestTurn
 from culet.engine.painting.rest_turns import BOUND, resting_bytes, take_turns, waits_to_settle
 from culet.engine.session.session import Session
 from culet.geometry.mesh import shape_from_mesh
@@ -68,6 +68,13 @@ def test_small_pictures_are_refined_side_by_side(own: CuttingRenderer) -> None:
     assert all(live.picture is not None for live in pictures)
 
 
+def test_a_picture_larger_than_the_bound_is_refined_by_itself(own: CuttingRenderer) -> None:
+    pictures = [at_rest(own, (1280, 1100)), at_rest(own, SMALL)]
+    assert resting_bytes(pictures[0]) > BOUND
+    take_turns(pictures, now=100)
+    assert having(pictures) == [0]
+
+
 def test_a_turn_ends_when_it_has_had_its_time_and_others_wait(own: CuttingRenderer) -> None:
     pictures = [at_rest(own) for _ in range(3)]
     order = []
@@ -87,6 +94,14 @@ def test_a_turn_ends_when_it_has_had_its_time_and_others_wait(own: CuttingRender
     alone[0].turn.spent = 1e9
     take_turns(alone, now=107)
     assert having(alone) == [0], "nobody waits"
+
+
+def test_who_has_taken_more_than_its_turn_has_twice_as_much_the_next_time() -> None:
+    turn = RestTurn()
+    turn.begin(now=100)
+    turn.spent = 3 * TURN_SECONDS
+    turn.end(now=101)
+    assert turn.seconds == 6 * TURN_SECONDS
 
 
 def test_who_needs_little_goes_first_but_nobody_waits_for_ever(own: CuttingRenderer) -> None:

@@ -331,6 +331,14 @@ def test_several_stones_that_an_edit_moved_go_back(subject: Session) -> None:
     assert after["stone"].position == before["stone"].position
 
 
+def test_a_stone_that_was_dragged_goes_back_to_where_it_was_before_the_drag(subject: Session) -> None:
+    happen(subject, ToggleFall())
+    before = fall(subject)["stone"].position
+    happen(subject, *(patch(stones={"stone": {"position": [x, 5, 0]}}) for x in (1, 2, 3)))
+    happen(subject, Undo())
+    assert subject.motion.states()["stone"].position == before
+
+
 def test_a_sky_that_is_not_kept_any_more_is_told_of_and_nothing_changes(subject: Session) -> None:
     happen(subject, patch(environment={"kind": "image", "image": "sunset"}), ToggleMirror())
     mirrored = happen(subject, patch(environment={"kind": "dark"}))
