@@ -28,6 +28,7 @@ SQUARE_ANGLE = Camera(position=(0, 0, 10), target=(0, 0, 0), fov_degrees=90)
         ((30, -20, 0), Flags.RIGHT | Flags.BELOW),
         ((0, 0, 10.9), Flags.NONE),
         ((0, 0, 11.1), Flags.BEHIND),
+        ((50, 0, 10.9), Flags.RIGHT),
         ((50, 50, 11.1), Flags.BEHIND),
         ((0, 0, -1e5), Flags.NONE),
     ],
