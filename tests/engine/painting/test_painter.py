@@ -643,6 +643,18 @@ async def test_a_stone_that_fell_asleep_is_drawn_in_full_once_and_refined(
     assert len(world.drawn) == drawn
 
 
+async def test_a_window_that_takes_another_shape_has_its_picture_however_long_that_takes(play: Play) -> None:
+    """Nothing of what was seen can be shown over it, so that it is not seen before it is whole."""
+    world = World(4.0)
+    await play(world, 10)
+    assert world.live is not None
+    world.live.size = upright = WANTED[1], WANTED[0]
+    await play(world, 10)
+    (drawn,) = [each for each in world.drawn if each.size == upright]
+    assert drawn.full
+    assert drawn.ended - drawn.begun == pytest.approx(4)
+
+
 @pytest.mark.parametrize("full_seconds", [0.01, 0.1, 0.9, 4.0])
 @pytest.mark.parametrize("needed", [3, 16, 90, 1000])
 async def test_a_picture_at_rest_is_refined_until_it_is_good_enough(
