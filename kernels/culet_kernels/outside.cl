@@ -111,7 +111,10 @@ static inline void leave(world_t world, tile_t *tile, pools_t *pools, task_t tas
 }
 
 // Splits light that meets a stone from outside, at the origin of the packet, which is this point of the frame: what is reflected goes into the room, if
-// `glare` says so, and what enters starts a chain.
+// `glare` says so, and what enters starts a chain. Of MANY it is part of both its callers: by itself it would get packets by way of memory.
+#if STONES == MANY
+__attribute__((always_inline))
+#endif
 static inline void enter(world_t world, tile_t *tile, pools_t *pools, task_t task, const packetL *packet, vec3L point,
                          vec3L normal, maskL mask, bool glare) {
   const realL cos_a = clamp(-dot3(packet->direction, normal), (realL)0, (realL)1);
@@ -204,12 +207,14 @@ static inline void look_around(world_t world, tile_t *tile, pools_t *pools, task
   nearL near;
   EACH (k, NEAR_WORDS) near.word[k] = load_ints(pools->near[k] + pools->towards.count);
   meetingL met = nobody(packet.origin, packet.direction);
-  meet_next(world, &near, packet.origin, packet.direction, splat(0), taken, packet.stone, &met);
-  const maskL more = taken & any_near(&near), waits = more & !met.hit;
-  if (any_lane(waits)) put_off(world, tile, pools, task, waits, &packet, &near); // for a full packet
-  taken &= !waits;
-  for (maskL asking = more & met.hit; any_lane(asking); asking &= any_near(&near))
+  for (maskL asking = taken; any_lane(asking);) {
     meet_next(world, &near, packet.origin, packet.direction, splat(0), asking, packet.stone, &met);
+    asking &= any_near(&near);
+    const maskL waits = asking & !met.hit;
+    if (any_lane(waits)) put_off(world, tile, pools, task, waits, &packet, &near); // for a full packet
+    taken &= !waits;
+    asking &= met.hit;
+  }
 #else
   meetingL met = stone_entry(world, packet.origin, packet.direction, splat(0), taken, packet.stone);
 #endif

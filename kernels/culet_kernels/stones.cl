@@ -150,9 +150,10 @@ static inline crossingL enter_one_by_one(__global const real *blocks, int count,
   return crossing;
 }
 
-// Where rays enter a stone, all in its measure and the axes of light inside; their facets are those of any stone of its shape.
-static inline crossingL enter_shape(world_t world, __constant const stone_t *stone, vec3L origin, vec3L direction,
-                                    realL t_min, maskL mask) {
+// Where rays enter a stone, all in its measure and the axes of light inside; their facets are those of any stone of its shape. It is part
+// of its callers, as meet_next is: by themselves they would get their packets by way of memory.
+__attribute__((always_inline)) static inline crossingL
+enter_shape(world_t world, __constant const stone_t *stone, vec3L origin, vec3L direction, realL t_min, maskL mask) {
   if (packing_of(mask).count <= FEW_LANES)
     return enter_one_by_one(world.blocks + stone->first_block * 4 * TREE_WIDTH, stone->blocks, origin, direction, t_min,
                             mask);
@@ -353,8 +354,8 @@ static inline void meet_each(world_t world, intL number, vec3L origin, vec3L dir
 #if STONES == MANY
 // Looks whether each of these rays enters one of the stones that it is near, before the one that it met so far: that one whose sphere
 // begins first. No stone is left to be asked where all that are left begin beyond.
-static inline void meet_next(world_t world, nearL *near, vec3L origin, vec3L direction, realL t_min, maskL mask,
-                             intL from, meetingL *first) {
+__attribute__((always_inline)) static inline void meet_next(world_t world, nearL *near, vec3L origin, vec3L direction,
+                                                            realL t_min, maskL mask, intL from, meetingL *first) {
   realL then;
   const intL number = take_nearest(world, near, origin, direction, &then);
   meet_each(world, blend_ints(number < 0, (intL)(0), number), origin, direction, t_min, mask & widen(number >= 0), from,
