@@ -46,3 +46,24 @@ def test_what_mirrors_cut_of_a_chain_counts_in_however_many_parts_it_is_followed
 def test_nothing_is_brighter_than_the_largest_radiance(exact: Renderer, name: str) -> None:
     scene = PRESETS[name].scene
     assert radiance(take(exact, scene)).max() <= largest_radiance(Stage.of(scene)) * (1 + 1e-12)
+
+
+BRIGHTEST: dict[str, dict[str, Any]] = {
+    "a lamp before the sky": {
+        "stones": [], "floor": {"kind": "none"}, "environment": {"kind": "constant", "radiance": [2, 2, 2]},
+        "emitters": [{"shape": "round", "direction": [0, 0, -1], "radiance": [5, 5, 5], "half_angle_degrees": 20}],
+        "camera": {"position": [0, 0, 5], "target": [0, 0, 0]},
+    },
+    "the report's floor, which is never dark": {
+        "stones": [], "floor": {"kind": "matte"}, "environment": {"kind": "constant", "radiance": [0.01, 0.01, 0.01]},
+        "emitters": [], "optics": {"estimator": "classic"},
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", BRIGHTEST.values(), ids=BRIGHTEST.keys())
+def test_where_nothing_takes_light_away_the_brightest_place_has_the_largest_radiance(
+    exact: Renderer, scene: dict[str, Any]
+) -> None:
+    shown = legacy(scene)
+    assert radiance(take(exact, shown)).max() == pytest.approx(largest_radiance(Stage.of(shown)), rel=1e-9)

@@ -14,6 +14,7 @@ from culet.engine.library.upload_store import LEAST_TO_READ, MESH, SKY, WAITING,
 from culet.errors import BusyError, InputError, MeshError, TooLargeError
 from culet.geometry.mesh import shape_from_mesh
 from culet.geometry.shape import Shape
+from culet.optics.sky_files.picture import SkyPicture
 from culet.scene.stone import MOST_STONES
 from engine.peer import TETRAHEDRON
 from shared.patience import PATIENCE
@@ -163,3 +164,13 @@ async def test_a_mesh_for_each_stone_is_kept_and_the_one_that_memory_has_no_room
         await store.put("one-more", "off", TETRAHEDRON)
     assert list(store) == list(meshes)
     assert memory.free >= 0
+
+
+async def test_what_another_file_of_its_name_replaces_is_forgotten_and_the_same_file_is_not() -> None:
+    """Or the device would keep its copy of a sky that nothing names any more."""
+    forgotten: list[SkyPicture] = []
+    store = UploadStore(SKY, Limits(), forgotten=forgotten.append)
+    for colour in ((255, 188, 0), (255, 188, 0), (0, 188, 255)):
+        await store.put("dusk", "png", png(8, 4, colour))
+    assert [sky.pixels[0, 0, 2] for sky in forgotten] == [0]
+    assert store["dusk"].pixels[0, 0, 2] == 1
