@@ -643,6 +643,18 @@ async def test_a_stone_that_fell_asleep_is_drawn_in_full_once_and_refined(
     assert len(world.drawn) == drawn
 
 
+@pytest.mark.parametrize("changed", [False, True])
+def test_of_what_nobody_watches_the_scene_is_held_only_while_the_session_shows_it(*, changed: bool) -> None:
+    """Or its sky would stay in memory."""
+    world = World(0.01)
+    live = LivePicture(world.session, size=WANTED)
+    live.painted = shown = world.session.shown
+    if changed:
+        world.session.change(Stage.of(Scene()))
+    live.abandon(world.now)
+    assert live.painted is (None if changed else shown)
+
+
 async def test_a_window_that_takes_another_shape_has_its_picture_however_long_that_takes(play: Play) -> None:
     """Nothing of what was seen can be shown over it, so that it is not seen before it is whole."""
     world = World(4.0)

@@ -10,6 +10,7 @@ import pytest
 from culet.geometry.shape import Shape
 from culet.simulation.one_stone.contact import Contact, closing_speed, contacts
 from culet.simulation.one_stone.impact import impact
+from culet.simulation.one_stone.impulses import solve
 from culet.simulation.rigid_body.body import RigidBody
 from culet.simulation.rigid_body.motion import BodyMotion, gaps, kinetic_energy
 from culet.simulation.rigid_body.settings import SimulationSettings
@@ -150,6 +151,24 @@ def test_random_impacts_obey_energy_signorini_and_coulomb(brilliant: Shape, box:
     for number in range(count):
         body, motion = random_body((brilliant, box)[number % 2], rng)
         check(body, motion, float(rng.choice([0, 0.3, 0.6, 1])), float(rng.choice([0, 0.1, 0.3, 1, 10])))
+
+
+def bounced(body: RigidBody, before: BodyMotion, restitution: float) -> BodyMotion:
+    """By impulses alone, with friction, whatever that makes of the energy."""
+    points = contacts(before, body)
+    targets = [restitution * max(closing, 0.0) for closing in speeds(body, before, points)]
+    return solve(before, body, points, targets, friction=1)
+
+
+def test_restitution_that_would_make_energy_is_halved_and_friction_stays(brilliant: Shape) -> None:
+    rng, halved = np.random.default_rng(6), 0
+    for _ in range(300):
+        body, before = random_body(brilliant, rng)
+        energy, half = kinetic_energy(before, body), bounced(body, before, 0.5)
+        if kinetic_energy(half, body) < energy < 0.999 * kinetic_energy(bounced(body, before, 1), body):
+            halved += 1
+            assert impact(before, body, contacts(before, body), restitution=1, friction=1) == half
+    assert halved >= 10  # 29 with any gain
 
 
 def test_the_order_of_the_vertices_does_not_matter(brilliant: Shape) -> None:
