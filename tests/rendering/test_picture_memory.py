@@ -10,7 +10,7 @@ import pytest
 
 from culet.rendering import renderer as renderer_module
 from culet.rendering.emitters.light_map import frame_of
-from culet.rendering.light import lighting
+from culet.rendering.light import passes
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
 from culet.rendering.renderer import KEPT, Renderer
@@ -131,21 +131,21 @@ def test_a_resting_pass_that_nobody_waits_for_gives_its_memory_back(
 ) -> None:
     """When another picture is begun a while later; whether or not that one has light."""
     taken: list[weakref.ref[Beams]] = []
-    take = own.lighting.take_beams
+    take = own.lighting.passes.take_beams
 
     def noted() -> Beams:
         beams = take()
         taken.append(weakref.ref(beams))
         return beams
 
-    monkeypatch.setattr(own.lighting, "take_beams", noted)
+    monkeypatch.setattr(own.lighting.passes, "take_beams", noted)
     other = Stage.of(Scene.read({"floor": {"kind": "matte"}, "emitters": []}))
     for left_seconds in (math.inf, 0.0):
-        monkeypatch.setattr(lighting, "LEFT_SECONDS", math.inf)
+        monkeypatch.setattr(passes, "LEFT_SECONDS", math.inf)
         picture = own.picture(Stage.of(preset("heap")), 32, 18, effort=LightEffort.RESTING)
         under_way = picture.refine_in_pieces(1, 1e-5)
         next(under_way)
-        monkeypatch.setattr(lighting, "LEFT_SECONDS", left_seconds)
+        monkeypatch.setattr(passes, "LEFT_SECONDS", left_seconds)
         own.picture(other, 32, 18)
         assert taken[-1]() is not None, "somebody waits for it"
         del under_way
@@ -158,9 +158,9 @@ def test_a_resting_pass_that_nobody_waits_for_gives_its_memory_back(
 def test_what_a_picture_at_rest_sums_its_light_in_is_given_back_when_that_is_good_enough(own: Renderer) -> None:
     picture = own.picture(Stage.of(preset("heap")), 32, 18, effort=LightEffort.MOVING)
     picture.refine()
-    beams = own.lighting.take_beams()
+    beams = own.lighting.passes.take_beams()
     kept = weakref.ref(beams)
-    own.lighting.give_back(beams)
+    own.lighting.passes.give_back(beams)
     del beams
     assert kept() is not None, "for the next frame that moves"
     picture = own.picture(Stage.of(LIT), 32, 18, effort=LightEffort.RESTING)
@@ -204,9 +204,9 @@ def test_what_is_kept_of_moving_light_is_given_back_when_it_is_asked_for(own: Re
         picture.refine()
         assert picture.light_seconds > 0
         del picture
-        beams = own.lighting.take_beams()
+        beams = own.lighting.passes.take_beams()
         kept = weakref.ref(beams)
-        own.lighting.give_back(beams)
+        own.lighting.passes.give_back(beams)
         del beams
         assert own.pool.active_bytes > 0, "the map, for the next frame"
         assert kept() is not None

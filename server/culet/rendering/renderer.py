@@ -24,7 +24,8 @@ from culet.rendering.film.sums import Fold, Sums
 from culet.rendering.film.target import Target
 from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.lighting import Lighting, Maker
+from culet.rendering.light.illumination import Maker
+from culet.rendering.light.lighting import Lighting
 from culet.rendering.opencl.device import Device, Real, open_device
 from culet.rendering.opencl.layout import constants
 from culet.rendering.pace import KernelPace
@@ -125,7 +126,7 @@ class Renderer:
         `effort` on its light map; or a map that was made elsewhere. With neither only points throw shadows, and nothing
         throws caustics.
         """
-        self.lighting.give_up_left()
+        self.lighting.passes.give_up_left()
         return DevicePicture(self, stage, width, height, features, light_map, effort)
 
     def forget(self, panorama: Panorama) -> None:

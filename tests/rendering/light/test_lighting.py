@@ -32,7 +32,9 @@ from culet.rendering.kernel_inputs.inputs import Inputs
 from culet.rendering.light import beams
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.lighting import Illumination, Lighting, Maker, beams_of, takes_only_beams
+from culet.rendering.light.illumination import Illumination, Maker
+from culet.rendering.light.lighting import Lighting, beams_of
+from culet.rendering.light.solids import takes_only_beams
 from culet.rendering.opencl.device import Device
 from culet.rendering.pace import KernelPace
 from culet.rendering.renderer import MIXED, DevicePicture, Renderer
@@ -346,7 +348,7 @@ def test_light_at_rest_is_shown_while_it_gets_better_and_ends_in_the_same_pictur
     more samples, if only by being sampled anew in the last light, and no more than are needed."""
     many = size != SIZE
     most = 20 if many else 5
-    monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", most)
+    monkeypatch.setattr("culet.rendering.light.illumination.MOST_PASSES", most)
     monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
     stage, target = Stage.of(scene_of(emitters=[SUN])), Target(4)
     renderer.lighting.forget()
@@ -392,7 +394,7 @@ def test_without_fireflies_a_picture_has_one_sample_in_each_light_until_the_last
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """They cannot be told from two lights, and no look has fewer samples than the one before."""
-    monkeypatch.setattr("culet.rendering.light.lighting.MOST_PASSES", 5)
+    monkeypatch.setattr("culet.rendering.light.illumination.MOST_PASSES", 5)
     monkeypatch.setattr("culet.rendering.renderer.LIGHT_FOR_SAMPLES", 0.0)
     stage, target = Stage.of(scene_of(emitters=[SUN], film={"fireflies": "hide"})), Target(3)
     renderer.lighting.forget()
@@ -470,7 +472,7 @@ def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_map
         renderer.lighting.forget()
         wanted.append(texels(renderer, lit(renderer, stage, LightEffort.RESTING)[1]))
     renderer.lighting.forget()
-    held, most, take, give_back = 0, 0, renderer.lighting.take_beams, renderer.lighting.give_back
+    held, most, take, give_back = 0, 0, renderer.lighting.passes.take_beams, renderer.lighting.passes.give_back
 
     def taken() -> Beams:
         nonlocal held, most
@@ -483,8 +485,8 @@ def test_passes_of_several_pictures_hold_the_memory_of_one_and_make_the_same_map
         held -= 1
         give_back(own)
 
-    monkeypatch.setattr(renderer.lighting, "take_beams", taken)
-    monkeypatch.setattr(renderer.lighting, "give_back", given)
+    monkeypatch.setattr(renderer.lighting.passes, "take_beams", taken)
+    monkeypatch.setattr(renderer.lighting.passes, "give_back", given)
     works = [renderer.picture(stage, *SIZE, effort=LightEffort.RESTING).refine_in_pieces(1, 1e-5) for stage in stages]
     while works:
         works = [work for work in works if next(work, None) is not None]
@@ -545,7 +547,7 @@ def test_a_moving_pass_takes_the_rays_of_moving_pictures(renderer: Renderer, mon
         asked.append(moving)
         return rays_of(stage, number, moving=moving)
 
-    monkeypatch.setattr("culet.rendering.light.lighting.rays_of", listening)
+    monkeypatch.setattr("culet.rendering.light.illumination.rays_of", listening)
     for effort, moving in ((LightEffort.MOVING, True), (LightEffort.RESTING, False)):
         renderer.lighting.forget()
         asked.clear()
@@ -582,8 +584,8 @@ def test_a_stone_that_is_not_convex_is_lit_by_photons(renderer: Renderer) -> Non
 def test_where_photons_would_take_too_long_a_moving_picture_says_that_it_has_shadows_only(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("culet.rendering.light.lighting.MOVING_PHOTON_SECONDS", 1e-9)
-    monkeypatch.setattr("culet.rendering.light.lighting.PHOTON_PASSES", 1)
+    monkeypatch.setattr("culet.rendering.light.illumination.MOVING_PHOTON_SECONDS", 1e-9)
+    monkeypatch.setattr("culet.rendering.light.illumination.PHOTON_PASSES", 1)
     stage = staged(scene_of(stones=[{"position": [0, 0.2, 0]}]), ring())
     picture, found = lit(renderer, stage, LightEffort.MOVING)
     assert picture.shows_shadows_only()

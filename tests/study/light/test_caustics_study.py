@@ -36,7 +36,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def finished(folder: Path) -> Iterator[Report]:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(caustics, "QUICK", TINY)
-        patched.setattr("culet.rendering.light.lighting.MOST_PASSES", 6)
+        patched.setattr("culet.rendering.light.illumination.MOST_PASSES", 6)
         yield study_caustics(staged(Scene()), folder, untold, quick=True)
 
 

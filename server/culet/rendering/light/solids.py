@@ -14,6 +14,7 @@ from culet.rendering.light.facet_loops import facet_loops
 from culet.rendering.opencl.device import Real
 from culet.rendering.opencl.layout import struct
 from culet.rendering.stones.placed_stone import PlacedStone
+from culet.stage import Stage
 
 ABREAST = 16
 """Planes that are looked at at a time: each stone's number is filled up to a multiple."""
@@ -26,6 +27,11 @@ FEW, MANY = 96, 512
 def takes_beams(shape: Shape) -> bool:
     """Whether light goes through it in beams: it is convex, and each of its lit facets is worth a beam."""
     return shape.convex and len(shape.planes) <= MANY
+
+
+def takes_only_beams(stage: Stage) -> bool:
+    """Whether all stones are such that beams are followed, or else photons."""
+    return all(map(takes_beams, stage.shapes))
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,9 +26,8 @@ from culet.rendering.emitters.ray import LightRay
 from culet.rendering.emitters.sources import rays_of
 from culet.rendering.light.beams import Beams
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.lighting import takes_only_beams
 from culet.rendering.light.photons import Photons
-from culet.rendering.light.solids import MANY
+from culet.rendering.light.solids import MANY, takes_only_beams
 from culet.rendering.renderer import Renderer
 from culet.scene.emitters import PointLight, Sun
 from culet.scene.room import Plane

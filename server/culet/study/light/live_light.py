@@ -24,8 +24,7 @@ from culet.errors import SceneError
 from culet.rendering.emitters.light_map import Figures, frame_of
 from culet.rendering.emitters.sources import mapped_surfaces, rays_of
 from culet.rendering.light.effort import LightEffort
-from culet.rendering.light.lighting import takes_only_beams
-from culet.rendering.light.solids import MANY
+from culet.rendering.light.solids import MANY, takes_only_beams
 from culet.rendering.renderer import Renderer
 from culet.scene.model import Scene
 from culet.stage import Stage
@@ -150,9 +149,9 @@ def _thrown(renderer: Renderer, stage: Stage, cutoff: float) -> tuple[Array, Fig
     """The map of a moving frame."""
     frame = frame_of(stage)
     target = cl.Buffer(renderer.device.context, cl.mem_flags.READ_WRITE, frame.nbytes)
-    beams = renderer.lighting.take_beams()
+    beams = renderer.lighting.passes.take_beams()
     figures = beams.make(stage, rays_of(stage, 0, moving=True), frame, target, cutoff=cutoff)
-    renderer.lighting.give_back(beams)
+    renderer.lighting.passes.give_back(beams)
     made = np.empty(frame.shape, np.float32)
     cl.enqueue_copy(renderer.device.queue, made, target)
     return made[list(frame.matte)].astype(np.float64), figures
