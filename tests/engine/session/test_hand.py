@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from culet.engine.session import events
+from culet.engine.session.edits import Edits
 from culet.engine.session.session import Session
 from culet.errors import InputError
 from culet.scene import Scene
@@ -25,8 +26,11 @@ PAIR = [{"id": "left", "position": LEFT}, {"id": "right", "position": RIGHT}]
 
 
 def session(stones: list[dict[str, Any]] = PAIR, **scene: Any) -> Session:  # noqa: ANN401
+    """Whose edits follow each other at once, however busy the machine is."""
     stage = Stage.of(Scene.read({"stones": stones, "camera": CAMERA} | scene))
-    return Session("0" * 32, stage)
+    made = Session("0" * 32, stage)
+    made.edits = Edits(lambda: 0.0)
+    return made
 
 
 def after(subject: Session, *given: SessionEvent) -> Session:
@@ -61,6 +65,10 @@ def test_a_drag_by_a_half_of_the_picture_moves_a_stone_by_what_that_shows_where_
     assert shown(subject) == pytest.approx((-3, 5, 0))
     near = session([{"id": "left", "position": [0, 3, 10]}])
     assert shown(after(near, DragStone(stone="left", right=0.1, up=0.2))) == pytest.approx((0.5, 4, 10))
+    behind = session([{"id": "left", "position": [0, 3, 30]}])
+    assert shown(after(behind, DragStone(stone="left", right=0.1, up=0.2))) == (0, 3, 30), (
+        "the picture shows nothing of it"
+    )
     flat = session(camera={"kind": "orthographic", "position": [0, 3, 20], "target": [0, 3, 0], "height": 12})
     assert shown(after(flat, DragStone(stone="left", right=0.5, up=0))) == pytest.approx((-1, 3, 0))
 
