@@ -17,6 +17,8 @@ from culet.engine.painting.video_track import (
 from culet_protocol.frame import Codec
 
 CRF = 20
+BEGUN = 100.0
+"""s: when the first encoder is made."""
 
 
 class Telling(VideoEncoder):
@@ -62,13 +64,13 @@ def test_key_frames_that_are_asked_for_come_once_a_second_at_most() -> None:
 
 def test_sizes_that_flicker_are_brought_to_one_until_it_is_worth_another_key_frame() -> None:
     track = VideoTrack(Codec.H264, Telling)
-    encode(track, 0)
+    encode(track, BEGUN)
     for now in (0.1, 0.2, CHANGE_SECONDS - 0.1):
-        packet = encode(track, now, 480, 270)
+        packet = encode(track, BEGUN + now, 480, 270)
         assert (packet.width, packet.height, packet.is_key) == (640, 360, False)
-    packet = encode(track, CHANGE_SECONDS, 480, 270)
+    packet = encode(track, BEGUN + CHANGE_SECONDS, 480, 270)
     assert (packet.width, packet.height, packet.is_key) == (480, 270, True)
-    assert not encode(track, 9, 496, 279).is_key, "nearly the same size is not worth one"
+    assert not encode(track, BEGUN + 9, 496, 279).is_key, "nearly the same size is not worth one"
 
 
 def test_pictures_of_another_shape_are_not_squeezed_into_the_one_before() -> None:
@@ -80,16 +82,16 @@ def test_pictures_of_another_shape_are_not_squeezed_into_the_one_before() -> Non
 
 def test_another_quality_waits_for_its_time() -> None:
     track = VideoTrack(Codec.H264, Telling)
-    encode(track, 0)
-    assert encode(track, CHANGE_SECONDS - 0.1, crf=CRF + 3).crf == CRF
-    assert encode(track, CHANGE_SECONDS, crf=CRF + 3).crf == CRF + 3
+    encode(track, BEGUN)
+    assert encode(track, BEGUN + CHANGE_SECONDS - 0.1, crf=CRF + 3).crf == CRF
+    assert encode(track, BEGUN + CHANGE_SECONDS, crf=CRF + 3).crf == CRF + 3
 
 
 def test_a_link_that_carries_much_less_is_heeded_sooner() -> None:
     track = VideoTrack(Codec.H264, Telling)
-    encode(track, 0)
-    assert encode(track, KEY_SECONDS, crf=32).crf == 32
-    assert encode(track, 2 * KEY_SECONDS, 320, 180, crf=32).width == 320
+    encode(track, BEGUN)
+    assert encode(track, BEGUN + KEY_SECONDS, crf=32).crf == 32
+    assert encode(track, BEGUN + 2 * KEY_SECONDS, 320, 180, crf=32).width == 320
 
 
 def test_a_hold_ends_when_it_is_told_to_or_by_itself() -> None:
