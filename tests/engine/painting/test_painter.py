@@ -27,6 +27,7 @@ from culet.engine.painting.frame_work import FrameWork, WorkKind, has_shape
 from culet.engine.painting.live_frame import LiveFrame
 from culet.engine.painting.live_picture import SETTLE_SECONDS, LivePicture
 from culet.engine.painting.painter import Painter
+from culet.engine.painting.quality import Quality
 from culet.engine.painting.shares import Account
 from culet.engine.painting.still import Still, StillQueue
 from culet.engine.session.session import Session
@@ -653,6 +654,16 @@ def test_of_what_nobody_watches_the_scene_is_held_only_while_the_session_shows_i
         world.session.change(Stage.of(Scene()))
     live.abandon(world.now)
     assert live.painted is (None if changed else shown)
+
+
+def test_a_picture_that_is_known_to_take_long_stays_so_when_it_is_given_up_soon() -> None:
+    """Or the next one would be drawn in full as well, and what somebody does would wait for it."""
+    quality, world = Quality(), World(3.0)
+    quality.full_seconds = 3.0
+    for spent, known in ((0.1, 3.0), (5.0, 5.0)):
+        work = FrameWork(WorkKind.FULL, world.session.shown, WANTED, Account(world), begun_at=world.now, spent=spent)
+        quality.give_up_full(work)
+        assert quality.full_seconds == known
 
 
 async def test_a_window_that_takes_another_shape_has_its_picture_however_long_that_takes(play: Play) -> None:
