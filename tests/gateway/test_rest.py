@@ -47,6 +47,12 @@ async def test_a_preset_renders_as_a_tga_with_a_footer(gateway: Gateway) -> None
     assert (picture.format, picture.size, picture.mode) == ("TGA", (64, 36), "RGB")
 
 
+async def test_an_address_that_leads_nowhere_is_told_where_all_are_listed(gateway: Gateway) -> None:
+    answer = await gateway.http.get("/api/render.gif", params=SMALL)
+    assert_problem(answer, 404)
+    assert answer.json()["detail"] == "there is nothing at '/api/render.gif'; /docs has all addresses"
+
+
 async def test_without_parameters_the_picture_is_640_by_360(gateway: Gateway) -> None:
     answer = await gateway.http.get("/api/render.tga")
     assert Image.open(io.BytesIO(answer.content)).size == (640, 360)

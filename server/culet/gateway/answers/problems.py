@@ -13,7 +13,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
-from culet.errors import CuletError, InputError
+from culet.errors import CuletError, InputError, NotFoundError
 from culet.gateway.answers.departure import ClientLeftError
 from culet.scene.refusal import field_of
 from culet.scene.wording import at_its_tag, expected
@@ -133,11 +133,14 @@ async def _of_validation(request: Request, error: RequestValidationError) -> JSO
     return problem(InputError.status, InputError.title, f"{where}: {expected(first)}{came}{more}", field)
 
 
-async def _of_http(_request: Request, error: HTTPException) -> JSONResponse:
+async def _of_http(request: Request, error: HTTPException) -> JSONResponse:
     if error.status_code == 400 and (unreadable := _unreadable(error.__cause__)):
         return problem(InputError.status, InputError.title, f"the body is not JSON: {unreadable}")
-    title = HTTPStatus(error.status_code).phrase.lower()
-    return problem(error.status_code, title, error.detail, None, error.headers)
+    phrase = HTTPStatus(error.status_code).phrase
+    detail = error.detail
+    if error.status_code == NotFoundError.status and detail == phrase:  # no route leads there
+        detail = f"there is nothing at {_short(request.url.path)}; /docs has all addresses"
+    return problem(error.status_code, phrase.lower(), detail, None, error.headers)
 
 
 async def _of_leaving(_request: Request, _error: ClientDisconnect) -> JSONResponse:
