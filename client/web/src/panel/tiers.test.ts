@@ -81,7 +81,8 @@ describe("tiers of a stone", () => {
     expect(await shared(scene(null), null)).toEqual(await shared(scene(null), null));
     expect(list).toHaveBeenCalledTimes(2);
     await shared(scene({ crown_ratio: 1.1 }), null);
-    await shared(scene(null), "7");
+    await shared(scene({ crown_ratio: 1.1 }), "7"); // whose reach nobody has asked for
     expect(list).toHaveBeenCalledTimes(4);
+    expect(list).toHaveBeenLastCalledWith(scene({ crown_ratio: 1.1 }), "7", undefined);
   });
 });
